@@ -1,3 +1,4 @@
+// Picks the command and turns errors into messages and exit codes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -124,7 +125,7 @@ std::string text_for_packages(CLI::App& program, std::string_view argument) {
   return "";
 }
 
-// As CLI11 takes them, the last one first; 'version' and 'help touch' are taken, too.
+// The arguments in the order of CLI11, last one first. Accepts 'version' and 'help touch', too.
 std::vector<std::string> arguments(const CLI::App& program, int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front() == "version") words.front() = "--version";

@@ -12,8 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "apps/palpate/replay/player.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/replay/playback.hpp"
 #include "apps/palpate/replay/shown_run.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
@@ -38,17 +37,16 @@ void measure(const std::string& path, int seeks) {
   const SteadyClock clock;
   double begin = clock.now();
   const auto passed = [&] { return clock.now() - std::exchange(begin, clock.now()); };
-  const bag::McapReader reader(path);
-  const Json setup = recorded_setup(reader, path);
-  const Stretch stretch = stretch_of(path, reader, setup);
+  const Recording recording(path);
+  const Recording::Stretch stretch = recording.stretch();
   Scene scene;
   std::deque<ShownSource> sources;
   std::deque<ShownHand> hands;
-  for (std::size_t i = 0; i < setup.at("sources").size(); ++i) {
-    sources.emplace_back(path, reader, setup, i, scene);
+  for (std::size_t i = 0; i < recording.sources().size(); ++i) {
+    sources.emplace_back(recording, i, scene);
   }
-  for (std::size_t i = 0; i < setup.at("hands").size(); ++i) {
-    hands.emplace_back(path, reader, setup, i, scene);
+  for (std::size_t i = 0; i < recording.hands().size(); ++i) {
+    hands.emplace_back(recording, i, scene);
   }
   fmt::print("{:.0f} s, {} hands, {} sources; opened in {:.0f} ms; {:.0f} MB at most\n",
              stretch.end - stretch.begin, hands.size(), sources.size(), 1e3 * passed(),
@@ -63,7 +61,7 @@ void measure(const std::string& path, int seeks) {
     passed();
     for (ShownHand& hand : hands) hand.seek(moment);
     steps.push_back(passed());
-    for (ShownHand& hand : hands) (void)hand.past(Player::kPast, [] { return false; });
+    for (ShownHand& hand : hands) (void)hand.past(Playback::kPast, [] { return false; });
     pasts.push_back(passed());
     for (ShownSource& source : sources) {
       if (source.lives()) source.show(moment);

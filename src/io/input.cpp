@@ -72,7 +72,7 @@ constexpr Known kKnown[] = {
 struct Refused {
   std::string_view start;
   std::string_view what;
-  std::string_view remedy;
+  std::string_view remedy;  // {}: the file's name
 };
 
 constexpr std::string_view kExport =
@@ -100,7 +100,7 @@ constexpr Refused kRefused[] = {
     {"solid ", "an STL model", kExport},
     {"Kaydara FBX", "an FBX model", kExport},
     {"#ROSBAG", "a ROS bag", "Export one cloud from it as PCD"},
-    {"\x89MCAP", "an MCAP recording", "Export one cloud from it as PCD"},
+    {"\x89MCAP", "an MCAP recording", "Touch what it recorded: palpate touch bag:{}"},
     {"%PDF", "a PDF document", kReadable},
     {"\x7f"
      "ELF",
@@ -141,7 +141,8 @@ void refuse_known(const Input& input) {
   if (is_utf16(input.text())) fail(input, "this is UTF-16 text", "Save it as UTF-8");
   for (const Refused& entry : kRefused) {
     if (input.text().starts_with(entry.start)) {
-      fail(input, fmt::format("this is {}, not a supported point cloud", entry.what), entry.remedy);
+      fail(input, fmt::format("this is {}, not a supported point cloud", entry.what),
+           fmt::format(fmt::runtime(entry.remedy), input.name));
     }
   }
 }

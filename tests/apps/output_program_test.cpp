@@ -173,7 +173,7 @@ TEST(Output, AFullDiskEndsTheRecordingAndNotTheRunWhichEndsWithAnError) {
       "touch synthetic:sheet --device simulated --simulated-time --duration 7 --record r.mcap", "",
       kRoom);
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.out.find("7 001 in 7 s"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("7 001 in 7.00 s"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.err.find("r.mcap"), std::string::npos) << outcome.err;
   EXPECT_EQ(shell.run("bag info r.mcap").code, 0);
   EXPECT_EQ(shell.run("replay r.mcap").code, 0) << "as far as it goes";

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "apps/palpate/record/recorder.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/replay/replay.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "bag/mcap_reader.hpp"
@@ -135,8 +135,8 @@ TEST_F(RecordingTest, ARunThatIsRecordedFromItsBeginningMayEndItsFileAndBeginAno
   step(20);
   EXPECT_EQ(recorder_->finish().size(), 2u);
   const auto nothing = [](const ServoState&, const DeviceInfo&) {};
-  EXPECT_TRUE(ReplayedRun("run.mcap").replay(0, nothing).exact());
-  const ForceDifference later = ReplayedRun(second).replay(0, nothing);
+  EXPECT_TRUE(Replay("run.mcap").run(0, nothing).exact());
+  const ForceDifference later = Replay(second).run(0, nothing);
   EXPECT_FALSE(later.exact());
   EXPECT_EQ(later.ended,
             "recorded from step 111 of its run on: it can be viewed (--view), not done again; use "
@@ -155,8 +155,8 @@ TEST_F(RecordingTest, AFileFromTheMiddleHoldsItsStepsToTheLastBit) {
   }
   (void)recorder_->finish();
   std::vector<ServoState> recorded;
-  ReplayedRun(file).recorded(
-      0, [&](const ServoState& state, const DeviceInfo&) { recorded.push_back(state); });
+  Replay(file).show(0,
+                    [&](const ServoState& state, const DeviceInfo&) { recorded.push_back(state); });
   ASSERT_EQ(recorded.size(), felt.size());
   for (std::size_t i = 0; i < felt.size(); ++i) {
     EXPECT_EQ(recorded[i].hip, felt[i].hip);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/palpate/record/recorder.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/setup_parsed.hpp"
 #include "palpate/base/clock.hpp"
@@ -80,7 +80,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
   EXPECT_GT(felt, 300);
   std::vector<Eigen::Vector3d> again;
   const ForceDifference difference =
-      ReplayedRun(shell.path("run.mcap")).replay(0, [&](const ServoState& step, const DeviceInfo&) {
+      Replay(shell.path("run.mcap")).run(0, [&](const ServoState& step, const DeviceInfo&) {
         again.push_back(step.force);
       });
   EXPECT_TRUE(difference.exact()) << "step " << difference.first << " " << difference.ended;
@@ -137,7 +137,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   EXPECT_EQ(recorder.finish().at(0).frames, 19u);
   EXPECT_GT(largest, 0.05);
   const ForceDifference difference =
-      ReplayedRun(shell.path("run.mcap")).replay(0, [](const ServoState&, const DeviceInfo&) {});
+      Replay(shell.path("run.mcap")).run(0, [](const ServoState&, const DeviceInfo&) {});
   EXPECT_TRUE(difference.exact()) << "step " << difference.first << " " << difference.ended;
   EXPECT_EQ(difference.steps, 800u);
 }

@@ -1,8 +1,8 @@
+#include "apps/palpate/report/source_report.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
-
-#include "apps/palpate/report/report.hpp"
 
 namespace palpate::app {
 namespace {

@@ -11,8 +11,7 @@
 #include <thread>
 
 #include "apps/palpate/record/recorder.hpp"
-#include "apps/palpate/replay/player.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
+#include "apps/palpate/replay/playback.hpp"
 #include "apps/palpate/replay/shown_run.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
@@ -86,14 +85,13 @@ class TimeLineTest : public testing::Test {
 };
 
 TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
-  const bag::McapReader reader(path());
-  const Json setup = recorded_setup(reader, path());
+  const Recording recording(path());
   Scene scene;
-  const ShownSource source(path(), reader, setup, 0, scene);
+  const ShownSource source(recording, 0, scene);
   EXPECT_FALSE(source.lives());
   EXPECT_GT(scene.source(0).points()->size(), 100u);
   for (std::size_t i = 0; i < 2; ++i) {
-    ShownHand hand(path(), reader, setup, i, scene);
+    ShownHand hand(recording, i, scene);
     for (const double time : {0.0, 5.5, 1.2345, 1.2344, 5.999, 99.0, 3.0, -1.0, 3.0004}) {
       hand.seek(kBegin + time);
       expect_same(hand.servo().state(), at(i, kBegin + time));
@@ -104,9 +102,9 @@ TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
 }
 
 TEST_F(TimeLineTest, ThePastIsOfTheStepsBefore) {
-  const bag::McapReader reader(path());
+  const Recording recording(path());
   Scene scene;
-  ShownHand hand(path(), reader, recorded_setup(reader, path()), 0, scene);
+  ShownHand hand(recording, 0, scene);
   hand.seek(kBegin + 4);
   const auto past = hand.past(1.5, [] { return false; });
   ASSERT_NEAR(static_cast<double>(past.size()), 1501, 1);
@@ -134,14 +132,14 @@ struct Playing {
     return player.servos()[hand]->state().time - kBegin;
   }
 
-  Player player;
+  Playback player;
   std::atomic<int> changes{0};
   std::string complaint;
 };
 
 TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   Playing playing(path());
-  Player& player = playing.player;
+  Playback& player = playing.player;
   EXPECT_NEAR(player.length(), 1e-3 * (kSteps - 1), 1e-9);
   EXPECT_EQ(player.servos().size(), 2u);
   EXPECT_NEAR(playing.shown(0), 0, 1e-9);
@@ -165,12 +163,12 @@ TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
 
 TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
   Playing playing(path());
-  const double part = playing.player.length() / Player::kEnvelope;
-  std::vector<float> largest(Player::kEnvelope);
+  const double part = playing.player.length() / Playback::kEnvelope;
+  std::vector<float> largest(Playback::kEnvelope);
   for (const States& felt : felt_) {
     for (const ServoState& state : felt) {
       const auto i = static_cast<std::size_t>((state.time - kBegin) / part);
-      float& top = largest[std::min(i, Player::kEnvelope - 1)];
+      float& top = largest[std::min(i, Playback::kEnvelope - 1)];
       top = std::max(top, static_cast<float>(state.force.norm()));
     }
   }
@@ -180,7 +178,7 @@ TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
 
 TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {
   Playing playing(path());
-  Player& player = playing.player;
+  Playback& player = playing.player;
   // Hangs until the test's time is over if it never is.
   const auto wait_for = [&](double time, FieldOptions::Kind kind) {
     Playing::wait([&] {
@@ -218,17 +216,17 @@ TEST_F(TimeLineTest, InAGapTheLastStepBeforeItStays) {
     for (const auto& [number, channel] : reader.contents().channels) {
       numbers[number] = writer.add_channel(channel);
     }
-    const auto epoch = recorded_setup(reader, path()).at("epoch_ns").get<std::int64_t>();
+    const auto begin = static_cast<std::int64_t>(reader.contents().start);
     for (bag::Message message; reader.next(message);) {
-      const auto at = static_cast<std::int64_t>(message.stamp.log) - epoch;
-      if (at > 8'000'000'000 && at < 11'000'000'000) continue;
+      const auto at = static_cast<std::int64_t>(message.stamp.log) - begin;
+      if (at > 1'000'000'000 && at < 4'000'000'000) continue;
       writer.write(numbers[message.channel], message.stamp, message.data);
     }
     writer.close();
   }
-  const bag::McapReader reader(gap);
+  const Recording recording(gap);
   Scene scene;
-  ShownHand hand(gap, reader, recorded_setup(reader, gap), 0, scene);
+  ShownHand hand(recording, 0, scene);
   for (const double time : {10.5, 8.5, 11.2, 10.9}) {
     hand.seek(time);
     expect_same(hand.servo().state(), at(0, time < 11 ? 8 : time));
@@ -243,11 +241,10 @@ TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
                      "run.mcap")
                 .code,
             0);
-  const bag::McapReader reader(shell.path("run.mcap"));
-  const Json setup = recorded_setup(reader, shell.path("run.mcap"));
-  const double begin = stretch_of(shell.path("run.mcap"), reader, setup).begin;
+  const Recording recording(shell.path("run.mcap"));
+  const double begin = recording.stretch().begin;
   Scene scene;
-  ShownSource source(shell.path("run.mcap"), reader, setup, 0, scene);
+  ShownSource source(recording, 0, scene);
   ASSERT_TRUE(source.lives());
   EXPECT_TRUE(source.stream().frustum);
   const auto shown = [&](double time) {

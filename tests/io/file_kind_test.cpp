@@ -30,6 +30,7 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
                       "7zXZ\0data"sv),
               HasSubstr("xz -dk"));
   EXPECT_THAT(refusal("(\xb5/\xfd"), HasSubstr("zstd -d"));
+  EXPECT_THAT(refusal("\x89MCAP0"), HasSubstr("palpate touch bag:"));
   EXPECT_THAT(refusal("PK\x03\x04zip"), HasSubstr("ZIP archive"));
   EXPECT_THAT(refusal("\xff\xd8\xff\xe0 JFIF"), HasSubstr("a JPEG picture"));
   EXPECT_THAT(refusal("\xff\xfe\x30\0"sv), HasSubstr("UTF-16 text"));

@@ -1,3 +1,4 @@
+// The command align: solves for poses, reports them, writes the set-up file and the picture.
 #include "apps/palpate/align/align_command.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
+#include "apps/palpate/report/report.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/align/align.hpp"
 
@@ -92,7 +94,7 @@ void insert(toml::table& part, const Registration& option, const std::string& te
   }
 }
 
-// What the command line says of sources stands above all that the file does.
+// Options for sources on the command line override those in the file.
 void insert_given(toml::table& file, toml::array& sources, const CLI::App& command) {
   CLI::App unused;
   OptionTable table(unused);
@@ -107,7 +109,7 @@ void insert_given(toml::table& file, toml::array& sources, const CLI::App& comma
   }
 }
 
-// As a set-up file in the folder of `output` names it.
+// The path relative to the folder of `output`, where the set-up file will be.
 std::string path_from(const std::string& output, const std::string& path) {
   std::string kind;
   for (const std::string_view recorded : {kSequence, kBag}) {
@@ -145,36 +147,23 @@ std::string setup_text(const CLI::App& command, const AlignOptions& options,
   return text.str();
 }
 
-std::string fit_in_words(const AlignedSource::Fit& fit) {
-  return fmt::format("residual {}, {:.0f} % overlap with the others", length(fit.residual),
-                     100 * fit.overlap);
-}
-
-void print_source(const SourcePlan& source, const AlignedSource& aligned, std::FILE* out) {
-  const Style style(out);
-  const Eigen::Isometry3d& moved = aligned.T_aligned_rough;
-  fmt::print(out, "{} {}\n", style.heading(source.argument.name), source.argument.path);
-  fmt::print(out, "  before     {}\n  after      {}\n", fit_in_words(aligned.before),
-             fit_in_words(aligned.after));
-  if (aligned.place_deviation > 0) {
-    fmt::print(out, "  rotated    {:.2f} degrees\n  sigma      {} and {:.3f} degrees\n",
-               kDegrees * Eigen::AngleAxisd(moved.linear()).angle(),
-               length(aligned.place_deviation), kDegrees * aligned.turn_deviation);
-  }
-  fmt::print(out, "  pose       --pose {}={:.6g}\n", source.argument.name,
-             fmt::join(numbers_of(source.options.T_world_sensor), ","));
-}
-
-nlohmann::ordered_json json_of(const SourcePlan& source, const AlignedSource& aligned) {
-  const auto fit = [](const AlignedSource::Fit& f) {
-    return nlohmann::ordered_json{{"residual_m", f.residual}, {"overlap", f.overlap}};
-  };
-  return {{"name", source.argument.name},
-          {"source", source.argument.path},
-          {"pose", numbers_of(source.options.T_world_sensor)},
-          {"before", fit(aligned.before)},
-          {"after", fit(aligned.after)},
-          {"sigma", {{"place_m", aligned.place_deviation}, {"turn_rad", aligned.turn_deviation}}}};
+Report report_of(const SourcePlan& source, const AlignedSource& aligned) {
+  const std::string& name = source.argument.name;
+  const std::vector<double> pose = numbers_of(source.options.T_world_sensor);
+  Report report(name, source.argument.path);
+  report.data = {{"name", name}, {"source", source.argument.path}, {"pose", pose}};
+  report.row("before", "residual {before/residual_m}, {before/overlap} overlap with the others",
+             aligned.before.residual, aligned.before.overlap);
+  report.row("after", "residual {after/residual_m}, {after/overlap} overlap with the others",
+             aligned.after.residual, aligned.after.overlap);
+  const bool moves = aligned.place_deviation > 0;
+  const double turned = Eigen::AngleAxisd(aligned.T_aligned_rough.linear()).angle();
+  report.row("rotated", "[{?}{} degrees]", moves, fmt::format("{:.2f}", kDegrees * turned));
+  report.row("sigma", "[{sigma/place_m} and {} degrees]", aligned.place_deviation,
+             fmt::format("{:.3f}", kDegrees * aligned.turn_deviation));
+  report.data["sigma"]["turn_rad"] = aligned.turn_deviation;
+  report.row("pose", "--pose {}={}", name, fmt::format("{:.6g}", fmt::join(pose, ",")));
+  return report;
 }
 
 void check_outputs(const std::string& output, const OutputPlan& others) {
@@ -227,8 +216,9 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Eigen::Isometry3d& pose = sources[i].options.T_world_sensor;
     pose = aligned[i].T_aligned_rough * pose;
-    print_source(sources[i], aligned[i], out);
-    report.push_back(json_of(sources[i], aligned[i]));
+    const Report part = report_of(sources[i], aligned[i]);
+    part.print(out);
+    report.push_back(part.data);
   }
   write_whole(json, text_of(report));
   write_whole(output, setup_text(command, options, sources));

@@ -1,3 +1,4 @@
+// The command bag: reports what an MCAP file holds and recovers damaged ones.
 #include "apps/palpate/bag/bag_command.hpp"
 
 #include <fmt/chrono.h>
@@ -50,29 +51,22 @@ double rate_of(const bag::Channel& channel, double seconds) {
 
 void add_losses(Report& report, const bag::Contents& contents) {
   report.data["losses"] = contents.losses;
-  for (const std::string& loss : contents.losses) report.line("damaged", loss, Mark::warning);
+  for (const std::string& loss : contents.losses) report.note({"damaged", Mark::warning}, loss);
 }
 
 void add_topics(Report& report, const bag::Contents& contents) {
   const double seconds = seconds_of(contents);
-  Json topics = Json::array();
+  Json& topics = report.data["topics"] = Json::array();
   for (const auto& [number, channel] : contents.channels) {
-    const double rate = rate_of(channel, seconds);
-    report.line(topics.empty() ? "topics" : "",
-                fmt::format("{} ({}): {} messages{}", channel.topic, channel.schema.name,
-                            grouped(channel.count),
-                            rate > 0 ? fmt::format(", {:.4g} a second", rate) : ""));
-    topics.push_back({{"topic", channel.topic},
-                      {"type", channel.schema.name},
-                      {"encoding", channel.message_encoding},
-                      {"schema_encoding", channel.schema.encoding},
-                      {"messages", channel.count},
-                      {"rate_hz", rate}});
+    report.item("topics", "topics", "{topic} ({type}): {messages} messages[, {rate_hz}]",
+                channel.topic, channel.schema.name, channel.count, rate_of(channel, seconds));
+    topics.back().update(
+        {{"encoding", channel.message_encoding}, {"schema_encoding", channel.schema.encoding}});
   }
-  report.data["topics"] = topics;
 }
 
 Report report_of(const std::string& path, const bag::Contents& contents, bool checked) {
+  const bool any = contents.messages > 0;
   Report report(path, fmt::format("MCAP, profile '{}', written by {}", contents.profile,
                                   contents.library.empty() ? "?" : contents.library));
   report.data = {{"file", path},
@@ -80,26 +74,18 @@ Report report_of(const std::string& path, const bag::Contents& contents, bool ch
                  {"library", contents.library},
                  {"closed", contents.closed},
                  {"checked", checked},
-                 {"chunks", contents.chunks.size()},
-                 {"messages", contents.messages},
-                 {"start_ns", contents.messages > 0 ? Json(contents.start) : Json()},
-                 {"duration_s", seconds_of(contents)}};
-  report.line("messages", fmt::format("{} in {} chunks", grouped(contents.messages),
-                                      grouped(contents.chunks.size())));
-  if (contents.messages > 0) {
-    report.line("time",
-                fmt::format("{}, {} long", date(contents.start), duration(seconds_of(contents))));
-  }
+                 {"start_ns", any ? Json(contents.start) : Json()}};
+  report.row("messages", "{messages} in {chunks} chunks", contents.messages,
+             contents.chunks.size());
+  report.row("time", "[{?}{}, {duration_s} long]", any, date(contents.start), seconds_of(contents));
   add_topics(report, contents);
-  Json attached = Json::array();
+  report.data["attachments"] = Json::array();
   for (const bag::AttachmentPlace& place : contents.attachments) {
-    report.line("attached", fmt::format("{}, {} bytes", place.head.name, grouped(place.size)));
-    attached.push_back({{"name", place.head.name}, {"bytes", place.size}});
+    report.item("attachments", "attached", "{name}, {bytes} bytes", place.head.name, place.size);
   }
-  report.data["attachments"] = attached;
   add_losses(report, contents);
   if (contents.losses.empty()) {
-    report.line("damaged", checked ? "nothing" : "nothing seen; --check reads all messages");
+    report.note("damaged", checked ? "nothing" : "nothing seen; --check reads all messages");
   }
   return report;
 }
@@ -147,9 +133,9 @@ void recover(const BagCommand& command) {
   for (const bag::Metadata& each : contents.metadata) writer.add(each);
   writer.close();
   Report report(command.output, "");
-  report.line("messages", grouped(messages));
+  report.note("messages", grouped(messages));
   add_losses(report, contents);
-  for (const std::string& each : unread) report.line("damaged", each, Mark::warning);
+  for (const std::string& each : unread) report.note({"damaged", Mark::warning}, each);
   report.print(stdout);
 }
 

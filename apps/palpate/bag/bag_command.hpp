@@ -1,3 +1,4 @@
+// The command bag.
 #pragma once
 
 #include <string>

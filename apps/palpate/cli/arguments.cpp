@@ -1,3 +1,4 @@
+// Parses what is named on the command line: sources, poses, numbers.
 #include "apps/palpate/cli/arguments.hpp"
 
 #include <fmt/format.h>
@@ -64,7 +65,7 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 
 std::string file_of(const std::string& source) {
   if (!source.starts_with(kBag)) return source;
-  // Of "runs/monday.mcap:/camera/depth,frame=world" the file.
+  // The file in "runs/monday.mcap:/camera/depth,frame=world".
   const std::string text = source.substr(kBag.size());
   std::error_code none;
   if (std::filesystem::exists(text, none)) return text;

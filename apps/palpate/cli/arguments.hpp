@@ -1,3 +1,4 @@
+// What is named on the command line: sources, poses, numbers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,7 +14,7 @@
 
 namespace palpate::app {
 
-// What a source begins with that is no file.
+// Prefixes of sources that are no files.
 inline constexpr std::string_view kSynthetic = "synthetic:";
 inline constexpr std::string_view kCamera = "camera:";
 inline constexpr std::string_view kSequence = "sequence:";
@@ -53,7 +54,7 @@ struct PoseArgument {
 inline constexpr const char* kPoseForm =
     "x,y,z,qx,qy,qz,qw: metres and a unit quaternion; or 12 or 16 numbers: a matrix row by row";
 
-/// Of x, y, z (m), qx, qy, qz, qw; the quaternion is normalised. Or of a 3 x 4 or 4 x 4 matrix.
+/// A pose from x, y, z (m), qx, qy, qz, qw (normalised here), or from a 3 x 4 or 4 x 4 matrix.
 /// @throws UsageError when these are no rotation and translation; `what` goes into the message.
 [[nodiscard]] Eigen::Isometry3d pose_of(const std::vector<double>& values, const std::string& what);
 
@@ -97,7 +98,7 @@ void name_all(std::vector<CloudArgument>& sources);
 /// --json of a command whose report can be had as data.
 CLI::Option* add_json_option(CLI::App& command, std::string& path);
 
-/// What an error of an option says behind the option's name.
+/// The words behind the option's name in an error.
 [[nodiscard]] std::string without_option(const std::string& message);
 
 /// Help in lines that fit beside the options' names.

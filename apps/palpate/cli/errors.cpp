@@ -1,3 +1,4 @@
+// Usage errors and suggestions for mistyped names.
 #include "apps/palpate/cli/errors.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Exit codes and usage errors.
 #pragma once
 
 #include <stdexcept>
@@ -13,7 +14,7 @@ class App;
 
 namespace palpate::app {
 
-/// What the program returns.
+/// Exit codes of the program.
 enum ExitCode : int {
   kSuccess = 0,
   kFailure = 1,  ///< of the input or of the run

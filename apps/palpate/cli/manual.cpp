@@ -1,3 +1,4 @@
+// Writes the manual page and the completion for bash from the registered options.
 #include "apps/palpate/cli/manual.hpp"
 
 #include <fmt/format.h>

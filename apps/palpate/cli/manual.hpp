@@ -1,3 +1,4 @@
+// The manual page and the completion for bash.
 #pragma once
 
 #include <string>

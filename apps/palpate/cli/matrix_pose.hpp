@@ -10,7 +10,7 @@
 
 namespace palpate::app {
 
-/// Of a matrix of 3 or 4 rows of 4, row by row: 12 or 16 numbers.
+/// The pose of a matrix with 3 or 4 rows of 4, row by row: 12 or 16 numbers.
 /// @throws UsageError when it is no rotation and translation; `what` goes into the message.
 [[nodiscard]] inline Eigen::Isometry3d pose_of_matrix(const std::vector<double>& v,
                                                       const std::string& what) {

@@ -11,7 +11,7 @@
 
 namespace palpate::app {
 
-/// What a choice is called on the command line, in set-up files and in reports.
+/// Name of a choice on the command line, in set-up files and in reports.
 template <class Choice>
 struct Named {
   const char* name;

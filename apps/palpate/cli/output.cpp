@@ -1,3 +1,4 @@
+// Output files that appear only when they are complete.
 #include "apps/palpate/cli/output.hpp"
 
 #include <fcntl.h>
@@ -95,7 +96,7 @@ void OutputFile::open_named() {
   }
 }
 
-// One that is never seen, however the program ends. Not every file system has such files.
+// Opens a file without a name, which vanishes however the program ends. Some file systems cannot.
 bool OutputFile::open_nameless() {
   if (stays_ || growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
   const std::string folder = fs::path(place_).parent_path().string();

@@ -1,3 +1,4 @@
+// Starts other programs, opens a browser, handles Ctrl-C.
 #include "apps/palpate/cli/process.hpp"
 
 #include <fcntl.h>

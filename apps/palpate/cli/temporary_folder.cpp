@@ -1,3 +1,4 @@
+// Makes and removes a temporary folder.
 #include "apps/palpate/cli/temporary_folder.hpp"
 
 #include <fmt/format.h>

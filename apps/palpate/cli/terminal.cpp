@@ -1,3 +1,4 @@
+// Numbers, colours and progress for people at a terminal.
 #include "apps/palpate/cli/terminal.hpp"
 
 #include <fmt/format.h>

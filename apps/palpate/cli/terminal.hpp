@@ -31,8 +31,8 @@ namespace palpate::app {
 /// A time in seconds in the same way: "0.35 s", "12 ms".
 [[nodiscard]] std::string duration(double seconds);
 
-/// By nearest rank: the smallest of `sorted` that a share (0 to 1) of them is no larger than; 0 of
-/// none.
+/// Quantile by nearest rank: the smallest of `sorted` that is at least as large as a share (0 to 1)
+/// of them; 0 if there are none.
 template <class Number>
 [[nodiscard]] double quantile(const std::vector<Number>& sorted, double share) {
   if (sorted.empty()) return 0;

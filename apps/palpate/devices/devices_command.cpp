@@ -1,3 +1,4 @@
+// The commands devices and cameras: list drivers and what is attached.
 #include "apps/palpate/devices/devices_command.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +79,7 @@ constexpr const char* kDevicesFooter = R"(Examples:
 
 Exit codes: 0 done, 1 the list could not be written, 2 the command line is wrong.)";
 
-// Those that need no hardware.
+// Drivers that need no hardware.
 std::vector<DriverInfo> built_in() {
   return {
       {.name = "scripted", .description = "follows its trajectory exactly, whatever the force"},

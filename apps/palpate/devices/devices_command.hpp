@@ -1,3 +1,4 @@
+// The commands devices, cameras and ros.
 #pragma once
 
 #include <string>

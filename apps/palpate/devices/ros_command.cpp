@@ -1,3 +1,4 @@
+// The command ros: lists the topics of ROS 2 that palpate can use.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// The command doctor: runs all checks and prints their findings.
 #include "apps/palpate/doctor/checks.hpp"
 
 #include <fmt/format.h>

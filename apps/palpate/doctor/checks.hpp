@@ -1,3 +1,4 @@
+// The doctor's checks and their findings.
 #pragma once
 
 #include <cstdio>
@@ -34,7 +35,7 @@ enum class DeviceKind {
   part,  ///< of a camera: a motor, microphones
 };
 
-/// What a device is and how programs reach it.
+/// A model of device, and how programs reach it.
 struct DeviceModel {
   std::string_view name;
   DeviceKind kind;
@@ -49,7 +50,7 @@ struct KnownUsbDevice {
   DeviceModel model;
 };
 
-/// Those that palpate knows, in the order of their places.
+/// Known devices that are plugged in, sorted by their path on the bus.
 [[nodiscard]] std::vector<KnownUsbDevice> known_usb_devices(const System& system);
 
 /// Is one there that is reached by this driver or library?
@@ -91,7 +92,7 @@ struct Finding : Answer {
 };
 using Findings = std::vector<Finding>;
 
-/// What all checks may look at; measured and listed once.
+/// Input of all checks, measured and listed once.
 struct Machine {
   const System& system;
   RealtimeTrial trial;

@@ -1,3 +1,4 @@
+// Checks drivers, USB buses and power of haptic devices and cameras.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -53,7 +54,8 @@ LibraryTrial tried(const System& system, const VendorLibrary& library) {
   return best;
 }
 
-// Of "libncurses.so.5: cannot open shared object file: ...": what brings the one that is missing.
+// The command that installs the library which is missing, found in the loader's message
+// "libncurses.so.5: cannot open shared object file: ...".
 std::string broken_remedy(const VendorLibrary& library, const std::string& words) {
   const std::size_t colon = words.find(": cannot open shared object file");
   const bool plain =

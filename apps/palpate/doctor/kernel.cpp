@@ -1,3 +1,4 @@
+// Checks the kernel, real-time rights and the jitter of a servo.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -42,7 +43,7 @@ std::string rights_command(const System& system) {
       system.share.string());
 }
 
-// Of "Linux version 6.1.0-18-amd64 (debian-kernel@...": the third word.
+// The third word of "Linux version 6.1.0-18-amd64 (debian-kernel@...".
 std::string release_of(const std::string& version) {
   const std::size_t begin = version.find("version ");
   if (begin == std::string::npos) return "unknown";
@@ -99,7 +100,7 @@ Answer clock_source(const Machine& machine) {
   return warning(words + "; the kernel rejected tsc", "sudo dmesg | grep -iE 'tsc|clocksource'");
 }
 
-// One row an octave, from the first that holds a step to the last.
+// A histogram with one row an octave, from the first that holds a step to the last.
 std::vector<std::string> histogram(const Durations& lateness) {
   std::vector<std::uint64_t> rows;
   for (std::size_t bin = 0; bin < Durations::kBins; bin += Durations::kPerOctave) {

@@ -1,3 +1,4 @@
+// Checks the settings of ROS 2.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,19 +76,19 @@ Answer range(const Machine& machine) {
   }
   if (text == "SUBNET" && only_local) {
     return note(
-        "ROS_LOCALHOST_ONLY=1 stands above ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET: other "
-        "machines are not told",
+        "ROS_LOCALHOST_ONLY=1 overrides ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET; other machines "
+        "cannot see palpate",
         "unset ROS_LOCALHOST_ONLY");
   }
-  if (text == "SUBNET") return good("the whole network is told");
+  if (text == "SUBNET") return good("the whole network");
   if (text == "OFF") {
     return note(
-        "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF: nodes find nobody by themselves; palpate still "
-        "tells this machine",
+        "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF: nodes find nobody by themselves; this machine "
+        "can still see palpate",
         "export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
   }
-  return good(peers.empty() ? "this machine alone is told; --ros-range subnet opens it"
-                            : "this machine and " + peers + " are told");
+  return good(peers.empty() ? "this machine only; --ros-range subnet opens it to others"
+                            : "this machine and " + peers);
 }
 
 // Cyclone DDS takes a list of files and of XML.
@@ -121,7 +122,7 @@ constexpr std::array kRosChecks = {
     Check{kRos2, "DDS", dds},
     Check{kRos2, "RMW_IMPLEMENTATION", middleware},
     Check{kRos2, "ROS_DOMAIN_ID", domain},
-    Check{kRos2, "who is told", range},
+    Check{kRos2, "visible to", range},
     Check{kRos2, "CYCLONEDDS_URI", settings},
     Check{kRos2, "network buffer", network_buffer},
 };

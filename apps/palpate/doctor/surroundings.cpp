@@ -1,3 +1,4 @@
+// Checks the programs and the locale around palpate: Python, browsers, number formats.
 #include <fmt/format.h>
 
 #include <algorithm>

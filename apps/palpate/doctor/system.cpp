@@ -1,3 +1,4 @@
+// The real system behind the doctor's checks.
 #include "apps/palpate/doctor/system.hpp"
 
 #include <arpa/inet.h>
@@ -139,7 +140,7 @@ constexpr unsigned kPatience = 10;  // s
 constexpr char kLoaded = 'l';       // the first character of what the other process tells
 constexpr char kNotLoaded = 'n';
 
-// Of "libHD.so.3.4.0", the file that was loaded: 3.4.0.
+// "3.4.0" where the loaded file is "libHD.so.3.4.0".
 std::string version_in_name(void* library) {
   link_map* map = nullptr;
   if (::dlinfo(library, RTLD_DI_LINKMAP, static_cast<void*>(&map)) != 0) return "";
@@ -168,7 +169,7 @@ std::string loaded(const std::string& name) {
   return kNotLoaded + std::string(error == nullptr ? "no reason given" : error);
 }
 
-// What libraries print is not the doctor's.
+// Drops what libraries print.
 void be_silent() {
   const int nowhere = ::open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
@@ -193,7 +194,7 @@ std::string read_all(int pipe) {
   }
 }
 
-// What a process that told nothing died of.
+// Why a process died that reported nothing.
 std::string death(int status) {
   if (!WIFSIGNALED(status))
     return fmt::format("it exits the program (exit code {})", WEXITSTATUS(status));

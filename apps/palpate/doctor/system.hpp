@@ -13,14 +13,14 @@
 
 namespace palpate::app::doctor {
 
-/// What became of a loop at 1 kHz on a thread that asked for all that a servo's thread asks for.
+/// Timing of a loop at 1 kHz on a thread with the same requests as a servo's.
 struct RealtimeTrial {
   RealtimeReport report;
   Durations lateness;
   std::size_t left_out = 0;  ///< steps that the one before them made impossible
 };
 
-/// What became of loading a library.
+/// Result of loading a library.
 struct LibraryTrial {
   enum class Outcome { loaded, absent, broken };
   Outcome outcome = Outcome::absent;
@@ -35,7 +35,7 @@ struct Node {
   std::string group = {};
 };
 
-/// What the checks know of a machine: files under a root, and answers to what files do not tell.
+/// A machine as the checks see it: files under a root, and functions for what files do not say.
 /// They ask nothing else, so that tests can make up any machine.
 struct System {
   std::filesystem::path root = "/";              ///< of /dev, /etc, /proc, /sys, /usr
@@ -66,15 +66,15 @@ struct System {
 /// it cannot be read.
 [[nodiscard]] std::optional<long> whole_number(const System& system, const std::string& path);
 [[nodiscard]] bool is_there(const System& system, const std::string& path);
-/// What a folder holds, sorted; nothing where there is none.
+/// The entries of a folder, sorted; empty if it does not exist.
 [[nodiscard]] std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
-/// Of the environment; empty where it is not set.
+/// An environment variable; empty if it is not set.
 [[nodiscard]] std::string variable(const System& system, const std::string& name);
 
 /// The limits where logins read them; a package puts them there, or a command of the doctor's.
 inline constexpr const char* kLimits = "etc/security/limits.d/palpate-limits.conf";
 
-/// What brings /sys where it is not mounted.
+/// The command that mounts /sys.
 inline constexpr const char* kMountSys = "sudo mount -t sysfs sysfs /sys";
 
 /// Is this a container, whose limits and devices are set where it is started?

@@ -1,3 +1,4 @@
+// Finds known haptic devices and cameras on USB.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ void add_terminals(const fs::path& folder, std::vector<std::string>& terminals) 
   }
 }
 
-// What holds its interfaces: folders "1-4:1.0" in the device's.
+// Kernel drivers of its interfaces: folders "1-4:1.0" in the device's.
 void add_interfaces(const fs::path& folder, UsbDevice& device) {
   for (const fs::path& entry : entries(folder)) {
     if (!entry.filename().string().starts_with(device.place + ":")) continue;

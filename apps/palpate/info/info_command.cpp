@@ -1,3 +1,4 @@
+// The command info: options, density map and picture of trust.
 #include "apps/palpate/info/info_command.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The command info, and what it finds out.
 #pragma once
 
 #include <string>
@@ -5,7 +6,7 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/options/source_options.hpp"
-#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/report/source_report.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/depth/depth_frame.hpp"

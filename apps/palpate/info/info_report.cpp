@@ -1,3 +1,4 @@
+// Studies clouds and cameras for the command info and reports on them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,14 +6,14 @@
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/info/info_command.hpp"
-#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/report/source_report.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-Json list(const Eigen::Vector3d& v) {
+std::vector<double> list(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -28,90 +29,65 @@ std::string columns_of(const PointCloud& cloud) {
   return text;
 }
 
-std::string organised_as(const InfoReport& report) {
-  const PointCloud& cloud = report.loaded.file.cloud;
-  if (!report.organised.frame) {
-    return fmt::format("{} x {}, processed as unorganised points: {}", cloud.width, cloud.height,
-                       report.organised.why_none);
+void add_grid(Report& report, const InfoReport& info) {
+  const PointCloud& cloud = info.loaded.file.cloud;
+  report.data.update({{"width", cloud.width}, {"height", cloud.height}, {"organised", Json()}});
+  if (!info.organised.frame) {
+    report.row("organised", "[{?}{width} x {height}, processed as unorganised points: {}]",
+               cloud.width, cloud.width, cloud.height, info.organised.why_none);
+    return;
   }
-  return in_words(report.organised.frame->camera) +
-         (report.image.depth > 0 ? ", processed as a depth frame"
-                                 : ", processed as unorganised points: half are nearer than 0.1 m "
-                                   "or farther than 20 m; check --scale");
+  const bool felt = info.image.depth > 0;
+  add_organised(report, info.organised.frame->camera,
+                felt ? "processed as a depth frame"
+                     : "processed as unorganised points: half are nearer than 0.1 m or farther "
+                       "than 20 m; check --scale");
+  report.data["organised"].update({{"residual_px", info.organised.residual},
+                                   {"felt_as_frame", felt},
+                                   {"points_felt", info.image.points},
+                                   {"radius_m", info.image_radius}});
 }
 
 void add_points(Report& report, const InfoReport& info) {
   const CloudFile& file = info.loaded.file;
-  report.line("points",
-              grouped(file.cloud.size()) +
-                  (file.dropped > 0 ? fmt::format(", {} of {} declared dropped as invalid",
-                                                  grouped(file.dropped), grouped(file.declared))
-                                    : ""));
-  if (file.cloud.width > 0) report.line("organised", organised_as(info));
-  report.line("holds", columns_of(file.cloud));
-  if (file.cloud.viewpoint) {
-    const Eigen::Vector3d& v = *file.cloud.viewpoint;
-    report.line("viewpoint", fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x(), v.y(), v.z()));
-  }
-  Json organised;
-  if (info.organised.frame) {
-    organised = json_of(info.organised.frame->camera);
-    organised.update({{"residual_px", info.organised.residual},
-                      {"felt_as_frame", info.image.depth > 0},
-                      {"points_felt", info.image.points},
-                      {"radius_m", info.image_radius}});
-  }
-  report.data.update({{"points", file.cloud.size()},
-                      {"points_declared", file.declared},
-                      {"points_invalid", file.dropped},
-                      {"width", file.cloud.width},
-                      {"height", file.cloud.height},
-                      {"organised", organised},
-                      {"normals", !file.cloud.normals.empty()},
-                      {"colors", !file.cloud.colors.empty()},
-                      {"intensities", !file.cloud.intensities.empty()}});
+  const PointCloud& cloud = file.cloud;
+  report.row("points",
+             "{points}[, {points_invalid} of {points_declared} declared dropped as invalid]",
+             cloud.size(), file.dropped, file.declared);
+  add_grid(report, info);
+  report.note("holds", columns_of(cloud));
+  report.data.update({{"normals", !cloud.normals.empty()},
+                      {"colors", !cloud.colors.empty()},
+                      {"intensities", !cloud.intensities.empty()}});
+  if (cloud.viewpoint) report.row("viewpoint", "{}", list(*cloud.viewpoint));
 }
 
 void add_bounds(Report& report, const InfoReport& info) {
   const Box& box = info.bounds;
   const Eigen::Vector3d size = box.size();
+  report.data["bounds_m"] = {{"lower", list(box.lower)}, {"upper", list(box.upper)}};
   for (int axis = 0; axis < 3; ++axis) {
-    report.line(std::string(1, "xyz"[axis]),
-                fmt::format("{:.6g} to {:.6g}, {} long", box.lower[axis], box.upper[axis],
-                            length(size[axis])));
+    report.row(std::string(1, "xyz"[axis]), "{} to {}, {_m} long", box.lower[axis], box.upper[axis],
+               size[axis]);
   }
   const Eigen::Vector3d core = info.core.size();
-  if (core != size) {
-    report.line("core", fmt::format("{} x {} x {} without outliers", length(core.x()),
-                                    length(core.y()), length(core.z())));
-  }
-  const UnitsGuess& units = info.units;
-  report.line("units", fmt::format("{}: {}", units.units, units.reason));
-  if (!units.advice.empty()) report.line("", units.advice);
-  report.data["bounds_m"] = {{"lower", list(box.lower)}, {"upper", list(box.upper)}};
-  report.data["units"] = {
-      {"guess", units.units}, {"reason", units.reason}, {"advice", units.advice}};
+  report.row("core", "[{?}{_m} x {_m} x {_m} without outliers]", core != size, core.x(), core.y(),
+             core.z());
+  report.row("units", "{units/guess}: {units/reason}", info.units.units, info.units.reason);
+  report.row("", "[{units/advice}]", info.units.advice);
 }
 
 void add_surface(Report& report, const InfoReport& info) {
   if (on_a_line(info.loaded.file.cloud.positions)) {
-    report.line("surface", kNoSurface, Mark::warning);
+    report.note({"surface", Mark::warning}, kNoSurface);
   }
   const SpacingFacts& s = info.spacing;
-  report.line("spacing",
-              fmt::format("{} to the three nearest, {} from area ({} to {} in the middle 80 %)",
-                          length(s.nearest_three), length(s.from_area), length(s.tenth),
-                          length(s.nine_tenths)));
-  report.line("noise", fmt::format("{} from the local plane", length(info.prepared.noise)));
-  report.line("holes",
-              fmt::format("{:.1f} % of the points are at a border or a hole", 100 * info.rim));
-  report.data.update({{"spacing_m",
-                       {{"nearest_three", s.nearest_three},
-                        {"from_area", s.from_area},
-                        {"tenth", s.tenth},
-                        {"nine_tenths", s.nine_tenths}}},
-                      {"noise_m", info.prepared.noise},
-                      {"rim_share", info.rim}});
+  report.row("spacing",
+             "{spacing_m/nearest_three} to the three nearest, {spacing_m/from_area} from area "
+             "({spacing_m/tenth} to {spacing_m/nine_tenths} in the middle 80 %)",
+             s.nearest_three, s.from_area, s.tenth, s.nine_tenths);
+  report.row("noise", "{noise_m} from the local plane", info.prepared.noise);
+  report.row("holes", "{rim_share} of the points are at a border or a hole", info.rim);
   add_trust(report, info.prepared);
 }
 
@@ -139,48 +115,25 @@ void filter_one(const DepthFrame& frame, DepthFilter& filter, LiveFacts& facts) 
   facts.repeated += depth.duplicate ? 1 : 0;
 }
 
-Json json_of(const LiveFacts& facts) {
-  Json json = {{"name", facts.argument.name}, {"camera", facts.argument.path},
-               {"posed", facts.posed},        {"frames_unposed", facts.unposed},
-               {"rate_Hz", facts.rate},       {"frames", facts.frames},
-               {"failures", facts.failures}};
-  if (facts.clouds) {
-    json.update({{"points", facts.points}, {"spacing_m", facts.spacing}});
-    return json;
-  }
-  const Pinhole& p = facts.pinhole;
-  json.update({{"width", facts.width},
-               {"height", facts.height},
-               {"intrinsics", {p.fx, p.fy, p.cx, p.cy}},
-               {"distorted", facts.distorted},
-               {"frames_repeated", facts.repeated},
-               {"valid_share", facts.valid},
-               {"depth_m",
-                {{"hundredth", facts.nearest},
-                 {"median", facts.depth},
-                 {"last_hundredth", facts.farthest}}},
-               {"noise",
-                {{"coefficients", facts.noise.coefficients},
-                 {"correlation", facts.noise.correlation},
-                 {"at_median_m", facts.noise.sigma(facts.depth)}}}});
-  return json;
-}
-
 void add_lens(Report& report, const LiveFacts& facts) {
   const Pinhole& p = facts.pinhole;
-  report.line("intrinsics", fmt::format("{:.6g}, {:.6g}, {:.6g}, {:.6g}{}", p.fx, p.fy, p.cx, p.cy,
-                                        facts.distorted ? ", with distortion" : ""));
+  report.data.update(
+      {{"width", facts.width}, {"height", facts.height}, {"frames_repeated", facts.repeated}});
+  report.row("intrinsics", "{intrinsics}[, with distortion{distorted}]",
+             std::vector{p.fx, p.fy, p.cx, p.cy}, facts.distorted);
 }
 
 void add_depths(Report& report, const LiveFacts& facts) {
   const auto& c = facts.noise.coefficients;
-  report.line("depth", fmt::format("{:.0f} % of the pixels are valid, {} to {}, median {}",
-                                   100 * facts.valid, length(facts.nearest), length(facts.farthest),
-                                   length(facts.depth)));
-  report.line("noise",
-              fmt::format("{} per pixel at the median; --noise {:.4g},{:.4g},{:.4g},{:.3g}",
-                          length(facts.noise.sigma(facts.depth)), c[0], c[1], c[2],
-                          facts.noise.correlation));
+  const double correlation = facts.noise.correlation;
+  report.row("depth",
+             "{valid_share} of the pixels are valid, {depth_m/hundredth} to "
+             "{depth_m/last_hundredth}, median {depth_m/median}",
+             facts.valid, facts.nearest, facts.farthest, facts.depth);
+  report.data["noise"] = {{"coefficients", c}, {"correlation", correlation}};
+  report.row("noise", "{noise/at_median_m} per pixel at the median; --noise {}",
+             facts.noise.sigma(facts.depth),
+             fmt::format("{:.4g},{:.4g},{:.4g},{:.3g}", c[0], c[1], c[2], correlation));
 }
 
 }  // namespace
@@ -206,20 +159,14 @@ Report report_of(const InfoReport& info) {
 Report advice_of(const InfoReport& info) {
   const Prepared::Report& r = info.prepared;
   Report report("touch would use", "");
-  if (info.image.depth > 0) {
-    report.line("the depth filter",
-                fmt::format("({} points, R {}); with --unorganised", grouped(info.image.points),
-                            length(info.image_radius)));
-  }
-  report.line("--voxel", fmt::format("{:.3g} (keeps {} points{}{})", r.voxel, grouped(r.points_out),
-                                     and_some(r.duplicates, "duplicates"),
-                                     and_some(r.speckle, "dropped as speckle")));
-  const std::string varies = r.radius_largest > 1.01 * r.radius_smallest
-                                 ? fmt::format("; varies with the density, {} to {}",
-                                               length(r.radius_smallest), length(r.radius_largest))
-                                 : "";
-  report.line("--radius", fmt::format("{:.3g} ({:.1f} times the spacing{})", r.radius,
-                                      r.spacing > 0 ? r.radius / r.spacing : 0, varies));
+  report.row("the depth filter", "[{?}({} points, R {_m}); with --unorganised]",
+             info.image.depth > 0, info.image.points, info.image_radius);
+  report.row("--voxel", "{} (keeps {} points[, {} duplicates][, {} dropped as speckle])",
+             fmt::format("{:.3g}", r.voxel), r.points_out, r.duplicates, r.speckle);
+  report.row("--radius", "{} ({} times the spacing[{?}; varies with the density, {_m} to {_m}])",
+             fmt::format("{:.3g}", r.radius),
+             fmt::format("{:.1f}", r.spacing > 0 ? r.radius / r.spacing : 0),
+             r.radius_largest > 1.01 * r.radius_smallest, r.radius_smallest, r.radius_largest);
   return report;
 }
 
@@ -268,23 +215,21 @@ Report report_of(const LiveFacts& facts) {
                                          ? facts.argument.path + " (clouds)"
                                          : fmt::format("{} ({} x {} pixels)", facts.argument.path,
                                                        facts.width, facts.height));
+  report.data = {
+      {"name", facts.argument.name}, {"camera", facts.argument.path}, {"frames", facts.frames}};
   if (!facts.clouds) add_lens(report, facts);
-  if (!facts.assumed.empty()) report.line("assumed", facts.assumed);
-  report.line("frames",
-              fmt::format("{:.1f} Hz; of the first {}: {} repeated, {} failed", facts.rate,
-                          facts.frames + facts.failures, facts.repeated, facts.failures));
-  report.line(
-      "poses",
-      fmt::format(
-          "{}{}", facts.posed ? "each frame has one" : "none; set one with --pose",
-          facts.unposed > 0 ? fmt::format("; {} frames without one skipped", facts.unposed) : ""));
+  report.row("assumed", "[{}]", facts.assumed);
+  report.row("frames", "{rate_Hz}; of the first {}: {} repeated, {failures} failed", facts.rate,
+             facts.frames + facts.failures, facts.repeated, facts.failures);
+  report.row("poses",
+             "[each frame has one{posed}|none; set one with --pose]"
+             "[; {frames_unposed} frames without one skipped]",
+             facts.posed, facts.unposed);
   if (facts.clouds) {
-    report.line("points", fmt::format("{} in the first, {} apart", grouped(facts.points),
-                                      length(facts.spacing)));
+    report.row("points", "{points} in the first, {spacing_m} apart", facts.points, facts.spacing);
   } else {
     add_depths(report, facts);
   }
-  report.data = json_of(facts);
   return report;
 }
 

@@ -1,3 +1,4 @@
+// Options that may differ from hand to hand.
 #include "apps/palpate/options/device_options.hpp"
 
 #include <fmt/format.h>

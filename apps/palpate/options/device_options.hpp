@@ -1,3 +1,4 @@
+// Options that may differ from hand to hand.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,7 +19,7 @@ enum class DeviceKind {
   hardware,   ///< what a driver reaches
 };
 
-/// What `--device NAME,KEY=VALUE...` says of where a device stands in the scene.
+/// Where a device is placed in the scene: `--device NAME,KEY=VALUE...`.
 struct PlacementOptions {
   std::optional<double> scale = {};                  ///< m in the world for one of the hand's
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< of its origin, m in the world, its axes
@@ -30,7 +31,7 @@ struct PlacementOptions {
 /// One `--device`: what is at one hand.
 struct DevicePlan {
   DeviceKind kind = DeviceKind::simulated;
-  /// Of a remote one's socket, empty: default_remote_path(); of hardware what open_device() takes.
+  /// Socket of a remote device (empty: default_remote_path()), or what open_device() takes.
   std::string path = {};
   PlacementOptions placement = {};
 

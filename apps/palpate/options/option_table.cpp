@@ -1,3 +1,4 @@
+// Registers options once, for the command line and for set-up files.
 #include "apps/palpate/options/option_table.hpp"
 
 #include <fmt/format.h>

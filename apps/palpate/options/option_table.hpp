@@ -21,7 +21,7 @@ using GivenOptions = std::set<std::string, std::less<>>;
 /// Options that a set-up file has, as "--noise", each with where: "desk.toml, line 3: 'noise'".
 using DescribedOptions = std::map<std::string, std::string, std::less<>>;
 
-/// What a run consists of, as far as options depend on it.
+/// The parts of a run that options depend on.
 struct RunFacts {
   // One source at least ...
   bool stream = false;           ///< is a camera or sequence
@@ -47,7 +47,7 @@ struct RunFacts {
   bool has_rate = false;        ///< a hand's steps a second can be chosen
 };
 
-/// What an option applies to: it is refused where a run has nothing of it.
+/// The part of a run that an option applies to; a run without it refuses the option.
 struct Scope {
   bool RunFacts::*applies;
   const char* words;  ///< behind the option's name: what it applies to, and what to do
@@ -75,7 +75,7 @@ struct Registration {
     scopes.push_back(scope);
     return *this;
   }
-  /// As a set-up file has it: "tool_radius".
+  /// The key in a set-up file: "tool_radius".
   [[nodiscard]] std::string key() const;
 };
 
@@ -91,7 +91,7 @@ class OptionTable {
   /// `each_source` in every [[source]] as well.
   void under(std::string heading, std::string section = {}, bool each_source = false);
 
-  /// What a command line names without an option.
+  /// Arguments of the command line that are no options.
   void add_positional(const std::string& name, std::vector<std::string>& values,
                       const std::string& type, const std::string& help) {
     command_.add_option(name, values, wrapped(help))->type_name(type);

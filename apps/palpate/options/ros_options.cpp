@@ -1,3 +1,4 @@
+// Options of ROS 2 and of robots that follow the tool.
 #include "apps/palpate/options/ros_options.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Options of ROS 2.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@ namespace palpate::app {
 
 class OptionTable;
 
-/// What a run has to do with ROS 2 besides its sources and devices.
+/// Settings of ROS 2, besides sources and devices.
 struct RosPlan {
   bool published =
       false;  ///< what hands do and feel is told; a robot is told, too, where there is one
@@ -18,7 +19,7 @@ struct RosPlan {
   double robot_retreat = RosBridgeOptions::Robot().retreat;  ///< m/s
   std::vector<std::string> robot_sources = {};
 
-  /// What the bridge is made with.
+  /// Options of the bridge.
   [[nodiscard]] RosBridgeOptions options() const;
   [[nodiscard]] bool wanted() const { return published || bridge.robot; }
 };

@@ -1,3 +1,4 @@
+// Reads set-up files (TOML) into the registered options.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -26,7 +27,7 @@ const char* type_name(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-// One file on its way into options.
+// Reads one file into options.
 class SetupFile {
  public:
   SetupFile(std::string path, const OptionTable& table, const GivenOptions& given)
@@ -143,7 +144,7 @@ std::string SetupFile::text_of(std::string_view key, KeyKind kind, const toml::n
   return kind == KeyKind::path ? resolved(text) : text;
 }
 
-// What the option of that key would be given, one after the other.
+// The values of a key as the option would get them on the command line.
 std::vector<std::string> SetupFile::texts_of(std::string_view key, KeyKind kind,
                                              const toml::node& node) const {
   const toml::array* list = node.as_array();

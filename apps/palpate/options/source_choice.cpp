@@ -1,3 +1,4 @@
+// Makes the plan of each source from what was chosen for it and for all.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ bool begins_like_an_image(const std::string& path) {
   return text == "\x89PNG" || (text.starts_with("P5") && std::isspace(bytes[2]) != 0);
 }
 
-// By its name or its first bytes.
+// Recognises depth images by name or first bytes.
 bool is_depth_image(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
@@ -36,14 +37,14 @@ bool is_depth_image(const std::string& path) {
   return name.ends_with(".png") || name.ends_with(".pgm") || begins_like_an_image(path);
 }
 
-// One that is not there, or a pipe, may be one.
+// True also for files that do not exist and for pipes.
 bool may_be_image(const std::string& path) {
   std::error_code ignored;
   return !path.starts_with(kSynthetic) &&
          (!fs::is_regular_file(path, ignored) || is_depth_image(path));
 }
 
-// So may one whose header cannot be seen before it is read.
+// True also where the header cannot be seen before the file is read.
 bool may_be_organised(const std::string& path) {
   std::error_code ignored;
   if (path.starts_with(kSynthetic)) return false;
@@ -67,8 +68,8 @@ void name(std::vector<DescribedSource>& sources) {
   for (std::size_t i = 0; i < sources.size(); ++i) sources[i].plan.argument = arguments[i];
 }
 
-// Those of the file that have no name there are called after what they come from before the
-// command line is looked at.
+// Unnamed sources of the file get the name of their origin first, so that the command line can
+// name them.
 void add_command_line(std::vector<DescribedSource>& sources, const TouchChoices& choices) {
   const auto of_file = static_cast<std::ptrdiff_t>(sources.size());
   std::set<std::string> replaced;
@@ -121,7 +122,7 @@ void check_range(const DepthFilterOptions& depth) {
       depth.nearest, depth.farthest));
 }
 
-// What the kind of a source and the surface of all say of it.
+// Applies source kind and shared surface options to one SourcePlan.
 void complete(SourcePlan& source, const SurfacePlan& surface) {
   constexpr double kToolInR = 0.3;  // a tool's radius in the smallest R that it can feel
   source.kind = kind_of(source.argument.path);

@@ -1,3 +1,4 @@
+// Options that may differ from source to source.
 #include "apps/palpate/options/source_options.hpp"
 
 #include <fmt/format.h>

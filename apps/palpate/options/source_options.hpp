@@ -1,3 +1,4 @@
+// Options that may differ from source to source.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@ namespace palpate::app {
 
 class OptionTable;
 
-/// What a source is, as far as its name and its file's first bytes tell.
+/// The kind of a source, from its name and its file's first bytes.
 enum class SourceKind { cloud, depth_image, stream };
 
 /// A source that is to be touched: what it is, how it is read, prepared and treated in time.
@@ -32,10 +33,10 @@ void add_reading_options(OptionTable& table, ReadOptions& options);
 /// Registers those of one source, of a [[source]] or of all.
 void add_source_options(OptionTable& table, SourcePlan& source);
 
-/// What a command takes as sources, for its help.
+/// Help text for the sources of a command.
 [[nodiscard]] std::string cloud_help();
 
-/// What becomes of a source's frames or clouds in time.
+/// The policy for a source's frames or clouds.
 [[nodiscard]] Policy policy_of(const SourcePlan& source);
 
 /// Is --history a policy's?

@@ -1,3 +1,4 @@
+// Options of a run that apply to all sources and hands.
 #include "apps/palpate/options/touch_options.hpp"
 
 #include <arpa/inet.h>

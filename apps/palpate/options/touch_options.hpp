@@ -57,7 +57,7 @@ void read_setup(const std::string& path, const OptionTable& table, const GivenOp
 
 /// The set-up file's sources and then those of the command line; one of these that has the name of
 /// one of the file's takes its place and keeps its pose and options. --pose wins over the file.
-/// What depends on the whole surface is filled in.
+/// Fills in what depends on the whole surface.
 /// @throws UsageError when there is none, two have one name, a pose names none of them, or options
 /// of one contradict each other.
 [[nodiscard]] std::vector<DescribedSource> choose_sources(const TouchChoices& choices,

@@ -1,3 +1,4 @@
+// Checks all options together and makes the plan of a run.
 #include "apps/palpate/options/touch_plan.hpp"
 
 #include <fmt/format.h>

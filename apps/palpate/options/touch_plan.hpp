@@ -1,3 +1,4 @@
+// The plan of a run: all options, read and checked.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct TouchChoices;
 /// The paper's K and ours, N/m.
 inline constexpr double kStiffness = 500;
 
-/// What surfaces feel like, all of them alike.
+/// Settings of contact, the same for all surfaces.
 struct SurfacePlan {
   bool paper = false;  ///< the method of Leeper, Chan and Salisbury 2012
   FieldOptions field = {};
@@ -36,7 +37,7 @@ struct SurfacePlan {
   /// The proxy of a surface of `hardest` N/m.
   [[nodiscard]] ProxyOptions proxy_of(double hardest) const;
 
-  /// What the softest points feel like, where the hardest ones have `hardest` N/m.
+  /// Stiffness of the softest points, where the hardest ones have `hardest` N/m.
   /// @throws UsageError when they would be harder than these.
   [[nodiscard]] SourceOptions::SoftMaterial soft_material(double hardest) const;
 };

@@ -1,3 +1,4 @@
+// The command paper: repeats figures 5 and 7 of the paper.
 #include "apps/palpate/paper/paper_command.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ std::string label(const Press& press) {
   return press.clouds == 0 ? press.name : fmt::format("{} N = {}", press.name, press.clouds);
 }
 
-// Of a column of the log.
+// The name of a column of the log.
 std::string key(const Press& press) {
   return press.clouds == 0 ? press.name : fmt::format("{}_{}", press.name, press.clouds);
 }
@@ -115,7 +116,7 @@ std::string csv(const Fig7& figure) {
   return fmt::to_string(text);
 }
 
-// What figures.py is told.
+// Input of figures.py.
 Json facts(const Fig5& figure, const std::string& source) {
   Json rows = Json::array();
   for (const Fig5Row& row : figure.rows) {
@@ -202,7 +203,7 @@ CLI::App* add_fig7(CLI::App& command, PaperOptions& o) {
 // 27 degrees from above, with the noise of a Kinect.
 constexpr const char* kPaperSource = "camera:simulated:still";
 
-// To be read as fast as it goes.
+// Opens a source that is read as fast as it can be.
 std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
   if (!lives(source)) {
     throw UsageError(fmt::format(

@@ -1,3 +1,4 @@
+// The command paper, and the results of its figures.
 #pragma once
 
 #include <Eigen/Core>

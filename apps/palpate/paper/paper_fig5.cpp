@@ -1,3 +1,4 @@
+// Figure 5 of the paper: how long the preparation of clouds takes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +43,7 @@ double leaf_for(const PointCloud& cloud, std::size_t wanted) {
   return low;
 }
 
-// What else the machine does only ever adds.
+// Other work on the machine can only add time, so the minimum is used.
 double fastest(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }

@@ -1,3 +1,4 @@
+// Figure 7 of the paper: how much the force varies with the number of clouds averaged.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// Draws pictures by Python scripts that travel inside the program.
 #include "apps/palpate/plot/python_drawing.hpp"
 
 #include <fmt/format.h>

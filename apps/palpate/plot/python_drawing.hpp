@@ -22,7 +22,7 @@ struct DrawingData {
 /// no time.
 [[nodiscard]] std::vector<std::string> drawing_trial();
 
-/// Of --picture, before any work; empty: none is wanted.
+/// Checks --picture before any work; empty: no picture is wanted.
 /// @throws UsageError when its place is standard output or has another kind's ending than .png;
 /// Error when Python or matplotlib is missing, naming the package.
 void check_picture(const std::string& path);

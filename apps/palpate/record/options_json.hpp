@@ -160,7 +160,7 @@ template <class T>
   return json;
 }
 
-/// What exact_json() made of `value`. @throws nlohmann::json::exception when it is something else.
+/// Reads what exact_json() wrote. @throws nlohmann::json::exception when it is something else.
 template <class T>
 void take_exact(const Json& json, T& value) {
   if constexpr (std::is_same_v<T, double>) {

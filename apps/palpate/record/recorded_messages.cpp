@@ -1,3 +1,4 @@
+// Converts steps, frames and clouds to messages of a recording and back.
 #include "apps/palpate/record/recorded_messages.hpp"
 
 #include <cstddef>

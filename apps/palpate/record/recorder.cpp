@@ -1,3 +1,4 @@
+// Records a run on a thread of its own.
 #include "apps/palpate/record/recorder.hpp"
 
 #include <fmt/chrono.h>
@@ -20,16 +21,15 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::size_t kSteps = 8192;     // that wait at most, of a hand
-constexpr std::size_t kMostFrames = 16;  // of all sources
-constexpr std::chrono::milliseconds kLook{5};
-
+constexpr std::size_t kSteps = 8192;     // queue of a hand: 8 s at 1 kHz; judgement
+constexpr std::size_t kMostFrames = 16;  // queue of all sources: half a second at 30 Hz; judgement
+constexpr std::chrono::milliseconds kLook{5};  // between two looks at the queues; judgement
 std::int64_t wall_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
 
-// After the time of day, and of no file that is there.
+// A name after the time of day that no file has yet.
 std::string free_name() {
   const std::string stem =
       fmt::format("palpate-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
@@ -44,7 +44,7 @@ Recorder::Recorder(const std::string& path) : name_(path) {
   if (path.empty()) return;
   report_.path = path;
   takes_frames_ = true;
-  // What was recorded before is not overwritten by a run that does not begin.
+  // A run that fails to begin must not overwrite an older recording.
   if (!std::filesystem::is_regular_file(path)) file_ = std::make_unique<RecordingFile>(path);
 }
 
@@ -262,7 +262,7 @@ void Recorder::fail(const std::string& why) {
   if (broken_) broken_(why);
 }
 
-// What is recorded until now.
+// Writes what is queued and closes the file.
 void Recorder::close() {
   if (!file_) return;
   accept(false);

@@ -47,7 +47,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// One more hand: what its servo puts its steps into.
+  /// Adds a hand. Returns the queue that its servo puts its steps into.
   [[nodiscard]] StepTraces* add_hand();
 
   /// Writes what the run is made of into the first file and starts the thread. All hands are there,
@@ -55,9 +55,9 @@ class Recorder {
   /// clock. `waits`: frames wait for the file. @throws Error when the file cannot be written.
   void begin(LoadedScene& loaded, std::vector<const Servo*> servos, double now, bool waits);
 
-  /// Begins a file in the working folder that is named after the time of day, or ends the present
-  /// one; what goes on already goes on. Returns its name; empty: there was none to end. Any thread,
-  /// after begin(); returns at once, and the recorder's thread does the rest.
+  /// Begins a file in the working folder that is named after the time of day, or ends the current
+  /// one; no effect if it is recording already. Returns its name; empty: there was none to end. Any
+  /// thread, after begin(). Returns at once; the recorder's thread does the rest.
   /// @throws Error when the file cannot be made, and nothing changes.
   std::string record(bool on);
   /// The file that is being recorded; empty: none. Any thread.

@@ -1,3 +1,4 @@
+// Writes the messages of a run to an MCAP file.
 #include "apps/palpate/record/recording_file.hpp"
 
 #include <fmt/format.h>
@@ -19,10 +20,10 @@ namespace palpate::app {
 
 namespace {
 
-constexpr double kShown = 4e-3;  // s between messages of a hand that are not ticks
+constexpr double kShown = 4e-3;  // s between a hand's messages for viewers: 250 Hz; judgement
 constexpr const char* kWorld = "world";
 
-// As a part of a topic's name.
+// Replaces what a topic's name cannot hold.
 std::string plain(std::string name) {
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
@@ -37,7 +38,7 @@ std::string last_part(const std::string& topic) {
 
 namespace {
 
-// As it is now, not as it began.
+// Describes a hand with its present settings, not those it began with.
 Json hand_json(const Servo& servo, const std::string& topic) {
   ServoOptions options = servo.options();
   const ContactSettings contact = servo.contact();

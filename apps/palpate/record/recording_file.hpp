@@ -33,17 +33,17 @@ struct RecordedFrame {
   message::FrameUse use;
 };
 
-/// What a robot that follows the tool does from some time on.
+/// State of a robot that follows the tool, from a time on.
 struct RecordedRobot {
   double time = 0;  ///< s, on the run's clock
   message::DiagnosticStatus status;
 };
 
-/// What a run is made of at a moment, to be written without the run.
+/// Copy of a run's set-up at a moment.
 struct RecordedSetup {
   Json json;
   std::int64_t epoch = 0;  ///< when the run's clock was 0, ns since 1970
-  /// Of each source that stands still; of the others null.
+  /// One for each source; null for cameras.
   std::vector<std::shared_ptr<const PointCloud>> clouds;
   std::vector<std::shared_ptr<const DepthFrame>> images;
 };

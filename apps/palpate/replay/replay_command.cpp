@@ -1,3 +1,4 @@
+// The command replay: compares forces or opens the page.
 #include "apps/palpate/replay/replay_command.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +11,8 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/touch_options.hpp"
+#include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/replay/replay_view.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
 #include "apps/palpate/report/log.hpp"
 #include "apps/palpate/report/report.hpp"
 
@@ -32,37 +33,27 @@ Exit codes: 0 the forces are the same, 1 they differ or the file cannot be read,
 is wrong.)";
 
 Report report_of(const ForceDifference& found) {
+  const bool differs = found.differing > 0;
   Report report(found.topic, fmt::format("{} steps", grouped(found.steps)));
-  report.line("difference",
-              fmt::format("{} N at most, {:.3g} N rms, in {} steps", found.largest, found.rms(),
-                          grouped(found.differing)),
-              found.differing > 0 ? Mark::error : Mark::plain);
-  if (found.first > 0) {
-    report.line("first", fmt::format("step {}, {:.6g} s after the hand's first", found.first,
-                                     found.first_time));
-  }
-  if (!found.ended.empty()) report.line("ended", found.ended, Mark::error);
-  report.data = {{"topic", found.topic},
-                 {"steps", found.steps},
-                 {"exact", found.exact()},
-                 {"differing_steps", found.differing},
-                 {"largest_difference_N", found.largest},
-                 {"rms_difference_N", found.rms()},
-                 {"first_step", found.first > 0 ? Json(found.first) : Json()},
-                 {"first_time_s", found.first > 0 ? Json(found.first_time) : Json()},
-                 {"ended", found.ended}};
+  report.data = {{"topic", found.topic}, {"steps", found.steps}, {"exact", found.exact()}};
+  report.row({"difference", differs ? Mark::error : Mark::plain},
+             "{largest_difference_N} at most, {rms_difference_N} rms, in {differing_steps} steps",
+             found.largest, found.rms(), found.differing);
+  report.row("first", "[{?}step {first_step}, {first_time_s} after the hand's first]", differs,
+             differs ? Json(found.first) : Json(), differs ? Json(found.first_time) : Json());
+  report.row({"ended", Mark::error}, "[{ended}]", found.ended);
   return report;
 }
 
-ForceDifference replay_hand(const ReplayedRun& run, std::size_t hand, const std::string& log) {
+ForceDifference replay_hand(const Replay& run, std::size_t hand, const std::string& log) {
   std::optional<TouchLog> steps;
   if (!log.empty()) steps.emplace(numbered_path(log, hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
   const auto add = [&](const ServoState& step, const DeviceInfo& device) {
     if (steps) steps->add(step, device);
   };
-  ForceDifference found = run.replay(hand, add);
-  if (found.steps == 0 && steps) run.recorded(hand, add);  // then as they were
+  ForceDifference found = run.run(hand, add);
+  if (found.steps == 0 && steps) run.show(hand, add);  // then as they were
   if (steps) steps->close();
   return found;
 }
@@ -112,7 +103,7 @@ int replay(const ReplayCommand& command) {
     view_recording(command.input, page);
     return kSuccess;
   }
-  const ReplayedRun run(command.input);
+  const Replay run(command.input);
   if (command.log == "-" && (command.json == "-" || run.hands() > 1)) {
     throw UsageError("--log cannot go to standard output beside --json or another hand's log");
   }

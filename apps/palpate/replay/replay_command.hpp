@@ -1,3 +1,4 @@
+// The command replay.
 #pragma once
 
 #include <string>

@@ -1,3 +1,4 @@
+// Shows hands and sources of a recorded run at any moment.
 #include "apps/palpate/replay/shown_run.hpp"
 
 #include <algorithm>
@@ -5,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "apps/palpate/record/options_json.hpp"
+#include "apps/palpate/record/recorded_messages.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "apps/palpate/view/view.hpp"
-#include "palpate/base/error.hpp"
+#include "message/transforms.hpp"
 #include "servo/step_trace.hpp"
 
 namespace palpate::app {
@@ -34,33 +35,28 @@ void count(GuardNote notes, Guard::State::Counts& counts) {
   add(GuardNote::softened, counts.softened);
 }
 
-Source& add_source(const Json& json, Scene& scene) {
-  SourceOptions options;
-  take_exact(json.at("options"), options);
-  return scene.add(json.at("name").get<std::string>(), options);
-}
-
 }  // namespace
 
-ShownHand::ShownHand(const std::string& path, const bag::McapReader& reader, const Json& setup,
-                     std::size_t index, Scene& scene)
-    : steps_(path, reader, setup, index),
-      earlier_(path, reader, setup, index),
-      device_(setup.at("hands").at(index).at("device")),
-      servo_(device_, scene, steps_.options()) {}
+ShownHand::ShownHand(const Recording& recording, std::size_t index, Scene& scene)
+    : hand_(&recording.hands().at(index)),
+      steps_(recording, index),
+      earlier_(recording, index),
+      device_(hand_->device),
+      servo_(device_, scene, hand_->options) {}
 
-void ShownHand::show(ServoState state) {
+void ShownHand::show(const Recording::Step& step) {
+  ServoState state = state_of(step.tick, hand_->options);
   count(state.guard.notes, counts_);
   state.guard.counts = counts_;
   ServoTrace(servo_).show(state);
 }
 
 void ShownHand::seek(double time) {
-  if (const std::optional<ServoState> state = steps_.at(time)) show(*state);
+  if (const std::optional<Recording::Step> step = steps_.at(time)) show(*step);
 }
 
 void ShownHand::advance(double time) {
-  while (const std::optional<ServoState> state = steps_.next(time)) show(*state);
+  while (const std::optional<Recording::Step> step = steps_.next(time)) show(*step);
 }
 
 std::vector<ViewerControls::TimeLine::Force> ShownHand::past(
@@ -68,25 +64,20 @@ std::vector<ViewerControls::TimeLine::Force> ShownHand::past(
   std::vector<ViewerControls::TimeLine::Force> forces;
   const double now = servo_.state().time;
   earlier_.seek(now - span);
-  while (const std::optional<ServoState> state = earlier_.next(now)) {
+  while (const std::optional<Recording::Step> step = earlier_.next(now)) {
     if (cancelled()) return {};
-    forces.push_back({state->time, state->force.cast<float>()});
+    forces.push_back({step->tick.time, message::eigen(step->tick.force).cast<float>()});
   }
   return forces;
 }
 
-ShownSource::ShownSource(const std::string& path, const bag::McapReader& reader, const Json& setup,
-                         std::size_t index, Scene& scene)
-    : source_(&add_source(setup.at("sources").at(index), scene)),
-      epoch_(setup.at("epoch_ns").get<std::int64_t>()) {
-  const Json& json = setup.at("sources").at(index);
-  lives_ = json.at("lives").get<bool>();
-  as_cloud_ = json.at("as_cloud").get<bool>();
-  if (!lives_) show_surface(reader, index, json, *source_);
-  if (!lives_) return;
+ShownSource::ShownSource(const Recording& recording, std::size_t index, Scene& scene)
+    : source_(&recording.add_source(index, scene)),
+      origin_(&recording.sources()[index]),
+      frames_(recording, index) {
+  if (!lives()) return;
   stream_.state.source = source_->name();
   stream_.state.phase = StreamState::Phase::running;
-  frames_.emplace(path, reader, json.at("topic").get<std::string>());
   upcoming_ = next_felt();
   if (!upcoming_) return;
   shown_until_ = upcoming_->use.start;
@@ -94,7 +85,7 @@ ShownSource::ShownSource(const std::string& path, const bag::McapReader& reader,
 }
 
 std::optional<RecordedFrame> ShownSource::next_felt() {
-  while (std::optional<RecordedFrame> frame = frames_->next()) {
+  while (std::optional<RecordedFrame> frame = frames_.next()) {
     const message::FrameUse& use = frame->use;
     if (use.kind != "end" && use.why_not.empty() && !use.dropped) return frame;
   }
@@ -115,7 +106,7 @@ void ShownSource::show(double time) {
     if (newest) prepare(*newest);
   } else {
     for (const double back : kFramesBack) {
-      frames_->seek(logged_at(time - back, epoch_));
+      frames_.seek(time - back);
       upcoming_ = next_felt();
       read_on();
       if (newest) break;
@@ -125,14 +116,14 @@ void ShownSource::show(double time) {
   shown_until_ = time;
 }
 
-// Of its own: neither what came before it nor where tools were is asked for.
+// Prepares the frame alone, without the frames before it and without where tools were.
 void ShownSource::prepare(const RecordedFrame& recorded) {
   const DepthFrame& frame = recorded.frame;
   Source prepared(source_->name(), source_->options());
   if (frame.cloud) {
     if (frame.T_world_sensor) prepared.set_pose(*frame.T_world_sensor);
     prepared.set(*frame.cloud);
-  } else if (as_cloud_) {
+  } else if (origin_->as_cloud) {
     if (frame.T_world_sensor) prepared.set_pose(*frame.T_world_sensor);
     prepared.set(cloud_of(frame));
   } else {
@@ -149,21 +140,6 @@ void ShownSource::prepare(const RecordedFrame& recorded) {
 ShownSource::Stream ShownSource::stream() const {
   const std::lock_guard lock(mutex_);
   return stream_;
-}
-
-Stretch stretch_of(const std::string& path, const bag::McapReader& reader, const Json& setup) {
-  Stretch stretch{std::numeric_limits<double>::infinity(), 0};
-  const auto epoch = setup.at("epoch_ns").get<std::int64_t>();
-  const double end = 1e-9 * static_cast<double>(reader.contents().end - epoch) + 1e-3;
-  for (std::size_t i = 0; i < setup.at("hands").size(); ++i) {
-    RecordedHand hand(path, reader, setup, i);
-    const std::optional<ServoState> first = hand.next();
-    if (!first) continue;
-    stretch.begin = std::min(stretch.begin, first->time);
-    stretch.end = std::max(stretch.end, hand.at(end)->time);
-  }
-  if (!(stretch.begin <= stretch.end)) throw Error(path + ": there is no step in it");
-  return stretch;
 }
 
 }  // namespace palpate::app

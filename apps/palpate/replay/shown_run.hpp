@@ -8,10 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/replay/recorded_frames.hpp"
-#include "apps/palpate/replay/recorded_hand.hpp"
-#include "bag/mcap_reader.hpp"
+#include "apps/palpate/record/recording.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -22,9 +19,8 @@ namespace palpate::app {
 /// on others.
 class ShownHand {
  public:
-  /// `scene` outlives it.
-  ShownHand(const std::string& path, const bag::McapReader& reader, const Json& setup,
-            std::size_t index, Scene& scene);
+  /// `recording` and `scene` outlive it.
+  ShownHand(const Recording& recording, std::size_t index, Scene& scene);
 
   [[nodiscard]] Servo& servo() { return servo_; }
 
@@ -38,29 +34,29 @@ class ShownHand {
       double span, const std::function<bool()>& cancelled);
 
  private:
-  void show(ServoState state);
+  void show(const Recording::Step& step);
 
-  RecordedHand steps_;
-  RecordedHand earlier_;
+  const Recording::Hand* hand_;
+  Recording::Steps steps_;
+  Recording::Steps earlier_;
   RecordedDevice device_;
   Servo servo_;
   Guard::State::Counts counts_;  // of what was shown
 };
 
-/// What a source of a recorded run showed. One thread shows, others may ask for the stream.
+/// Shows a source of a recorded run. One thread shows; others may ask for the stream.
 class ShownSource {
  public:
   using Stream = ViewerOptions::Stream;
 
   /// One that stands still shows its surface, one that lives its first one. `scene` outlives it.
-  ShownSource(const std::string& path, const bag::McapReader& reader, const Json& setup,
-              std::size_t index, Scene& scene);
+  ShownSource(const Recording& recording, std::size_t index, Scene& scene);
 
   /// Shows the newest frame that was felt at `time` (s, on the run's clock), prepared by itself.
   void show(double time);
 
-  [[nodiscard]] bool lives() const { return lives_; }
-  /// Of one that lives.
+  [[nodiscard]] bool lives() const { return origin_->lives; }
+  /// State and frustum of a camera.
   [[nodiscard]] Stream stream() const;
 
  private:
@@ -68,23 +64,12 @@ class ShownSource {
   void prepare(const RecordedFrame& recorded);
 
   Source* source_;
-  bool lives_ = false;
-  bool as_cloud_ = false;
-  std::int64_t epoch_;                     // ns
-  std::optional<RecordedFrames> frames_;   // of one that lives
+  const Recording::Origin* origin_;
+  Recording::Frames frames_;
   double shown_until_ = 0;                 // frames up to that time were looked at, s
   std::optional<RecordedFrame> upcoming_;  // the first after that
   mutable std::mutex mutex_;
   Stream stream_;
 };
-
-/// When a run's first and last step were, s on its clock.
-struct Stretch {
-  double begin = 0;
-  double end = 0;
-};
-/// @throws Error when there is no step.
-[[nodiscard]] Stretch stretch_of(const std::string& path, const bag::McapReader& reader,
-                                 const Json& setup);
 
 }  // namespace palpate::app

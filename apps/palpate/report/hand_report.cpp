@@ -1,3 +1,4 @@
+// Reports on one hand of a run.
 #include "apps/palpate/report/hand_report.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/report/source_report.hpp"
 
 namespace palpate::app {
 
@@ -16,206 +18,132 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-// "12 steps slew-limited, 3 steps force-limited"; empty: it never intervened.
-std::string guard_words(const Guard::State::Counts& counts) {
-  std::string words;
-  const auto add = [&words](std::uint64_t count, std::string_view text) {
-    if (count == 0) return;
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", grouped(count), text);
-  };
-  add(counts.slewed, "steps slew-limited");
-  add(counts.clamped, "steps force-limited");
-  add(counts.braked, "steps braked to dissipate energy given to the hand");
-  add(counts.starting, "steps in a soft start");
-  add(counts.softened, "steps with stiffness reduced to the device's limit");
-  add(counts.silences, "watchdog stops");
-  add(counts.faults, "faults");
-  return words;
-}
-
-Json add_guard(Report& report, const GuardOptions& limits, const Guard::State& guard) {
-  const Guard::State::Counts& counts = guard.counts;
-  const std::string words = guard_words(counts);
-  const std::string most = std::isfinite(limits.maximum_force)
-                               ? fmt::format("at most {:.3g} N", limits.maximum_force)
-                               : "no force limit";
-  report.line("guard", fmt::format("{}, {:.3g} N/s, watchdog {}: {}", most, limits.slew,
-                                   std::isinf(limits.silence) ? "none" : duration(limits.silence),
-                                   words.empty() ? "no intervention" : words));
-  const std::string fault(in_words(guard.fault));
-  if (guard.fault != Guard::Fault::none) report.line("fault", fault, Mark::warning);
-  return {{"maximum_force_N", limit(limits.maximum_force)},
-          {"slew_N_per_s", limits.slew},
-          {"watchdog_s", limits.silence},
-          {"damping_Ns_per_m", limits.damping},
-          {"soft_start_s", limits.soft_start},
-          {"passivity", limits.passivity.on},
-          {"slewed", counts.slewed},
-          {"clamped", counts.clamped},
-          {"braked", counts.braked},
-          {"starting", counts.starting},
-          {"softened", counts.softened},
-          {"silences", counts.silences},
-          {"faults", counts.faults},
-          {"fault", fault}};
-}
-
-Json add_requests(Report& report, const std::vector<RealtimeReport::Request>& requests) {
-  Json data = Json::array();
-  for (const RealtimeReport::Request& each : requests) {
-    data.push_back({{"what", each.what}, {"granted", each.granted}, {"remedy", each.remedy}});
-    if (each.granted) {
-      report.line("real time", fmt::format("{}: granted", each.what));
-    } else {
-      report.line("real time", fmt::format("{}: not granted: {}", each.what, each.remedy),
-                  Mark::warning);
-    }
-  }
-  return data;
+void add_guard(Report& report, const GuardOptions& limits, const Guard::State& guard) {
+  const Guard::State::Counts& n = guard.counts;
+  report.row(
+      "guard",
+      "[at most {live/guard/maximum_force_N}|no force limit], {live/guard/slew_N_per_s}, "
+      "watchdog {live/guard/watchdog_s}[; {live/guard/slewed} steps slew-limited]"
+      "[; {live/guard/clamped} steps force-limited]"
+      "[; {live/guard/braked} steps braked to dissipate energy given to the hand]"
+      "[; {live/guard/starting} steps in a soft start]"
+      "[; {live/guard/softened} steps with stiffness reduced to the device's limit]"
+      "[; {live/guard/silences} watchdog stops][; {live/guard/faults} faults]"
+      "[{?}; no intervention]",
+      limits.maximum_force, limits.slew, limits.silence, n.slewed, n.clamped, n.braked, n.starting,
+      n.softened, n.silences, n.faults,
+      n.slewed + n.clamped + n.braked + n.starting + n.softened + n.silences + n.faults == 0);
+  report.data["live"]["guard"].update({{"damping_Ns_per_m", limits.damping},
+                                       {"soft_start_s", limits.soft_start},
+                                       {"passivity", limits.passivity.on}});
+  report.row({"fault", Mark::warning}, "[{?}{live/guard/fault}]", guard.fault != Guard::Fault::none,
+             in_words(guard.fault));
 }
 
 // How well time was kept, what the guard did, what the system granted.
-Json add_live(Report& report, const LiveReport& live) {
-  const double p50 = live.lateness.quantile(0.5);
-  const double p99 = live.lateness.quantile(0.99);
-  const double longest = live.lateness.longest;
-  report.line("pace",
-              fmt::format("{:.4g} Hz; late by {} (p50), {} (p99), {} (max); steps skipped: {}",
-                          live.rate, duration(p50), duration(p99), duration(longest),
-                          live.skipped == 0 ? "none" : grouped(live.skipped)));
-  if (live.unwritten > 0) {
-    report.line(
-        "unwritten",
-        fmt::format(
-            "{} steps were not recorded because they came too fast; they are missing from the log",
-            grouped(live.unwritten)),
-        Mark::warning);
+void add_live(Report& report, const LiveReport& live) {
+  report.row("pace",
+             "{live/rate_Hz}; late by {live/late_s/p50} (p50), {live/late_s/p99} (p99), "
+             "{live/late_s/max} (max); steps skipped: [{live/steps_left_out}|none]",
+             live.rate, live.lateness.quantile(0.5), live.lateness.quantile(0.99),
+             live.lateness.longest, live.skipped);
+  report.row({"unwritten", Mark::warning},
+             "[{live/steps_unwritten} steps were not recorded because they came too fast; they are "
+             "missing from the log]",
+             live.unwritten);
+  add_guard(report, live.limits, live.guard);
+  report.data["live"]["realtime"] = Json::array();
+  for (const RealtimeReport::Request& each : live.realtime.requests) {
+    report.item("live/realtime", {"real time", each.granted ? Mark::plain : Mark::warning},
+                "{what}: [granted{granted}|not granted: {remedy}]", each.what, each.granted,
+                each.remedy);
   }
-  Json data = {{"rate_Hz", live.rate},
-               {"late_s", {{"p50", p50}, {"p99", p99}, {"max", longest}}},
-               {"steps_left_out", live.skipped},
-               {"steps_unwritten", live.unwritten}};
-  data["guard"] = add_guard(report, live.limits, live.guard);
-  data["realtime"] = add_requests(report, live.realtime.requests);
-  data["failure"] = live.failure;
-  if (!live.failure.empty()) report.line("FAILED", live.failure, Mark::error);
-  return data;
+  report.row({"FAILED", Mark::error}, "[{live/failure}]", live.failure);
 }
 
-Json add_unguarded(Report& report, const Unguarded& run) {
-  const Guard::State::Counts& counts = run.counts();
-  std::string words;
-  if (counts.slewed > 0) {
-    words += fmt::format("; it would have slew-limited {} steps (largest {:.2g} N in a step)",
-                         grouped(counts.slewed), run.largest_change());
-  }
-  if (counts.clamped > 0) {
-    words += fmt::format("; it would have limited {} steps to {:.3g} N", grouped(counts.clamped),
-                         run.limits().maximum_force);
-  }
-  if (words.empty()) words = "; it would not have intervened";
-  report.line("guard", "none in simulated time" + words);
-  return {{"slew_N_per_s", run.limits().slew},
-          {"maximum_force_N", limit(run.limits().maximum_force)},
-          {"would_slow_steps", counts.slewed},
-          {"largest_slowed_step_N", run.largest_change()},
-          {"would_shorten_steps", counts.clamped}};
+void add_unguarded(Report& report, const Unguarded& run) {
+  const Guard::State::Counts& n = run.counts();
+  report.row("guard",
+             "none in simulated time[; it would have slew-limited {unguarded/would_slow_steps} "
+             "steps (largest {unguarded/largest_slowed_step_N} in a step)]"
+             "[; it would have limited {unguarded/would_shorten_steps} steps to "
+             "{unguarded/maximum_force_N}][{?}; it would not have intervened]",
+             n.slewed, run.largest_change(), n.clamped, run.limits().maximum_force,
+             n.slewed + n.clamped == 0);
+  report.data["unguarded"]["slew_N_per_s"] = run.limits().slew;
 }
 
 void add_scale(Report& report, const Hand& hand) {
   const double scale = hand.workspace.scale;
-  const double felt = hand.workspace.felt_stiffness(hand.stiffness);
-  report.data["device"].update({{"scale", scale}, {"felt_stiffness_N_per_m", felt}});
-  if (scale == 1) return;
-  report.line(
-      "scale",
-      fmt::format(
-          "1 m of hand motion is {} m in the cloud; {:.4g} N/m there is {:.4g} N/m at the hand",
-          scale, hand.stiffness, felt));
+  report.row("scale",
+             "[{?}1 m of hand motion is {device/scale} m in the cloud; {_N_per_m} there is "
+             "{device/felt_stiffness_N_per_m} at the hand]",
+             scale != 1, scale, hand.stiffness, hand.workspace.felt_stiffness(hand.stiffness));
 }
 
 // Pose of a device that a person or a program moves.
 void add_placement(Report& report, const Hand& hand) {
-  Json& device = report.data["device"];
   const Eigen::Vector3d& origin = hand.workspace.T_world_device.translation();
   const PlacementOptions& placement = hand.chosen.placement;
-  report.line(
-      "origin",
-      fmt::format("{:.4g}, {:.4g}, {:.4g} m, axes {}", origin.x(), origin.y(), origin.z(),
-                  placement.frame.empty() ? "of the world" : "as " + placement.frame + " looks"));
+  report.row("origin", "{device/origin_m}, axes {}",
+             std::vector{origin.x(), origin.y(), origin.z()},
+             placement.frame.empty() ? "of the world" : "as " + placement.frame + " looks");
   add_scale(report, hand);
-  device["origin_m"] = {origin.x(), origin.y(), origin.z()};
-  if (!placement.frame.empty()) device["frame"] = placement.frame;
-  if (!placement.clutch) return;
-  report.line("clutch", fmt::format("button {}", *placement.clutch));
-  device["clutch_button"] = *placement.clutch;
+  if (!placement.frame.empty()) report.data["device"]["frame"] = placement.frame;
+  if (placement.clutch) report.row("clutch", "button {device/clutch_button}", *placement.clutch);
 }
 
 void add_device(Report& report, const Hand& hand) {
-  Json& device = report.data["device"];
-  device = {{"name", hand.device->info().name}};
+  report.data["device"] = {{"name", hand.device->info().name}};
   if (hand.plan) {
-    report.line("explored", fmt::format("an area up to {} across, pressing about {} deep",
-                                        length(hand.plan->patch), length(hand.plan->depth)));
+    report.row("explored",
+               "an area up to {device/explored_m} across, pressing about {device/depth_m} deep",
+               hand.plan->patch, hand.plan->depth);
     add_scale(report, hand);
-    device.update({{"explored_m", hand.plan->patch}, {"depth_m", hand.plan->depth}});
   }
-  RemoteDevice::Counts counts;
   if (hand.socket != nullptr) {
-    counts = hand.socket->counts();
-    report.line("socket", fmt::format("{}: {} of {} packets accepted", hand.socket->path(),
-                                      grouped(counts.taken), grouped(counts.received)));
+    const RemoteDevice::Counts counts = hand.socket->counts();
+    report.row("socket",
+               "{device/socket}: {device/packets_taken} of {device/packets_received} packets "
+               "accepted",
+               hand.socket->path(), counts.taken, counts.received);
   }
   if (!hand.chosen.follows_trajectory()) add_placement(report, hand);
-  if (hand.socket == nullptr) return;
-  device["socket"] = hand.socket->path();
-  device["packets_received"] = counts.received;
-  device["packets_taken"] = counts.taken;
 }
 
-// The second energy is the surface's alone, without what holding a force for a step adds.
+// Energy along the path is the surface's alone, without what holding a force for a step adds.
 void add_forces(Report& report, const HandReport& hand) {
   const TouchStatistics& s = hand.statistics;
   const StepTimes times = s.times();
   const HandEnergy energies = energy_at_hand(hand);
-  const double touching = share(s.touching(), s.steps());
-  report.line("computing",
-              fmt::format("p50 {:.1f}  p99 {:.1f}  p99.9 {:.1f}  max {:.1f} us per step", times.p50,
-                          times.p99, times.p999, times.maximum));
-  report.line("contacts",
-              fmt::format("{}, {:.3g} % of the time", grouped(s.contacts()), 100 * touching));
-  report.line("force", fmt::format("at most {:.3g} N, changing by at most {:.2g} N per step",
-                                   s.largest_force(), s.largest_jump()));
-  report.line("energy",
-              fmt::format("{} given to the hand{}, {} along the path", energy(energies.given),
-                          energies.given < 0 ? " (negative: absorbed from it)" : "",
-                          energy(energies.path)));
-  report.data.update(
-      {{"computing_us",
-        {{"p50", times.p50}, {"p99", times.p99}, {"p99.9", times.p999}, {"max", times.maximum}}},
-       {"contacts", s.contacts()},
-       {"contact_share", touching},
-       {"largest_force_N", s.largest_force()},
-       {"largest_force_step_N", s.largest_jump()},
-       {"energy_given_to_hand_J", energies.given},
-       {"energy_along_path_J", energies.path},
-       {"energy_given_in_world_J", s.given_energy()},
-       {"energy_along_path_in_world_J", s.path_energy()}});
+  report.row("computing",
+             "{computing_us/p50} (p50), {computing_us/p99} (p99), {computing_us/p99.9} (p99.9), "
+             "{computing_us/max} (max) per step",
+             times.p50, times.p99, times.p999, times.maximum);
+  report.row("contacts", "{contacts}, {contact_share} of the time", s.contacts(),
+             share(s.touching(), s.steps()));
+  report.row("force",
+             "at most {largest_force_N}, changing by at most {largest_force_step_N} per step",
+             s.largest_force(), s.largest_jump());
+  report.row("energy",
+             "{energy_given_to_hand_J} given to the hand[{?} (negative: absorbed from it)], "
+             "{energy_along_path_J} along the path",
+             energies.given, energies.given < 0, energies.path);
+  report.data.update({{"energy_given_in_world_J", s.given_energy()},
+                      {"energy_along_path_in_world_J", s.path_energy()}});
 }
 
 void add_notes(Report& report, const TouchStatistics& s) {
-  Json& data = report.data["notes"] = Json::array();
+  Json& notes = report.data["notes"] = Json::array();
   for (const CountedNote& each : s.notes()) {
-    report.line(data.empty() ? "notes" : "",
-                fmt::format("{} ({:.3g} % of steps): {}", grouped(each.steps),
-                            100 * share(each.steps, s.steps()), each.text),
-                Mark::warning);
-    data.push_back({{"note", each.name}, {"steps", each.steps}, {"text", each.text}});
+    report.item("notes", {"notes", Mark::warning}, "{steps} ({_share} of steps): {text}",
+                each.steps, share(each.steps, s.steps()), each.text);
+    notes.back()["note"] = each.name;
   }
-  if (data.empty()) report.line("notes", "none");
+  if (notes.empty()) report.note("notes", "none");
 }
 
-// Of a hand that felt nothing.
+// Advice for a hand that never touched the surface.
 std::string way_to_surface(const HandReport& report) {
   const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";
@@ -264,21 +192,18 @@ Report report_of(const HandReport& hand, const std::string& title) {
                 fmt::format("{} field, {:.4g} N/m, {} device", name_in(kFields, hand.field.kind),
                             hand.stiffness, hand.hand.device->info().name));
   add_device(report, hand.hand);
-  report.line("steps", fmt::format("{} in {:.4g} s of {} time", grouped(s.steps()), s.duration(),
-                                   real ? "real" : "simulated"));
-  report.data.update({{"steps", s.steps()},
-                      {real ? "real_s" : "simulated_s", s.duration()},
-                      {"interrupted", hand.interrupted}});
-  if (hand.interrupted) report.line("ended", "by Ctrl-C");
-  const Json live = real ? add_live(report, *hand.live) : Json();
-  const bool unguarded = hand.unguarded != nullptr;
-  const Json other = unguarded ? add_unguarded(report, *hand.unguarded) : Json();
+  report.row(
+      "steps",
+      real ? "{steps} in {real_s} of real time" : "{steps} in {simulated_s} of simulated time",
+      s.steps(), s.duration());
+  report.row("ended", "[by Ctrl-C{interrupted}]", hand.interrupted);
+  if (real) add_live(report, *hand.live);
+  if (hand.unguarded != nullptr) add_unguarded(report, *hand.unguarded);
   add_forces(report, hand);
   add_notes(report, s);
   report.data["advice"] = advice(hand);
-  for (const std::string& sentence : advice(hand)) report.line("advice", sentence, Mark::warning);
-  if (real) report.data["live"] = live;
-  if (unguarded) report.data["unguarded"] = other;
+  for (const std::string& sentence : advice(hand)) report.note({"advice", Mark::warning}, sentence);
+  if (!hand.unlogged.empty()) report.row({"log", Mark::error}, "{log_problem}", hand.unlogged);
   return report;
 }
 

@@ -13,7 +13,7 @@
 
 namespace palpate::app {
 
-/// What a run in real time was like for one hand.
+/// Timing, guard and failures of one hand in a run in real time.
 struct LiveReport {
   RealtimeReport realtime;
   double rate = 0;  ///< steps a second that were wanted, Hz
@@ -46,7 +46,7 @@ struct HandEnergy {
 };
 [[nodiscard]] HandEnergy energy_at_hand(const HandReport& report);
 
-/// What to do differently, in whole sentences; empty: nothing.
+/// Advice in whole sentences; may be empty.
 [[nodiscard]] std::vector<std::string> advice(const HandReport& report);
 
 /// A hand's part of the report, under `title`.

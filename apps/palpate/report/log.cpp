@@ -1,3 +1,4 @@
+// Writes the CSV log of a run.
 #include "apps/palpate/report/log.hpp"
 
 #include <iterator>
@@ -10,7 +11,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::size_t kFlush = 1 << 16;  // bytes
+constexpr std::size_t kFlush = 1 << 16;  // bytes a write; judgement
 
 }  // namespace
 

@@ -17,7 +17,7 @@ namespace palpate::app {
 class TouchLog {
  public:
   explicit TouchLog(const std::string& path);
-  /// What is left, if it was not closed.
+  /// Writes the rest, unless close() was called.
   ~TouchLog();
   /// @throws Error when the file cannot be written, and takes nothing from then on.
   void add(const ServoState& step, const DeviceInfo& device);

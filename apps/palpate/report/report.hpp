@@ -1,30 +1,58 @@
+// Reports for people and programs.
 #pragma once
 
 #include <cstdio>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/sources/loaded_scene.hpp"
 
 namespace palpate::app {
 
-/// Of a cloud that is on_a_line().
-inline constexpr const char* kNoSurface =
-    "all points are at one place or on a line, where no surface is";
-
 enum class Mark { plain, warning, error };
 
-/// A part of a report: lines for a person, and the same facts as data.
+/// A part of a report. Each fact is given once: row() makes both the line for a person and the
+/// datum for --json of it.
 class Report {
  public:
+  /// What a line begins with, ten letters at most; empty: it continues the line before.
+  struct Label {
+    // NOLINTNEXTLINE(google-explicit-constructor)
+    Label(std::string of_line, Mark its_mark = Mark::plain)
+        : text(std::move(of_line)), mark(its_mark) {}
+    Label(const char* of_line, Mark its_mark = Mark::plain) : text(of_line), mark(its_mark) {}
+    std::string text;
+    Mark mark;
+  };
+
   /// `title` stands out from `rest`.
   Report(std::string title, std::string rest) : title_(std::move(title)), rest_(std::move(rest)) {}
 
-  /// One below the title. `label`: ten letters at most; empty: it goes on from the line before.
-  void line(const std::string& label, std::string text, Mark mark = Mark::plain) {
-    lines_.push_back({label, std::move(text), mark});
+  /// A line: `pattern` with the values in it. {KEY} shows the next value, which is the datum KEY;
+  /// '/' makes objects ("radius_m/median"). The key's unit ("_m", "_N_per_m", ...) says how the
+  /// value is shown. {} and a unit alone ({_m}) show a value that is no datum. Where the first
+  /// value in [brackets] is 0, false, null or empty, they are left out, or their alternative is
+  /// shown:
+  /// [{voxel_m}|none]. {?} and a bool decide so without being shown. A number that is not finite
+  /// is null. A line without text is left out, its data are not.
+  template <class... Value>
+  void row(const Label& label, std::string_view pattern, const Value&... values) {
+    write(data, label, pattern, {Json(values)...});
   }
+
+  /// The same for the next element of the list `list`. Its first line alone shows the label.
+  template <class... Value>
+  void item(const char* list, const Label& label, std::string_view pattern,
+            const Value&... values) {
+    Json& items = list_at(list);
+    const Label shown = items.empty() ? label : Label("", label.mark);
+    write(items.emplace_back(), shown, pattern, {Json(values)...});
+  }
+
+  /// A line without data.
+  void note(const Label& label, std::string text) { lines_.push_back({label, std::move(text)}); }
 
   void print(std::FILE* out) const;
 
@@ -32,36 +60,16 @@ class Report {
 
  private:
   struct Line {
-    std::string label;
+    Label label;
     std::string text;
-    Mark mark;
   };
+
+  [[nodiscard]] Json& list_at(const char* path);
+  void write(Json& object, const Label& label, std::string_view pattern, std::vector<Json> values);
 
   std::string title_;
   std::string rest_;
   std::vector<Line> lines_;
 };
-
-/// ", 12 invalid"; empty where there are none.
-[[nodiscard]] std::string and_some(std::size_t count, const char* words);
-
-/// JSON has no infinity: null is no limit.
-[[nodiscard]] Json limit(double value);
-
-/// What a run knows of one of its sources and, of a camera, of what became of its frames.
-[[nodiscard]] Report source_report(const LoadedSource& source);
-
-/// That of a camera.
-[[nodiscard]] Report camera_report(const LoadedSource& source);
-
-/// Says how much of a cloud is no surface that its points agree on, where it is a hundredth or
-/// more.
-void add_trust(Report& report, const Prepared::Report& prepared);
-
-/// "640 x 480 pixels of a camera of 525 px".
-[[nodiscard]] std::string in_words(const CameraModel& camera);
-
-/// The same as data.
-[[nodiscard]] Json json_of(const CameraModel& camera);
 
 }  // namespace palpate::app

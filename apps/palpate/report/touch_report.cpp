@@ -1,3 +1,4 @@
+// Reports on a whole run and draws its picture.
 #include "apps/palpate/report/touch_report.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/cli/version.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
-#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/report/source_report.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/shapes.hpp"
 
@@ -151,37 +152,25 @@ namespace {
 
 Report report_of(const RosBridge::RobotState& robot) {
   Report part("robot", robot.topic);
-  part.line("targets",
-            fmt::format("{} told, {} held back", grouped(robot.told), grouped(robot.held)));
-  for (const auto& [reason, seconds] : robot.waits) {
-    part.line("waited", fmt::format("{:.1f} s: {}", seconds, reason));
-  }
-  if (!robot.why.empty()) part.line("at last", robot.why, Mark::warning);
-  if (robot.readers == 0) part.line("readers", "none now", Mark::warning);
-  part.data = {{"topic", robot.topic},    {"told", robot.told},
-               {"held_back", robot.held}, {"held_back_at_last", robot.why},
-               {"waited_s", robot.waits}, {"readers", robot.readers}};
+  part.data = {{"topic", robot.topic}, {"waited_s", robot.waits}};
+  part.row("targets", "{told} sent, {held_back} held back", robot.told, robot.held);
+  for (const auto& [reason, seconds] : robot.waits) part.row("waited", "{_s}: {}", seconds, reason);
+  part.row({"at last", Mark::warning}, "[{held_back_at_last}]", robot.why);
+  part.data["readers"] = robot.readers;
+  if (robot.readers == 0) part.note({"readers", Mark::warning}, "none now");
   return part;
 }
 
 Report report_of(const RecordReport& recorded) {
   Report part("recorded", recorded.path);
-  part.line("steps", grouped(recorded.steps));
-  if (recorded.frames > 0) part.line("frames", grouped(recorded.frames));
-  if (recorded.lost_steps + recorded.lost_frames > 0) {
-    part.line("lost",
-              fmt::format("{} steps and {} frames, for which the disk was too slow: a replay ends "
-                          "before them",
-                          grouped(recorded.lost_steps), grouped(recorded.lost_frames)),
-              Mark::warning);
-  }
-  if (!recorded.problem.empty()) part.line("ended", recorded.problem, Mark::error);
-  part.data = {{"file", recorded.path},
-               {"steps", recorded.steps},
-               {"frames", recorded.frames},
-               {"lost_steps", recorded.lost_steps},
-               {"lost_frames", recorded.lost_frames},
-               {"problem", recorded.problem}};
+  part.data["file"] = recorded.path;
+  part.row("steps", "{steps}", recorded.steps);
+  part.row("frames", "[{frames}]", recorded.frames);
+  part.row({"lost", Mark::warning},
+           "[{?}{lost_steps} steps and {lost_frames} frames, for which the disk was too slow: a "
+           "replay ends before them]",
+           recorded.lost_steps + recorded.lost_frames, recorded.lost_steps, recorded.lost_frames);
+  part.row({"ended", Mark::error}, "[{problem}]", recorded.problem);
   return part;
 }
 
@@ -194,40 +183,27 @@ std::string in_words(const RosBridge::RobotState& robot) {
   return fmt::format("robot: {} targets", robot.told);
 }
 
-// What is of a hand stands beside what is of the run where there is one hand, else under "hands".
 Json report_on(const TouchReport& report, std::FILE* stream) {
-  Json sources = Json::array();
-  for (const LoadedSource& source : report.loaded.sources) {
-    const Report part = source_report(source);
+  const auto printed = [stream](const Report& part) {
     part.print(stream);
-    sources.push_back(part.data);
+    return part.data;
+  };
+  Json json = {{"palpate", std::string(version())}, {"sources", Json::array()}};
+  for (const LoadedSource& source : report.loaded.sources) {
+    json["sources"].push_back(printed(source_report(source)));
   }
-  Json json = {{"palpate", std::string(version())},
-               {"sources", sources},
-               {"preset", report.paper ? "paper" : "default"},
+  json.update({{"preset", report.paper ? "paper" : "default"},
                {"field", name_in(kFields, report.field.kind)},
-               {"stiffness_N_per_m", report.proxy.stiffness}};
+               {"stiffness_N_per_m", report.proxy.stiffness}});
   const bool alone = report.hands.size() == 1;
   for (const HandReport& each : report.hands) {
-    Report part = report_of(each, alone ? "touched" : each.hand.name);
-    if (!each.unlogged.empty()) part.line("log", each.unlogged, Mark::error);
-    if (!each.unlogged.empty()) part.data["log_problem"] = each.unlogged;
-    part.print(stream);
-    if (alone) {
-      json.update(part.data);
-    } else {
-      json["hands"].push_back(part.data);
-    }
+    const Json hand = printed(report_of(each, alone ? "touched" : each.hand.name));
+    if (alone) json.update(hand);
+    if (!alone) json["hands"].push_back(hand);
   }
-  if (report.robot) {
-    const Report part = report_of(*report.robot);
-    part.print(stream);
-    json["robot"] = part.data;
-  }
+  if (report.robot) json["robot"] = printed(report_of(*report.robot));
   for (const RecordReport& each : report.recorded) {
-    const Report part = report_of(each);
-    part.print(stream);
-    json["recordings"].push_back(part.data);
+    json["recordings"].push_back(printed(report_of(each)));
   }
   return json;
 }

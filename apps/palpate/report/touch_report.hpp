@@ -35,7 +35,7 @@ class Picture {
   std::vector<ServoState> steps_;
 };
 
-/// What is kept of one hand's steps.
+/// Statistics, log and picture of one hand's steps.
 class HandOutputs {
  public:
   /// The files that `outputs` names for the hand of that index, made at once.

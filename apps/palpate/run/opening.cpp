@@ -1,3 +1,4 @@
+// Prepares a file that a page sent, for the next run.
 #include "apps/palpate/run/opening.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Builds the hands of a run and connects them with devices, servos and the page.
 #include "apps/palpate/run/run.hpp"
 
 #include <fmt/format.h>
@@ -22,10 +23,9 @@ namespace {
 // A day: longer ones are times in another unit, or broken.
 constexpr double kLongestRun = 86'400;  // s
 
-constexpr double kReachingSpeed = 2;  // m/s, about what an arm reaches with
-
-// So late a step is harmless where PacedDevice catches up; for a page's hand, which waits, any is.
-constexpr double kSimulatedSilence = 0.05;  // s
+constexpr double kReachingSpeed = 2;  // m/s, a fast reach of an arm; judgement
+// Guard's watchdog for simulated devices, s; judgement: PacedDevice catches up after a late step.
+constexpr double kSimulatedSilence = 0.05;
 
 std::string socket_path(const DevicePlan& plan) {
   if (!plan.path.empty()) return plan.path;

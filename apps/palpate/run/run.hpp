@@ -1,3 +1,4 @@
+// The parts of a run: hands, devices, feeds.
 #pragma once
 
 #include <functional>

@@ -1,3 +1,4 @@
+// Counts what happens in the steps of a run.
 #include "apps/palpate/run/touch_statistics.hpp"
 
 #include <algorithm>

@@ -48,12 +48,11 @@ class TouchStatistics {
   /// The integral of F . dh along the way by trapezoids, J, as if forces changed without steps. It
   /// shows whether the surface is passive, not whether a device is.
   [[nodiscard]] double path_energy() const { return path_energy_; }
-  /// What there was to note, of contacts and of the field.
+  /// Notes of contacts and of the field, counted.
   [[nodiscard]] std::vector<CountedNote> notes() const;
   /// Steps that the proxy could not take.
   [[nodiscard]] std::size_t faults() const { return faults_; }
-  /// Of any number of steps in the same memory: to 5 %, and the maximum as it was. Zero without
-  /// steps.
+  /// Quantiles of computing times to 5 %, and the exact maximum; zero without steps.
   [[nodiscard]] StepTimes times() const;
 
  private:

@@ -1,3 +1,4 @@
+// Settings that a page can change during a run.
 #include "apps/palpate/run/view_settings.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ double widest_voxel(const ViewScope& scope) {
   return scope.spacing > 0 ? kWidestVoxel * scope.spacing : kUsualVoxel;
 }
 
-// Of all lengths, through a whole run.
+// One unit for all lengths during the whole run.
 Unit unit_of(const ViewScope& scope) {
   return widest_voxel(scope) < 1 ? Unit{"mm", 1e-3} : Unit{"m", 1};
 }

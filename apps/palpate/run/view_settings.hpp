@@ -1,3 +1,4 @@
+// Settings that a page can change during a run.
 #pragma once
 
 #include <condition_variable>
@@ -18,9 +19,9 @@ namespace palpate::app {
 
 using Setting = ViewerControls::Setting;
 
-/// What a viewer's page may change while the tool feels.
+/// Settings that a page may change during a run.
 struct ViewSettings {
-  /// Of how sources are prepared.
+  /// How sources are prepared.
   struct Preparation {
     std::optional<Policy> policy;  ///< unset: as each kind of source has it
     int history = 4;
@@ -35,7 +36,7 @@ struct ViewSettings {
   Preparation preparation;
 };
 
-/// What there is to set.
+/// What the settings of a run are limited by.
 struct ViewScope {
   double stiffest = 2000;      ///< N/m, in the world
   double deepest_texture = 0;  ///< amplitude, m
@@ -45,7 +46,7 @@ struct ViewScope {
   bool clouds = false;         ///< clouds are prepared here
 };
 
-/// As a page shows them, with their bounds: lengths in mm, or in m where voxels may be so large.
+/// The settings with their bounds as a page shows them: lengths in mm, or in m for large scenes.
 [[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
                                                  const ViewScope& scope);
 
@@ -71,7 +72,7 @@ void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
 [[nodiscard]] double deepest_texture(const Scene& scene);
 
 /// Prepares the sources of a run again, on a thread of its own, with the settings of the page.
-/// Of wishes that come faster than it works the last one counts. What fails is taken back.
+/// If requests come faster than it works, the last one counts. A failed request is undone.
 class Preparer {
  public:
   using Preparation = ViewSettings::Preparation;

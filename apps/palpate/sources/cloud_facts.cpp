@@ -1,3 +1,4 @@
+// Guesses units, spacing and borders of a cloud.
 #include "apps/palpate/sources/cloud_facts.hpp"
 
 #include <fmt/format.h>

@@ -10,7 +10,7 @@
 
 namespace palpate::app {
 
-/// What the units of a file probably are, and why.
+/// Probable units of a file, and why.
 struct UnitsGuess {
   std::string units;
   std::string reason;

@@ -1,3 +1,4 @@
+// Reads clouds and opens cameras as they are named.
 #include "apps/palpate/sources/load.hpp"
 
 #include <fmt/format.h>

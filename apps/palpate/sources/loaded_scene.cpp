@@ -1,3 +1,4 @@
+// Makes a scene of named sources and feeds it with frames.
 #include "apps/palpate/sources/loaded_scene.hpp"
 
 #include <fmt/format.h>
@@ -179,7 +180,8 @@ bool take_next(DepthCamera& camera, double latest, DepthFrame& frame) {
   return frame.stamp <= latest;
 }
 
-// Of a cloud: that of a camera which saw it in these axes; of no size: there is none.
+// The camera of a frame. For an organised cloud, a camera that sees it in its own axes; size 0 if
+// there is none.
 CameraModel lens_of(const DepthFrame& frame) {
   if (!frame.cloud) return frame.camera;
   const std::optional<DepthFrame> image = depth_frame_of(*frame.cloud).frame;

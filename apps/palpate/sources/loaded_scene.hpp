@@ -15,7 +15,7 @@
 
 namespace palpate::app {
 
-/// What a camera's run looked like.
+/// Timing and frames of a camera during a run.
 struct FeedReport {
   StreamState state;
   int width = 0;  ///< of the last frame, pixels
@@ -31,7 +31,7 @@ struct LoadedSource {
   Prepared::Report prepared;  ///< of a cloud
   Source::State state;        ///< of a depth image; of a stream, after the run
 
-  // Of what stands still:
+  // Files:
   bool depth_image = false;  ///< or an organised cloud that is felt as one
   std::string format;
   std::size_t declared = 0;
@@ -42,17 +42,17 @@ struct LoadedSource {
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
   std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 
-  // Of a stream:
+  // Streams:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
   bool posed = false;                   ///< its frames say where it stands
   FeedReport feed;                      ///< after the run
 };
 
-/// What is touched: the scene, and everything that is known of it before the first step.
+/// The scene, and all that is known of it before the first step.
 struct LoadedScene {
   std::vector<LoadedSource> sources;
-  /// As prepared; of a camera its first frame, where `explored` was asked for, and its pose then.
+  /// Prepared surfaces; for cameras the first frame and its pose, if `explored` was asked for.
   Scene scene;
 };
 

@@ -1,3 +1,4 @@
+// A run in real time.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The status line of a run in real time.
 #include "apps/palpate/touch/live_status.hpp"
 
 #include <fmt/format.h>

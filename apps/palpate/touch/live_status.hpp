@@ -10,7 +10,7 @@
 
 namespace palpate::app {
 
-/// What is told of one hand while a run lasts.
+/// State of one hand during a run.
 struct HandMoment {
   std::string name;
   ServoState servo;    ///< its last step
@@ -22,7 +22,7 @@ struct HandMoment {
   bool ended = false;
 };
 
-/// What is told of a run while it lasts.
+/// State of a run, for its status line.
 struct LiveMoment {
   double time = 0;  ///< since the run began, s
   std::vector<HandMoment> hands;
@@ -57,7 +57,7 @@ class LiveStatus {
   double next_;  // s
 };
 
-/// As much of `line` as fits into `columns`, in whole characters of UTF-8.
+/// The beginning of `line` that fits into `columns`, in whole characters of UTF-8.
 [[nodiscard]] std::string fitted(const std::string& line, std::size_t columns);
 
 }  // namespace palpate::app

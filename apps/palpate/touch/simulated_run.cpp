@@ -1,3 +1,4 @@
+// A run in simulated time.
 #include <fmt/format.h>
 
 #include <vector>

@@ -1,3 +1,4 @@
+// The command touch: plans a run, runs it, reports.
 #include "apps/palpate/touch/touch.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Prints where the page is, with a QR code.
 #include "apps/palpate/view/address.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace palpate::app {
 namespace {
 
-// As text; empty: it has none by which others reach it.
+// The interface's address as text; empty if others cannot reach it.
 std::string address_of(const ifaddrs& interface) {
   const bool up = (interface.ifa_flags & IFF_UP) != 0 && (interface.ifa_flags & IFF_LOOPBACK) == 0;
   if (!up || interface.ifa_addr == nullptr || interface.ifa_addr->sa_family != AF_INET) return {};

@@ -1,3 +1,4 @@
+// Draws QR codes with libqrencode.
 #include <qrencode.h>
 
 #include <memory>

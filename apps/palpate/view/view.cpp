@@ -1,3 +1,4 @@
+// Connects a run with its page.
 #include "apps/palpate/view/view.hpp"
 
 #include <fmt/format.h>

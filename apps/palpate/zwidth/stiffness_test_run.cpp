@@ -1,3 +1,4 @@
+// Measures on a device which walls are stable for a person's hand.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -83,7 +84,7 @@ void ask(const StiffnessTestRunOptions& options) {
   if (answer != "yes") throw UsageError("not confirmed with yes; the device was not moved");
 }
 
-// What the hand is to do, whenever that changes.
+// Prints what the hand should do, when that changes.
 StiffnessTest::State lead(TrialThread& thread, const Interruption& interruption) {
   std::string said;
   while (thread.runs() && !interruption.asked()) {

@@ -1,3 +1,4 @@
+// The command zwidth: simulates how stiff a wall may be.
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
 #include <fmt/format.h>
@@ -88,7 +89,7 @@ ZWidthRow measure(WallOptions wall) {
   return row;
 }
 
-// What was not found below the stiffest wall that is tried.
+// "> N" where the limit is above the stiffest wall that is tried.
 std::string stiffness(double newtons_per_metre) {
   if (newtons_per_metre >= kStiffestWall) return fmt::format("> {:.0f}", kStiffestWall);
   return fmt::format("{:.0f}", newtons_per_metre);
@@ -163,7 +164,7 @@ std::string csv(const ZWidthMap& map) {
   return text;
 }
 
-// As data, and what figures.py is told.
+// The result as JSON, also the input of figures.py.
 Json facts(const ZWidthMap& map) {
   Json rows = Json::array();
   for (const ZWidthRow& row : map.rows) {

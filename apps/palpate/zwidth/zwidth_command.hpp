@@ -1,3 +1,4 @@
+// The command zwidth.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@ class App;
 
 namespace palpate::app {
 
-/// What a map of walls is made for. What is empty is chosen.
+/// Parameters of a map of walls; empty ones get defaults.
 struct ZWidthOptions {
   std::string profile = "simulated";  ///< a name that is known
   std::string profiles;               ///< file that has it; empty: what comes with palpate

@@ -176,12 +176,12 @@ TEST(DoctorRos, LooksAtDomainRangeAndSettings) {
   EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "233"}}), Severity::problem);
   EXPECT_EQ(severity("ROS_DOMAIN_ID", {{"ROS_DOMAIN_ID", "4x"}}), Severity::problem);
   const char* range = "ROS_AUTOMATIC_DISCOVERY_RANGE";
-  EXPECT_EQ(severity("who is told", {{range, "SUBNET"}}), Severity::good);
-  EXPECT_EQ(severity("who is told", {{range, "SUBNET"}, {"ROS_LOCALHOST_ONLY", "1"}}),
+  EXPECT_EQ(severity("visible to", {{range, "SUBNET"}}), Severity::good);
+  EXPECT_EQ(severity("visible to", {{range, "SUBNET"}, {"ROS_LOCALHOST_ONLY", "1"}}),
             Severity::note);
-  EXPECT_EQ(severity("who is told", {{range, "OFF"}}), Severity::note);
-  EXPECT_EQ(severity("who is told", {{range, "MOON"}}), Severity::problem);
-  EXPECT_EQ(severity("who is told", {{"ROS_STATIC_PEERS", "robot"}}), Severity::good);
+  EXPECT_EQ(severity("visible to", {{range, "OFF"}}), Severity::note);
+  EXPECT_EQ(severity("visible to", {{range, "MOON"}}), Severity::problem);
+  EXPECT_EQ(severity("visible to", {{"ROS_STATIC_PEERS", "robot"}}), Severity::good);
   EXPECT_EQ(severity("CYCLONEDDS_URI", {{"CYCLONEDDS_URI", "file:///etc/cyclone.xml"}}),
             Severity::problem);
   machine.file("etc/cyclone.xml", "<CycloneDDS/>");

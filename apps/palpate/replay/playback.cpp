@@ -1,73 +1,70 @@
-#include "apps/palpate/replay/player.hpp"
+// Plays a recorded run, or shows it at any moment.
+#include "apps/palpate/replay/playback.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
 #include <iterator>
-#include <map>
 #include <utility>
 
 #include "apps/palpate/record/options_json.hpp"
-#include "apps/palpate/replay/replayed_run.hpp"
 #include "message/transforms.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPicture{8};
-constexpr std::chrono::milliseconds kFrame{25};
-constexpr double kNews = 0.5;  // s between two envelopes, while the file is read
+constexpr std::chrono::milliseconds kPicture{8};  // between shown steps: 125 Hz; judgement
+constexpr std::chrono::milliseconds kFrame{25};   // between looks for frames: 40 Hz; judgement
+constexpr double kNews = 0.5;  // s between two envelopes while the file is read; judgement
 
 }  // namespace
 
-Player::Player(const std::string& path)
-    : path_(path),
-      reader_(path),
-      setup_(recorded_setup(reader_, path)),
-      stretch_(stretch_of(path, reader_, setup_)),
+Playback::Playback(const std::string& path)
+    : recording_(path),
+      stretch_(recording_.stretch()),
       envelope_(kEnvelope, 0.0F),
-      pasts_(setup_.at("hands").size()),
+      pasts_(recording_.hands().size()),
       fields_(pasts_.size()) {
-  for (std::size_t i = 0; i < setup_.at("sources").size(); ++i) {
-    sources_.emplace_back(path, reader_, setup_, i, scene_);
+  for (std::size_t i = 0; i < recording_.sources().size(); ++i) {
+    sources_.emplace_back(recording_, i, scene_);
   }
   for (std::size_t i = 0; i < pasts_.size(); ++i) {
-    hands_.emplace_back(path, reader_, setup_, i, scene_);
+    hands_.emplace_back(recording_, i, scene_);
     hands_.back().seek(stretch_.begin);
     fields_[i].push_back({stretch_.begin, hands_.back().servo().field()});
   }
 }
 
-Player::~Player() {
+Playback::~Playback() {
   stop();
 }
 
-std::vector<Servo*> Player::servos() {
+std::vector<Servo*> Playback::servos() {
   std::vector<Servo*> servos;
   for (ShownHand& hand : hands_) servos.push_back(&hand.servo());
   return servos;
 }
 
-void Player::start(Listener listener) {
+void Playback::start(Listener listener) {
   listener_ = std::move(listener);
-  const auto run = [this](void (Player::*work)(const std::stop_token&)) {
+  const auto run = [this](void (Playback::*work)(const std::stop_token&)) {
     threads_.emplace_back(
         [this, work](const std::stop_token& stop) { guard([&] { (this->*work)(stop); }); });
   };
-  run(&Player::show_steps);
-  run(&Player::read_forces);
+  run(&Playback::show_steps);
+  run(&Playback::read_forces);
   const bool live = std::ranges::any_of(sources_, &ShownSource::lives);
-  if (live) run(&Player::show_frames);
+  if (live) run(&Playback::show_frames);
 }
 
-void Player::stop() {
+void Playback::stop() {
   threads_.clear();
 }
 
-// What is damaged ends its thread alone.
-void Player::guard(const std::function<void()>& work) {
+// Damaged data end their thread alone.
+void Playback::guard(const std::function<void()>& work) {
   try {
     work();
   } catch (const std::exception& error) {
@@ -75,12 +72,12 @@ void Player::guard(const std::function<void()>& work) {
   }
 }
 
-Player::TimeLine::Moment Player::moment() const {
+Playback::TimeLine::Moment Playback::moment() const {
   const std::lock_guard lock(mutex_);
   return moment_;
 }
 
-void Player::seek(double time) {
+void Playback::seek(double time) {
   {
     const std::lock_guard lock(mutex_);
     sought_ = moment_.time = std::clamp(time, 0.0, length());
@@ -88,7 +85,7 @@ void Player::seek(double time) {
   changed_.notify_all();
 }
 
-void Player::play(bool on, double speed) {
+void Playback::play(bool on, double speed) {
   {
     const std::lock_guard lock(mutex_);
     if (on && !moment_.playing && moment_.time >= length()) sought_ = moment_.time = 0;
@@ -98,17 +95,17 @@ void Player::play(bool on, double speed) {
   changed_.notify_all();
 }
 
-std::vector<float> Player::envelope() const {
+std::vector<float> Playback::envelope() const {
   const std::lock_guard lock(mutex_);
   return envelope_;
 }
 
-std::vector<Player::TimeLine::Force> Player::past(std::size_t hand) const {
+std::vector<Playback::TimeLine::Force> Playback::past(std::size_t hand) const {
   const std::lock_guard lock(mutex_);
   return pasts_[hand];
 }
 
-std::vector<ViewerOptions::Stream> Player::streams() const {
+std::vector<ViewerOptions::Stream> Playback::streams() const {
   std::vector<ViewerOptions::Stream> streams;
   for (const ShownSource& source : sources_) {
     if (source.lives()) streams.push_back(source.stream());
@@ -116,7 +113,7 @@ std::vector<ViewerOptions::Stream> Player::streams() const {
   return streams;
 }
 
-void Player::show_steps(const std::stop_token& stop) {
+void Playback::show_steps(const std::stop_token& stop) {
   double looked = clock_.now();
   while (!stop.stop_requested()) {
     std::optional<double> sought;
@@ -138,7 +135,7 @@ void Player::show_steps(const std::stop_token& stop) {
   }
 }
 
-void Player::jump(double time, const std::stop_token& stop) {
+void Playback::jump(double time, const std::stop_token& stop) {
   for (ShownHand& hand : hands_) hand.seek(stretch_.begin + time);
   show_fields(stretch_.begin + time);
   const auto cancelled = [&] {
@@ -153,7 +150,7 @@ void Player::jump(double time, const std::stop_token& stop) {
   if (!cancelled()) listener_.changed();
 }
 
-void Player::advance(double elapsed) {
+void Playback::advance(double elapsed) {
   double time = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -166,7 +163,7 @@ void Player::advance(double elapsed) {
 }
 
 // The surface around a tool is that of the field which its hand felt.
-void Player::show_fields(double time) {
+void Playback::show_fields(double time) {
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     FieldOptions field;
     {
@@ -178,7 +175,7 @@ void Player::show_fields(double time) {
   }
 }
 
-void Player::show_frames(const std::stop_token& stop) {
+void Playback::show_frames(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     const double time = moment().time;
     for (ShownSource& source : sources_) {
@@ -190,26 +187,13 @@ void Player::show_frames(const std::stop_token& stop) {
   }
 }
 
-void Player::read_forces(const std::stop_token& stop) {
-  std::map<std::string, std::size_t> topics;  // with the hand
-  for (std::size_t i = 0; i < hands_.size(); ++i) {
-    const auto topic = setup_.at("hands").at(i).at("topic").get<std::string>();
-    topics[topic + "/tick"] = topics[topic + "/change"] = i;
-  }
-  bag::McapReader reader(path_, reader_.contents());
-  reader.choose([&](const bag::Channel& each) { return topics.contains(each.topic); });
+void Playback::read_forces(const std::stop_token& stop) {
+  Recording::Steps steps(recording_);
   double told = clock_.now();
-  for (bag::Message message; !stop.stop_requested() && reader.next(message);) {
-    const bag::Channel& channel = reader.channel_of(message);
-    if (channel.topic.ends_with("/tick")) {
-      message::Tick tick;
-      message::decode(message.data, tick);
-      take(tick);
-    } else {
-      message::Change change;
-      message::decode(message.data, change);
-      take(topics.at(channel.topic), change);
-    }
+  while (!stop.stop_requested()) {
+    const std::optional<Recording::Step> step = steps.next();
+    if (!step) break;
+    take(*step);
     if (clock_.now() - told < kNews) continue;
     told = clock_.now();
     listener_.changed();
@@ -217,25 +201,19 @@ void Player::read_forces(const std::stop_token& stop) {
   if (!stop.stop_requested()) listener_.changed();
 }
 
-void Player::take(const message::Tick& tick) {
+void Playback::take(const Recording::Step& step) {
   const double part = std::max(length(), 1e-3) / static_cast<double>(kEnvelope);
-  const double at = std::floor((tick.time - stretch_.begin) / part);
+  const double at = std::floor((step.tick.time - stretch_.begin) / part);
   const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, double{kEnvelope - 1}));
-  const auto force = static_cast<float>(message::eigen(tick.force).norm());
+  const auto force = static_cast<float>(message::eigen(step.tick.force).norm());
   const std::lock_guard lock(mutex_);
   envelope_[i] = std::max(envelope_[i], force);
-}
-
-void Player::take(std::size_t hand, const message::Change& change) {
-  if (change.what != "field") return;
-  FieldChange field;
-  const auto epoch = setup_.at("epoch_ns").get<std::int64_t>();
-  const std::int64_t stamp =
-      std::int64_t{1'000'000'000} * change.header.stamp.sec + change.header.stamp.nanosec;
-  field.time = 1e-9 * static_cast<double>(stamp - epoch) - 1e-6;  // before its step
-  take_exact(Json::parse(change.value), field.field);
-  const std::lock_guard lock(mutex_);
-  fields_[hand].push_back(field);
+  for (const message::Change& change : step.changes) {
+    if (change.what != "field") continue;
+    FieldOptions field;
+    take_exact(Json::parse(change.value), field);
+    fields_[step.hand].push_back({step.tick.time, field});
+  }
 }
 
 }  // namespace palpate::app

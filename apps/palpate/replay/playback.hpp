@@ -10,10 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/record/recording.hpp"
 #include "apps/palpate/replay/shown_run.hpp"
-#include "bag/mcap_reader.hpp"
-#include "message/palpate_types.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
@@ -24,11 +22,11 @@ namespace palpate::app {
 /// A recorded run that goes by as it did, or is shown at any moment, in a scene and servos that
 /// nobody steps. Threads of its own read the file: one the steps, one the frames, one all forces
 /// once. Times from 0 at the run's first step. Holds no more of the file than what is shown.
-class Player {
+class Playback {
  public:
   using TimeLine = ViewerControls::TimeLine;
 
-  /// What the player tells, on its threads.
+  /// Callbacks on the playback's threads.
   struct Listener {
     std::function<void()> changed;  ///< there is another envelope, or another past
     std::function<void(const std::string&)> complain;  ///< what is damaged
@@ -38,16 +36,16 @@ class Player {
   static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
 
   /// Shows the first moment. @throws Error when the file is no recording of a run.
-  explicit Player(const std::string& path);
-  ~Player();
-  Player(const Player&) = delete;
-  Player& operator=(const Player&) = delete;
+  explicit Playback(const std::string& path);
+  ~Playback();
+  Playback(const Playback&) = delete;
+  Playback& operator=(const Playback&) = delete;
 
   [[nodiscard]] Scene& scene() { return scene_; }
   [[nodiscard]] std::vector<Servo*> servos();
   [[nodiscard]] double length() const { return stretch_.end - stretch_.begin; }
   /// Was the run in the axes of a camera's picture, y down?
-  [[nodiscard]] bool in_picture_axes() const { return setup_.value("picture_axes", false); }
+  [[nodiscard]] bool in_picture_axes() const { return recording_.in_picture_axes(); }
 
   /// Starts the threads. From now on any thread may call the rest; stop() ends what is told.
   void start(Listener listener);
@@ -75,13 +73,10 @@ class Player {
   void show_fields(double time);
   void show_frames(const std::stop_token& stop);
   void read_forces(const std::stop_token& stop);
-  void take(const message::Tick& tick);
-  void take(std::size_t hand, const message::Change& change);
+  void take(const Recording::Step& step);
 
-  std::string path_;
-  bag::McapReader reader_;
-  Json setup_;
-  Stretch stretch_;
+  Recording recording_;
+  Recording::Stretch stretch_;
   Scene scene_;
   std::deque<ShownSource> sources_;
   std::deque<ShownHand> hands_;

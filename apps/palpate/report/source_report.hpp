@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "apps/palpate/report/report.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
+
+namespace palpate::app {
+
+/// Advice for a cloud that is on_a_line().
+inline constexpr const char* kNoSurface =
+    "all points are at one place or on a line, where no surface is";
+
+/// Report on a source of a run; for a camera also on its frames.
+[[nodiscard]] Report source_report(const LoadedSource& source);
+
+/// The same of a camera.
+[[nodiscard]] Report camera_report(const LoadedSource& source);
+
+/// Says how much of a cloud has low trust, where it is a hundredth or more.
+void add_trust(Report& report, const Prepared::Report& prepared);
+
+/// Adds the row "organised": "640 x 480 pixels, focal length 525 px, `processed`".
+void add_organised(Report& report, const CameraModel& camera, const std::string& processed);
+
+}  // namespace palpate::app
