@@ -66,9 +66,6 @@ Contender of_clouds(Policy policy, int history) {
     case Policy::crossfade:
       contender.name = with_history("crossfade", history);
       break;
-    case Policy::fusion:
-      contender.name = "fusion";
-      break;
     default:
       contender.name = "replace";
       break;

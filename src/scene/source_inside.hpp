@@ -15,7 +15,7 @@
 #include "palpate/scene/source.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/handoff.hpp"
-#include "scene/policies/fusion.hpp"
+#include "scene/policies/layer_history.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
 #include "scene/sight.hpp"
@@ -99,7 +99,6 @@ class SnapshotBuilder {
 
   [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
                                                   const FrameTiming& moment);
-  [[nodiscard]] std::shared_ptr<Snapshot> fused(const FrameTiming& moment);
   [[nodiscard]] FrameTiming next_timing(double stamp, const Source::StartTime& start);
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
@@ -116,7 +115,6 @@ class SnapshotBuilder {
   DepthFilter filter_;
   Morph morph_;
   LayerHistory layers_;
-  Fusion fusion_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
   Snapshot last_;      // without its layers

@@ -21,7 +21,6 @@ struct Named {
 inline constexpr std::array<Named<Policy>, 5> kPolicies = {{{"replace", Policy::replace},
                                                             {"average", Policy::average},
                                                             {"crossfade", Policy::crossfade},
-                                                            {"fusion", Policy::fusion},
                                                             {"morph", Policy::morph}}};
 
 inline constexpr std::array<Named<FieldOptions::Kind>, 3> kFields = {
