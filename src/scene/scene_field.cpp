@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
+#include "scene/patch_cache.hpp"
 #include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
 
@@ -95,7 +96,7 @@ struct SceneField::State {
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
   std::uint32_t stride = 1;  // of the near patch
-  Patches patches{surface};
+  PatchCache patches{surface};
 };
 
 /// Are the views' snapshots those of the last call? None comes to the address of one shown last.
@@ -197,13 +198,13 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (changed) {
     const bool same = state.same_snapshots();
     state.list_layers();
-    state.patches.show(state.active(), state.sources(), same);
+    state.patches.set_layers(state.active(), state.sources(), same);
     ++state.revision;
   }
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
-    state.patches.stand(proxy);
+    state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();
     state.publish_reach(hip, proxy);
@@ -217,7 +218,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  const Patch* const patch = state.patches.at({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
@@ -228,7 +229,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
-  const Patch* const patch = state.patches.at(ball, state.margin());
+  const Patch* const patch = state.patches.patch_for(ball, state.margin());
   return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
@@ -255,7 +256,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
-  const Patch* const patch = state.patches.at({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> sure{};
   std::ranges::transform(state.views, sure.begin(), &SourceView::presence);
