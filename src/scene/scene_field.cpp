@@ -20,20 +20,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far a patch reaches beyond what it was gathered for, also where points move and proxies look
-// for the surface farther off, and what is left of that before the next one is gathered; in R.
+// How far a patch reaches beyond what it is gathered for, at rest and where points move, and how
+// much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
 constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
-constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surface out in full
+constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
 
-// The smallest share of the mean radius that sweeps still follow.
+// The smallest share of the mean radius that sweeps still follow (judgement).
 constexpr double kFinest = 0.25;
 
-// A surface may rise this fast and still take a resting proxy along, m/s.
-constexpr double kFastestCloud = 0.5;  // from cloud to cloud
-
-constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
+// A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
+constexpr double kFastestCloud = 0.5;
+constexpr double kFelt = 2;  // R around a tool; normals beside rims need neighbours (judgement)
 
 }  // namespace
 

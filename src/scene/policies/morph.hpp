@@ -14,6 +14,7 @@
 #include "palpate/geometry/shapes.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/policies/block_surface.hpp"
+#include "scene/policies/fate.hpp"
 #include "scene/policies/point_writer.hpp"
 
 namespace palpate {
@@ -129,7 +130,9 @@ class Morph {
   [[nodiscard]] PointStates old_points(std::uint32_t i) const;
   void follow(const Four& seen, FourWays& ways) const;
   [[nodiscard]] static Point point_of(const Four& seen, int lane);
-  void hold_one(std::span<const std::uint32_t> old, const Point& point, Piece& to) const;
+  [[nodiscard]] bool is_sure(const FilteredDepth& depth, const Point& point, std::uint32_t partner,
+                             const PointState& before) const;
+  [[nodiscard]] Way way_of(Fate fate, std::uint32_t i) const;
   [[nodiscard]] PointState old_point(std::uint32_t i) const;
   [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const;
   [[nodiscard]] float speed_of(std::uint32_t i) const;
