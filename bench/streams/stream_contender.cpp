@@ -1,3 +1,4 @@
+// Sets up the ways to make surfaces of streams that are compared.
 #include "streams/stream_contender.hpp"
 
 #include "accuracy/path.hpp"

@@ -1,3 +1,4 @@
+// Lists the experiments of table B and runs them.
 #include "streams/stream_experiments.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Shows a scene to one servo: follows its sources and answers from patches.
 #include "palpate/scene/scene_field.hpp"
 
 #include <algorithm>
@@ -26,9 +27,7 @@ constexpr double kMargin = 0.35;
 constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
 constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
-
-// The smallest share of the mean radius that sweeps still follow (judgement).
-constexpr double kFinest = 0.25;
+constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps follow (judgement)
 
 // A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
 constexpr double kFastestCloud = 0.5;

@@ -1,3 +1,4 @@
+// Makes snapshots of the frames and clouds that are pushed into a source.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Holds what a source is made of: its snapshot builder, its state and its handoff.
 #pragma once
 
 #include <array>

@@ -1,3 +1,4 @@
+// Follows the snapshots of one source in time, as one reader sees them.
 #include <fmt/core.h>
 
 #include <algorithm>

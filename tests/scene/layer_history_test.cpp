@@ -1,3 +1,4 @@
+// Checks the weights of replace, average and crossfade.
 #include "scene/policies/layer_history.hpp"
 
 #include <gtest/gtest.h>

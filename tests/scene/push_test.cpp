@@ -1,3 +1,4 @@
+// Checks what pushed frames and clouds become under each policy.
 #include <gtest/gtest.h>
 
 #include <algorithm>

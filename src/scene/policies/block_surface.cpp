@@ -1,3 +1,4 @@
+// Measures radii, areas and precisions of the points of a depth frame.
 #include "scene/policies/block_surface.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Finds where the faces of a depth frame meet.
 #include <algorithm>
 #include <cmath>
 

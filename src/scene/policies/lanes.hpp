@@ -1,3 +1,4 @@
+// Defines vectors of four lanes, for loops over blocks and points.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// Makes the surface of a depth frame out of the one before it.
 #include "scene/policies/morph.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Declares the policy for depth streams, its options and its input.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,12 +1,10 @@
+// Gathers the facts on which the fate of each point depends, and moves it accordingly.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "scene/policies/morph.hpp"
-
-// Gathers the facts on which the fate of each point of a morphing surface depends, and makes its
-// displacement of that fate.
 
 namespace palpate {
 namespace {

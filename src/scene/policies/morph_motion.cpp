@@ -1,9 +1,8 @@
+// Decides whether a point goes to where its block shows a surface now, and how far.
 #include <algorithm>
 #include <cmath>
 
 #include "scene/policies/morph.hpp"
-
-// Whether a point of a morphing surface goes to where its block shows a surface now, and how far.
 
 namespace palpate {
 namespace {

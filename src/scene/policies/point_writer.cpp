@@ -1,3 +1,4 @@
+// Orders the blocks of an image and writes moving points into columns.
 #include "scene/policies/point_writer.hpp"
 
 #include <algorithm>
