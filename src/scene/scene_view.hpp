@@ -44,14 +44,14 @@ class SourceView {
   /// Snapshot::publication of the newest snapshot that it took; 0: none yet.
   [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
 
-  /// What all supports are widened to now, m.
+  /// The radius to which all supports are widened now, m.
   [[nodiscard]] double least_radius() const noexcept { return least_radius_; }
 
   /// The reader's place at the source.
   [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
 
  private:
-  /// What is remembered of a snapshot that is let go.
+  /// Remembers the times of a snapshot that is released.
   struct Times {
     double start = 0;
     double end = 0;
@@ -84,7 +84,7 @@ class SourceView {
   double faded_ = 0;  // time since presence came to 0, s
 };
 
-/// What a place of a source's surface feels like.
+/// The stiffness and friction factors at a position of a source's surface.
 [[nodiscard]] inline Surface felt_surface(const PatchSurface& mean,
                                           const SourceOptions::SoftMaterial& soft) noexcept {
   Surface result;

@@ -198,7 +198,7 @@ PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival&
   return select(cloud, inside);
 }
 
-/// What the noise is at the median depth of the image.
+/// Keeps the noise model and the median depth of the image.
 void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
   constexpr std::size_t kStep = 37;  // a sample is enough
   noise_ = depth.noise;

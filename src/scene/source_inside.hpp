@@ -47,7 +47,7 @@ class Seams {
     return least_radii_[place];
   }
 
-  /// What it is until the next compare(): a run that is done again knows what it was.
+  /// Sets it until the next compare(), for a replay that knows what it was.
   void set_least_radius(std::size_t place, double radius) noexcept {
     least_radii_[place].store(radius);
   }
@@ -67,7 +67,7 @@ struct Arrival {
 };
 
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
-/// it; what it gives out comes back to it by itself and is used again.
+/// it. Recycles the memory of snapshots that no reader holds.
 class SnapshotBuilder {
  public:
   /// @throws Error when an option is out of its range.
@@ -126,7 +126,7 @@ class SnapshotBuilder {
   std::vector<float> depths_;
 };
 
-/// What a source is made of; its scene and the fields of that reach into it.
+/// The parts of a source. Its scene and the fields of that scene use them.
 struct Source::Inside {
   void take_change();
   [[nodiscard]] bool room_for(bool clouds);

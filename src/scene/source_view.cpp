@@ -17,7 +17,7 @@ constexpr double kPatience = 1;
 // follow it with a delay (EnergyTank::kTime, a fifth of this). s
 constexpr double kLinger = 0.1;
 
-// In which its weights fade then, s.
+// The time in which its weights fade then, s.
 constexpr double kLeave = 0.3;
 
 // A late snapshot catches up within this share of its duration, and more the later it is.
@@ -109,9 +109,8 @@ void SourceView::change_over(double now) noexcept {
   begin(before);
 }
 
-/// One that was published after its start begins where the surface is, and makes up for the delay.
-/// What moves is taken to go on as it did: of its way from A to B, the old surface has gone the
-/// part that it went since that start.
+/// Begins a snapshot. One that was published after its start begins where the surface is and
+/// catches up. Its lag is less by the part of A to B that the old surface has moved since then.
 void SourceView::begin(const Times& before) noexcept {
   const bool same = before.sequence > 0 && before.sequence == current_->sequence;
   if (same && before.start == current_->start) return;  // the one that was shown, kept on

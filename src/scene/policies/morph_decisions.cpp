@@ -128,7 +128,7 @@ Way Morph::appear(const Point& point) const {
   return {from, to, EdgeWay{edge, edge}, Entry{moment_.stamp, point.variance}};
 }
 
-/// Of a time that something takes, s, how much a snapshot lasts.
+/// The snapshot's duration as a share of `time`, s.
 float Morph::share_of(double time) const {
   return static_cast<float>(moment_.duration / time);
 }

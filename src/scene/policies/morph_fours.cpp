@@ -149,7 +149,7 @@ bool Morph::goes_on(const Four& seen, FourWays& ways) const {
   return true;
 }
 
-/// As one follows that is within R.
+/// Does what the other follow() does for a point within R, in four lanes.
 void Morph::follow(const Four& seen, FourWays& ways) const {
   const Floats whole = Floats{} + 1.0f;
   const PointStates& from = ways.from;
