@@ -18,7 +18,7 @@ struct Named {
   Choice choice;
 };
 
-inline constexpr std::array<Named<Policy>, 5> kPolicies = {{{"replace", Policy::replace},
+inline constexpr std::array<Named<Policy>, 4> kPolicies = {{{"replace", Policy::replace},
                                                             {"average", Policy::average},
                                                             {"crossfade", Policy::crossfade},
                                                             {"morph", Policy::morph}}};
