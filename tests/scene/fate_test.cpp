@@ -6,20 +6,20 @@
 namespace palpate {
 namespace {
 
-constexpr float kRadius = 0.01f;
+constexpr float kShownRadius = 0.01f;
 
-FateFacts shown(float beyond) {
-  return {.shown = true, .beyond = beyond, .radius = kRadius, .may_hide = true};
+FateFacts facts_at(float beyond) {
+  return {.shown = true, .beyond = beyond, .radius = kShownRadius, .may_hide = true};
 }
 
-FateFacts of(EntryKind kind, FateFacts facts = {}) {
+FateFacts with_kind(EntryKind kind, FateFacts facts = {}) {
   facts.kind = kind;
   return facts;
 }
 
 TEST(Fate, WhatIsSeenAgainFollows) {
   for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::going}) {
-    EXPECT_EQ(fate(of(kind, {.shown = true, .same = true})), Fate::follow);
+    EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::follow);
   }
 }
 
@@ -28,48 +28,49 @@ TEST(Fate, WhatIsSeenElsewhereByNoNeighbourStays) {
 }
 
 TEST(Fate, WhatIsBehindSomethingNearerIsHidden) {
-  EXPECT_EQ(fate(shown(0.1f)), Fate::hide);
-  EXPECT_EQ(fate(of(EntryKind::hidden, shown(0.1f))), Fate::hide);
+  EXPECT_EQ(fate(facts_at(0.1f)), Fate::hide);
+  EXPECT_EQ(fate(with_kind(EntryKind::hidden, facts_at(0.1f))), Fate::hide);
 }
 
 TEST(Fate, ABlockRemembersOneHiddenSurface) {
-  FateFacts facts = shown(0.1f);
+  FateFacts facts = facts_at(0.1f);
   facts.may_hide = false;
   EXPECT_EQ(fate(facts), Fate::go);
 }
 
 TEST(Fate, WhatIsBeforeSomethingFartherIsGone) {
   for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::going}) {
-    EXPECT_EQ(fate(of(kind, shown(-0.1f))), Fate::go);
+    EXPECT_EQ(fate(with_kind(kind, facts_at(-0.1f))), Fate::go);
   }
 }
 
 TEST(Fate, WhatGoesDoesNotHide) {
-  EXPECT_EQ(fate(of(EntryKind::going, shown(0.1f))), Fate::go);
+  EXPECT_EQ(fate(with_kind(EntryKind::going, facts_at(0.1f))), Fate::go);
 }
 
 TEST(Fate, ASecondPointOfOneSurfaceLeaves) {
-  for (const float beyond : {-kRadius, 0.0f, kRadius}) EXPECT_EQ(fate(shown(beyond)), Fate::leave);
+  for (const float beyond : {-kShownRadius, 0.0f, kShownRadius})
+    EXPECT_EQ(fate(facts_at(beyond)), Fate::leave);
   EXPECT_EQ(fate({.second = true}), Fate::leave);
 }
 
 TEST(Fate, WhatNothingIsMeasuredOfIsHeld) {
   for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::outside}) {
-    EXPECT_EQ(fate(of(kind)), Fate::hold);
+    EXPECT_EQ(fate(with_kind(kind)), Fate::hold);
   }
-  EXPECT_EQ(fate(of(EntryKind::going)), Fate::go);
+  EXPECT_EQ(fate(with_kind(EntryKind::going)), Fate::go);
 }
 
 TEST(Fate, WhatLeftTheImageIsHeldWhateverTheBlockShows) {
   for (const float beyond : {-0.1f, 0.0f, 0.1f}) {
-    EXPECT_EQ(fate(of(EntryKind::outside, shown(beyond))), Fate::hold);
+    EXPECT_EQ(fate(with_kind(EntryKind::outside, facts_at(beyond))), Fate::hold);
   }
 }
 
 TEST(Fate, WhatLeavesIsGoneForGood) {
-  EXPECT_EQ(fate(of(EntryKind::leaving)), Fate::leave);
+  EXPECT_EQ(fate(with_kind(EntryKind::leaving)), Fate::leave);
   for (const float beyond : {-0.1f, 0.0f, 0.1f}) {
-    EXPECT_EQ(fate(of(EntryKind::leaving, shown(beyond))), Fate::leave);
+    EXPECT_EQ(fate(with_kind(EntryKind::leaving, facts_at(beyond))), Fate::leave);
   }
 }
 
