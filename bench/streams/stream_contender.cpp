@@ -1,3 +1,4 @@
+// Sets up the ways to make surfaces of streams that are compared.
 #include "streams/stream_contender.hpp"
 
 #include "accuracy/path.hpp"
@@ -65,9 +66,6 @@ Contender of_clouds(Policy policy, int history) {
       break;
     case Policy::crossfade:
       contender.name = with_history("crossfade", history);
-      break;
-    case Policy::fusion:
-      contender.name = "fusion";
       break;
     default:
       contender.name = "replace";

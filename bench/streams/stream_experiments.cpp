@@ -1,3 +1,4 @@
+// Lists the experiments of table B and runs them.
 #include "streams/stream_experiments.hpp"
 
 #include <algorithm>
@@ -19,12 +20,11 @@ std::vector<Contender> policies() {
           of_clouds(Policy::replace, 1),
           of_clouds(Policy::average, 4),
           of_clouds(Policy::crossfade, 4),
-          of_clouds(Policy::fusion, 1),
           morph()};
 }
 
 std::vector<Contender> on_moving_surfaces() {
-  return {papers_way(4), of_clouds(Policy::crossfade, 1), of_clouds(Policy::fusion, 1), morph()};
+  return {papers_way(4), of_clouds(Policy::crossfade, 1), morph()};
 }
 
 std::vector<Contender> figure_seven() {

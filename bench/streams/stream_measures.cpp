@@ -1,3 +1,4 @@
+// Measures steps, vibration and errors of a run.
 #include "streams/stream_measures.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Runs hands on a simulated stream.
 #include "streams/stream_run.hpp"
 
 #include <algorithm>

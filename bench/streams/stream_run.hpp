@@ -6,7 +6,7 @@
 
 namespace palpate::streams {
 
-/// What one tool felt, tick by tick.
+/// The forces on one tool, tick by tick.
 struct StreamTrace {
   accuracy::Trace felt;                 ///< raw K (p - h), and the proxy
   std::vector<Eigen::Vector3d> normal;  ///< of the field at the proxy, unit; zero: no surface there

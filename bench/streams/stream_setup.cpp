@@ -1,3 +1,4 @@
+// Sets up scenes, cameras and paths of the experiments.
 #include "streams/stream_setup.hpp"
 
 #include <cmath>

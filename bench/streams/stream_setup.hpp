@@ -10,7 +10,7 @@ namespace palpate::streams {
 
 using accuracy::kTick;
 
-/// What is seen, by whom, and where the hand goes. Ticks are 1 ms; tick 0 is the scene's time 0.
+/// A scene, its cameras and the hand's path. Ticks are 1 ms; tick 0 is the scene's time 0.
 struct Setup {
   SimulatedScene scene;
   std::vector<SimulatedCameraOptions> cameras;

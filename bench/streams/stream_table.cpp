@@ -1,3 +1,4 @@
+// Prints table B and its targets.
 #include "streams/stream_table.hpp"
 
 #include <fmt/format.h>

@@ -19,7 +19,7 @@ _Matrix = Union[NDArray[Any], Sequence[Sequence[float]]]
 """(4, 4): a rigid motion."""
 _Path = Union[str, os.PathLike[str]]
 _Cloud = Union["PointCloud", _Path, _Vectors]
-_Policy = Literal["replace", "average", "crossfade", "fusion", "morph"]
+_Policy = Literal["replace", "average", "crossfade", "morph"]
 _Kind = Literal["balanced", "pointset", "metaball"]
 _Kernel = Literal["wyvill", "wendland"]
 _Gradient = Literal["exact", "normal", "printed"]

@@ -74,7 +74,6 @@ void take(Keywords& keywords, PolicyOptions& options) {
                     {{"replace", Policy::replace},
                      {"average", Policy::average},
                      {"crossfade", Policy::crossfade},
-                     {"fusion", Policy::fusion},
                      {"morph", Policy::morph}})) {
     options.policy = policy;
   }

@@ -207,7 +207,7 @@ Sources are added before the first Field or Servo.)";
 
 constexpr const char* kAddStream = R"(A sensor whose clouds are pushed.
 
-Keywords: policy (crossfade, average, replace, fusion), history, silence (s), fade (s), those of prepare().)";
+Keywords: policy (crossfade, average, replace), history, silence (s), fade (s), those of prepare().)";
 
 constexpr const char* kAddCamera = R"(A depth camera whose images are pushed.
 

@@ -29,7 +29,7 @@ class Recycler {
   }
 
  private:
-  /// What is not in use. Owners keep it alive.
+  /// Holds the objects that are not in use. Owners keep it alive.
   class Store {
    public:
     Store() = default;

@@ -1,3 +1,4 @@
+// Keeps the sources of a scene, measures how far their surfaces are apart, and blends them.
 #include "palpate/scene/scene.hpp"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// Shows a scene to one servo: follows its sources and answers from patches.
 #include "palpate/scene/scene_field.hpp"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "field/evaluate.hpp"
+#include "scene/patch_cache.hpp"
 #include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
 
@@ -19,20 +21,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far a patch reaches beyond what it was gathered for, also where points move and proxies look
-// for the surface farther off, and what is left of that before the next one is gathered; in R.
+// How far a patch reaches beyond what it is gathered for, at rest and where points move, and how
+// much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
 constexpr double kMovingMargin = 0.62;
 constexpr double kReserve = 0.1;
-constexpr double kToolShare = 0.3;  // of R: the largest tool that pushes a surface out in full
+constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
+constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps follow (judgement)
 
-// The smallest share of the mean radius that sweeps still follow.
-constexpr double kFinest = 0.25;
-
-// A surface may rise this fast and still take a resting proxy along, m/s.
-constexpr double kFastestCloud = 0.5;  // from cloud to cloud
-
-constexpr double kFelt = 2;  // R that a tool feels: normals beside rims need neighbours, too
+// A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
+constexpr double kFastestCloud = 0.5;
+constexpr double kFelt = 2;  // R around a tool; normals beside rims need neighbours (judgement)
 
 }  // namespace
 
@@ -95,7 +94,7 @@ struct SceneField::State {
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
   std::uint32_t stride = 1;  // of the near patch
-  Patches patches{surface};
+  PatchCache patches{surface};
 };
 
 /// Are the views' snapshots those of the last call? None comes to the address of one shown last.
@@ -197,13 +196,13 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (changed) {
     const bool same = state.same_snapshots();
     state.list_layers();
-    state.patches.show(state.active(), state.sources(), same);
+    state.patches.set_layers(state.active(), state.sources(), same);
     ++state.revision;
   }
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
-    state.patches.stand(proxy);
+    state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();
     state.publish_reach(hip, proxy);
@@ -217,7 +216,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  const Patch* const patch = state.patches.at({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
@@ -228,7 +227,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
-  const Patch* const patch = state.patches.at(ball, state.margin());
+  const Patch* const patch = state.patches.patch_for(ball, state.margin());
   return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
@@ -255,7 +254,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
-  const Patch* const patch = state.patches.at({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> sure{};
   std::ranges::transform(state.views, sure.begin(), &SourceView::presence);

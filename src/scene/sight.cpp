@@ -155,7 +155,7 @@ std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, dou
   return Gap{stretch / plane.inverse - reach, stretch * deviation, whole};
 }
 
-/// What a frame shows on one ray through a ball.
+/// The surface that a frame shows on one ray through a ball.
 struct Look {
   bool outside = false;  // the ray misses the image
   std::optional<Gap> gap;
@@ -251,7 +251,7 @@ void Sight::forget() {
   frames_ = 0;
 }
 
-/// What the newest frame does not tell, the one before tells while it lasts.
+/// Asks the frame before where the newest one measured nothing.
 std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
@@ -280,7 +280,7 @@ void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_wo
   sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
 }
 
-/// So long a frame tells what is free, s.
+/// The age up to which a frame can say what is free, s.
 double Source::Inside::lasts() const {
   const std::lock_guard lock(mutex);
   if (std::isinf(state.silent_from)) return state.silent_from;

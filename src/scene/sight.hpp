@@ -16,8 +16,8 @@ struct PosedFrame {
   NoiseModel noise;
 };
 
-/// What a depth camera's newest frames say of places, from the raw depths: nothing that the
-/// surface is made of takes part in it. One thread shows it frames, any thread asks.
+/// Says whether places are free, from a depth camera's newest raw frames alone. The surface takes
+/// no part in it. One thread shows it frames, any thread asks.
 class Sight {
  public:
   /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
@@ -28,7 +28,7 @@ class Sight {
   /// No frame has come any more.
   void forget();
 
-  /// What they say of a ball at time `now` (s, on the clock of the stamps). A frame counts until it
+  /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until it
   /// is `lasts` old. Nothing: no frame has come.
   [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, double lasts) const;
 

@@ -1,3 +1,4 @@
+// Makes snapshots of the frames and clouds that are pushed into a source.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -35,17 +36,6 @@ void check(const SourceOptions& source) {
   }
 }
 
-/// A filtered frame as a cloud, seen from its origin.
-PointCloud points_of(const FilteredDepth& depth) {
-  PointCloud cloud;
-  cloud.viewpoint = Eigen::Vector3d::Zero();
-  for (std::size_t b = 0; b < depth.size(); ++b) {
-    if (depth.states[b] != FilteredDepth::State::empty)
-      cloud.positions.push_back(depth.positions[b]);
-  }
-  return cloud;
-}
-
 /// Did a camera at the cloud's viewpoint see each point in its pixel? That of a cloud which
 /// somebody took to another frame did not.
 bool is_view(const PointCloud& cloud) {
@@ -73,8 +63,7 @@ SnapshotBuilder::SnapshotBuilder(const SourceOptions& options)
               .kernel = options.prepare.kernel,
               .minimum_radius =
                   std::max(options.prepare.minimum_radius, options.prepare.radius.value_or(0))}),
-      layers_(clouds_, clouds_ == Policy::replace ? 1 : options.policy.history),
-      fusion_(options.prepare) {
+      layers_(clouds_, clouds_ == Policy::replace ? 1 : options.policy.history) {
   last_.presence_end = 0;  // there is none
 }
 
@@ -91,10 +80,6 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const DepthFrame& frame, const A
                                    ? filter_.filter(frame, arrival.T_world_sensor)
                                    : filter_.filter(frame, arrival.T_world_sensor, arrival.reach);
   note_noise(depth);
-  if (frames_ == Policy::fusion) {
-    fusion_.add(points_of(depth), arrival.T_world_sensor, knows_sides());
-    return fused(next_timing(frame.stamp, arrival.start));
-  }
   pinhole_ = frame.camera.pinhole;
   const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
   morph_.look(input);
@@ -132,18 +117,12 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
-        "policy morph works only with depth frames; give replace, average, crossfade or fusion for "
-        "clouds");
+        "policy morph works only with depth frames; give replace, average or crossfade for clouds");
   }
   const bool clips = options_.policy.clip_to_reach && !arrival.reach.empty();
   const PointCloud clipped = clips ? within_reach(cloud, arrival) : PointCloud();
   const PointCloud& wanted = clips ? clipped : cloud;
   if (clips && wanted.empty()) return nullptr;
-  if (clouds_ == Policy::fusion) {
-    fusion_.add(wanted, arrival.T_world_sensor, is_one_view(cloud));
-    report = fusion_.report();
-    return fused(next_timing(stamp, arrival.start));
-  }
   Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
   report = prepared.report;
   std::shared_ptr<SurfacePoints> points = points_.take();
@@ -170,14 +149,6 @@ bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
   return view_ && cloud.normals.empty() && knows_sides();
 }
 
-std::shared_ptr<Snapshot> SnapshotBuilder::fused(const FrameTiming& moment) {
-  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, Policy::fusion);
-  std::shared_ptr<SurfacePoints> points = points_.take();
-  *points = fusion_.surface(moment);
-  snapshot->layers.push_back({std::move(points), 1, 1});
-  return snapshot;
-}
-
 FrameTiming SnapshotBuilder::next_timing(double stamp, const Source::StartTime& start) {
   const FrameTiming moment = interval_filter_.next(stamp, time_of("start", start()));
   if (presence_at(moment.start) <= 0) forget();
@@ -193,7 +164,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::next_snapshot(const FrameTiming& mome
   Snapshot& s = *snapshot;
   s.start = moment.start;
   s.end = moment.start + (moving ? moment.duration : 0);
-  // Under morph and fusion what was not there before fades in point by point.
+  // Under morph what was not there before fades in point by point.
   s.presence_start = first ? (policy == Policy::crossfade ? 0 : 1) : presence_at(moment.start);
   s.presence_end = first ? 1 : std::min(1.0, s.presence_start + moment.duration / fade);
   s.silent_from =
@@ -213,7 +184,6 @@ double SnapshotBuilder::presence_at(double time) const {
 void SnapshotBuilder::forget() {
   morph_.forget();
   layers_.forget();
-  fusion_.forget();
 }
 
 PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival& arrival) const {
@@ -228,7 +198,7 @@ PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival&
   return select(cloud, inside);
 }
 
-/// What the noise is at the median depth of the image.
+/// Keeps the noise model and the median depth of the image.
 void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
   constexpr std::size_t kStep = 37;  // a sample is enough
   noise_ = depth.noise;

@@ -1,3 +1,4 @@
+// Takes frames and clouds, has snapshots made of them, and hands these over to readers.
 #include "palpate/scene/source.hpp"
 
 #include <fmt/core.h>

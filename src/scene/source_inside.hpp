@@ -1,3 +1,4 @@
+// Holds what a source is made of: its snapshot builder, its state and its handoff.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 #include "palpate/scene/source.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/handoff.hpp"
-#include "scene/policies/fusion.hpp"
+#include "scene/policies/layer_history.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
 #include "scene/sight.hpp"
@@ -46,7 +47,7 @@ class Seams {
     return least_radii_[place];
   }
 
-  /// What it is until the next compare(): a run that is done again knows what it was.
+  /// Sets it until the next compare(), for a replay that knows what it was.
   void set_least_radius(std::size_t place, double radius) noexcept {
     least_radii_[place].store(radius);
   }
@@ -66,7 +67,7 @@ struct Arrival {
 };
 
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
-/// it; what it gives out comes back to it by itself and is used again.
+/// it. Recycles the memory of snapshots that no reader holds.
 class SnapshotBuilder {
  public:
   /// @throws Error when an option is out of its range.
@@ -99,7 +100,6 @@ class SnapshotBuilder {
 
   [[nodiscard]] std::shared_ptr<Snapshot> morphed(const MorphInput& input,
                                                   const FrameTiming& moment);
-  [[nodiscard]] std::shared_ptr<Snapshot> fused(const FrameTiming& moment);
   [[nodiscard]] FrameTiming next_timing(double stamp, const Source::StartTime& start);
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
@@ -116,7 +116,6 @@ class SnapshotBuilder {
   DepthFilter filter_;
   Morph morph_;
   LayerHistory layers_;
-  Fusion fusion_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
   Snapshot last_;      // without its layers
@@ -127,7 +126,7 @@ class SnapshotBuilder {
   std::vector<float> depths_;
 };
 
-/// What a source is made of; its scene and the fields of that reach into it.
+/// The parts of a source. Its scene and the fields of that scene use them.
 struct Source::Inside {
   void take_change();
   [[nodiscard]] bool room_for(bool clouds);

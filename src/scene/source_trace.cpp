@@ -1,3 +1,4 @@
+// Reads and imposes what a source depended on, for recordings and replays.
 #include "scene/source_trace.hpp"
 
 #include <algorithm>

@@ -8,13 +8,13 @@
 
 namespace palpate {
 
-/// What a source's surfaces depended on besides frames and options: a recording asks for it, a
-/// replay imposes it. The source, in a scene, outlives it. On the thread that pushes.
+/// Gives recordings what a source's surfaces depended on besides frames and options, and lets
+/// replays impose it. The source, in a scene, outlives it. On the thread that pushes.
 class SourceTrace {
  public:
   explicit SourceTrace(Source& source) : source_(&source) {}
 
-  /// What the last push read: where the fields said that tools can be.
+  /// Where the fields said that tools can be, as the last push read it.
   [[nodiscard]] std::span<const Reach> reach() const;
 
   /// Snapshots that push(), set() and keep() have published so far.
@@ -23,7 +23,7 @@ class SourceTrace {
   /// Options of change() that pushes have taken so far.
   [[nodiscard]] std::uint64_t changes() const;
 
-  /// Those that the last push was made with.
+  /// The options of the last push.
   [[nodiscard]] const SourceOptions& options() const;
 
   /// The next push reads these, at most ReachTable::kPlaces, and nothing of fields.

@@ -1,3 +1,4 @@
+// Follows the snapshots of one source in time, as one reader sees them.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ constexpr double kPatience = 1;
 // follow it with a delay (EnergyTank::kTime, a fifth of this). s
 constexpr double kLinger = 0.1;
 
-// In which its weights fade then, s.
+// The time in which its weights fade then, s.
 constexpr double kLeave = 0.3;
 
 // A late snapshot catches up within this share of its duration, and more the later it is.
@@ -52,15 +53,15 @@ bool SourceView::advance(double now) noexcept {
          least_radius_ != radius_before;
 }
 
-/// Where the points are. What was behind when it began closes up in a straight line.
+/// Where the points are. The lag that a snapshot began with shrinks in a straight line.
 void SourceView::move(double now) noexcept {
   progress_ = current_ ? progress(*current_, now) : 0;
   const double duration = current_ ? current_->end - current_->start : 0;
   rate_ = duration > 0 && progress_ > 0 && progress_ < 1 ? 1 / duration : 0;
   const double left = 1 - (now - begun_) / catch_up_;
-  if (!(behind_ > 0) || left <= 0) return;
-  progress_ = std::max(0.0, progress_ - behind_ * std::min(left, 1.0));
-  if (progress_ < 1) rate_ += behind_ / catch_up_;
+  if (!(lag_ > 0) || left <= 0) return;
+  progress_ = std::max(0.0, progress_ - lag_ * std::min(left, 1.0));
+  if (progress_ < 1) rate_ += lag_ / catch_up_;
 }
 
 void SourceView::fade(double now, double dt) noexcept {
@@ -108,22 +109,21 @@ void SourceView::change_over(double now) noexcept {
   begin(before);
 }
 
-/// One that was published after its start begins where the surface is, and makes up for the delay.
-/// What moves is taken to go on as it did: of its way from A to B, the old surface has gone the
-/// part that it went since that start.
+/// Begins a snapshot. One that was published after its start begins where the surface is and
+/// catches up. Its lag is less by the part of A to B that the old surface has moved since then.
 void SourceView::begin(const Times& before) noexcept {
   const bool same = before.sequence > 0 && before.sequence == current_->sequence;
   if (same && before.start == current_->start) return;  // the one that was shown, kept on
   begun_ = shown_;
-  behind_ = 0;
+  lag_ = 0;
   const double duration = current_->end - current_->start;
   const double delay = shown_ - current_->start;
   if (!(delay > 0) || !(duration > 0)) return;
   const double span = before.end - before.start;
   const double left = span > 0 ? std::clamp((before.end - current_->start) / span, 0.0, 1.0) : 0;
   const double gone = span > 0 ? std::min(delay / span, left) / (1 + left) : 0;
-  behind_ = std::clamp(delay / duration - gone, 0.0, 1.0);
-  catch_up_ = duration * (kCatchUp + kCatchUpMore * behind_);
+  lag_ = std::clamp(delay / duration - gone, 0.0, 1.0);
+  catch_up_ = duration * (kCatchUp + kCatchUpMore * lag_);
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {

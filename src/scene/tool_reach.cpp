@@ -1,3 +1,4 @@
+// Foresees where tools can be, and passes that from fields to preparation.
 #include "scene/tool_reach.hpp"
 
 #include <algorithm>

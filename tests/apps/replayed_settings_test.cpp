@@ -121,7 +121,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
       if (step == 198 || step == 297) {
         SourceOptions changed = source.options();
         changed.depth.normal_error *= step == 198 ? 2 : 0.5;
-        changed.policy.policy = step == 198 ? Policy::fusion : Policy::morph;
+        changed.policy.policy = step == 198 ? Policy::crossfade : Policy::morph;
         source.change(changed);
       }
       push(frame, [&] { return now + 5e-3; });

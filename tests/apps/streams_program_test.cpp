@@ -65,9 +65,8 @@ TEST(Streams, EveryPolicyFeelsTheWall) {
   Shell shell;
   write_wall(shell, 6);
   shell.write("way.csv", into_wall(270));
-  for (const char* more :
-       {"--policy replace", "--policy average --history 3", "--policy crossfade", "--policy fusion",
-        "--unorganised", "--preset paper --field pointset", "--noise kinect1"}) {
+  for (const char* more : {"--policy replace", "--policy average --history 3", "--policy crossfade",
+                           "--unorganised", "--preset paper --field pointset", "--noise kinect1"}) {
     const Outcome outcome =
         shell.run(fmt::format("touch sequence:wall --loop --simulated-time --trajectory way.csv "
                               "--log log.csv {}",

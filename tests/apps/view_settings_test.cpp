@@ -24,7 +24,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
       {"friction", 0.3},
       {"texture", 0.5},
       {"smoothing", 1.5},
-      {"policy", std::string("fusion")},
+      {"policy", std::string("average")},
       {"history", 2.0},
       {"voxel", 4.0}};
   for (const auto& [key, value] : wanted) set(settings, kAll, key, value);
@@ -106,7 +106,7 @@ TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
   EXPECT_EQ(settings.preparation, ViewSettings::Preparation{});
   EXPECT_EQ(preset({}, "glass", kAll).preparation, ViewSettings::Preparation{});
   const std::vector<std::pair<std::string, Setting::Value>> prepared = {
-      {"smoothing", 1.5}, {"policy", std::string("fusion")}, {"history", 2.0}, {"voxel", 4.0}};
+      {"smoothing", 1.5}, {"policy", std::string("average")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
     ViewSettings other;
     set(other, kAll, key, value);

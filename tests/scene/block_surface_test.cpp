@@ -1,3 +1,4 @@
+// Compares radii and weights of depth frames with sums over all points.
 #include "scene/policies/block_surface.hpp"
 
 #include <gtest/gtest.h>

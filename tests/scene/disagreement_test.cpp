@@ -1,3 +1,4 @@
+// Measures the distance between surfaces whose distance is known.
 #include <gtest/gtest.h>
 
 #include "palpate/scene/scene.hpp"

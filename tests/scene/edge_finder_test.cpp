@@ -1,3 +1,4 @@
+// Finds edges and creases of depth frames whose faces are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Checks the smoothed interval and the times of snapshots.
 #include "scene/frame_timing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Checks that snapshots pass between threads without locks or leaks.
 #include "scene/handoff.hpp"
 
 #include <gtest/gtest.h>

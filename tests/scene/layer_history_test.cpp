@@ -1,3 +1,6 @@
+// Checks the weights of replace, average and crossfade.
+#include "scene/policies/layer_history.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +8,6 @@
 #include <map>
 #include <random>
 
-#include "scene/policies/fusion.hpp"
 #include "support/rates.hpp"
 #include "support/snapshots.hpp"
 

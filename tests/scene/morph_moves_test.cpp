@@ -1,3 +1,4 @@
+// Checks which points follow a surface that moves, and how far.
 #include <gtest/gtest.h>
 
 #include <algorithm>

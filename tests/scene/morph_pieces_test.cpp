@@ -1,3 +1,4 @@
+// Checks that blocks in fours and on several threads give what each gives alone.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -10,8 +11,6 @@
 #include "scene/policies/morph.hpp"
 #include "support/depth_frames.hpp"
 #include "support/rates.hpp"
-
-// Blocks are settled several at a time and on several threads, which is not to be felt.
 
 namespace palpate {
 namespace {

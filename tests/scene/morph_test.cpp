@@ -1,3 +1,4 @@
+// Checks what becomes of the points of simple scenes from frame to frame.
 #include "scene/policies/morph.hpp"
 
 #include <gtest/gtest.h>

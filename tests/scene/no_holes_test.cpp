@@ -1,3 +1,4 @@
+// Checks that a hand finds no hole in surfaces of clouds.
 #include <gtest/gtest.h>
 
 #include <cmath>

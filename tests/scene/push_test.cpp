@@ -1,3 +1,4 @@
+// Checks what pushed frames and clouds become under each policy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,15 +109,6 @@ TEST(Push, ACrossfadeIsSureOfItsFirstFrameOnceItHasFadedIn) {
   push(source, 0, 0);
   for (int tick = 0; tick < 60; ++tick) height_at(field, 1e-3 * tick);
   EXPECT_EQ(field.surface(Vector3d::Zero()).presence, 1);
-}
-
-TEST(Push, FusionOfFramesIsARunningMean) {
-  if (test::effort(2) < 2) GTEST_SKIP() << "too long where every test is to be quick";
-  Scene scene;
-  Source& source = scene.add("camera", depth_source(Policy::fusion));
-  SceneField field(scene);
-  for (int k = 0; k < 10; ++k) push(source, k * kFrame, 1e-3 * (k % 2));
-  EXPECT_NEAR(height_at(field, 0.01 + 10 * kFrame), 0.5e-3, 0.15e-3);
 }
 
 TEST(Push, AChangedSourceGoesOnInItsNewWay) {

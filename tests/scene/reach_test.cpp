@@ -1,3 +1,4 @@
+// Checks where fields say that tools can be.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -1,3 +1,4 @@
+// Checks that recycled objects come back and keep their memory.
 #include "scene/recycler.hpp"
 
 #include <gtest/gtest.h>

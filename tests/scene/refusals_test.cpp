@@ -1,3 +1,4 @@
+// Checks the errors of scenes, sources and fields.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -158,10 +158,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"BlocksPointset", kind(FieldOptions::Kind::pointset)},
                     Case{"BlocksMetaball", kind(FieldOptions::Kind::metaball)},
                     Case{"Replace", {}, Policy::replace},
-                    Case{"FusionWithATool", tool(), Policy::fusion, false, false, false, false},
                     Case{"CloudsWithATool", tool(), Policy::crossfade, true, false, false, false},
                     Case{"CloudsAfterADarkOne", {}, Policy::crossfade, true, false, true, false},
-                    Case{"FusedCloudsAfterADarkOne", {}, Policy::fusion, true, false, true, false},
                     Case{"Paper", paper_field(), Policy::average, true, true}),
     [](const auto& made) { return made.param.name; });
 

@@ -1,3 +1,4 @@
+// Checks a field at its limits: full patches, far places, values that are not finite.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Checks what a field answers about scenes whose surface is known.
 #include "palpate/scene/scene_field.hpp"
 
 #include <gtest/gtest.h>

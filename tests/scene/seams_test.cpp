@@ -1,3 +1,4 @@
+// Slides a hand over the seams between several cameras.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Checks what raw frames say of balls before, in and behind a surface.
 #include "scene/sight.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Checks surfaces in time: late, early and irregular frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Swaps snapshots under a moving field on several threads.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -18,10 +18,9 @@ struct Named {
   Choice choice;
 };
 
-inline constexpr std::array<Named<Policy>, 5> kPolicies = {{{"replace", Policy::replace},
+inline constexpr std::array<Named<Policy>, 4> kPolicies = {{{"replace", Policy::replace},
                                                             {"average", Policy::average},
                                                             {"crossfade", Policy::crossfade},
-                                                            {"fusion", Policy::fusion},
                                                             {"morph", Policy::morph}}};
 
 inline constexpr std::array<Named<FieldOptions::Kind>, 3> kFields = {

@@ -140,7 +140,6 @@ void complete(SourcePlan& source, const SurfacePlan& surface) {
   require(policy != Policy::morph || !source.as_cloud,
           "--policy morph needs organised depth images; remove --unorganised and --preset paper, "
           "or choose another policy");
-  source.as_cloud = source.as_cloud || policy == Policy::fusion;
   source.options.organised = !source.as_cloud;
   if (!policy && surface.paper) policy = Policy::average;
 }

@@ -47,7 +47,7 @@ void add_time_of_source(OptionTable& table, PolicyOptions& policy) {
       .add_choice(
           "--policy", policy.policy, kPolicies,
           "how successive frames update the surface: replace (hard swap), average (of N frames, as "
-          "in the paper), crossfade, fusion or morph (default for depth cameras)")
+          "in the paper), crossfade or morph (default for depth cameras)")
       .only_for(kStream);
   table
       .add("--history", policy.history, "N", whole_number(1, 7),

@@ -21,7 +21,6 @@ enum class Policy {
   replace,    ///< the newest cloud, at once (hard swap)
   average,    ///< the newest N clouds, 1/N each (the paper)
   crossfade,  ///< N + 1 clouds; the newest fades in while the oldest fades out
-  fusion,     ///< a running mean in voxels that moves in straight lines
   morph,      ///< blocks of a depth image, filtered in time and by the noise-sized fit
 };
 

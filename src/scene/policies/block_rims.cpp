@@ -1,11 +1,10 @@
+// Weighs the points of a depth frame that lie beside rims and holes.
 #include <algorithm>
 #include <cmath>
 
 #include "field/formulas.hpp"
 #include "scene/policies/block_surface.hpp"
 #include "scene/policies/lanes.hpp"
-
-// What the points of a depth frame weigh beside rims and holes.
 
 namespace palpate {
 namespace {

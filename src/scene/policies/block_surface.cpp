@@ -1,3 +1,4 @@
+// Measures radii, areas and precisions of the points of a depth frame.
 #include "scene/policies/block_surface.hpp"
 
 #include <algorithm>
@@ -128,7 +129,7 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   }
 }
 
-// Of what is laid out, with so many blocks of nothing all around.
+// Makes room for the columns, with a margin of so many empty blocks all around.
 void BlockSurface::make_room(const FilteredDepth& depth, int margin) {
   const auto stride = static_cast<std::size_t>(depth.columns + 2 * margin);
   const std::size_t size = stride * static_cast<std::size_t>(depth.rows + 2 * margin) + kLanes;

@@ -116,12 +116,12 @@ class EdgeFinder {
   /// `surface` has measured `depth`. Allocates only to grow.
   void look(const FilteredDepth& depth, const BlockSurface& surface);
 
-  /// Of the edge that a block lies beside; kNone: of none.
+  /// The number of the edge beside a block; kNone: there is none.
   [[nodiscard]] std::uint32_t number(std::size_t block) const { return of_block_[block]; }
 
   void prefetch(std::size_t block) const { __builtin_prefetch(&of_block_[block]); }
 
-  /// Of an edge, in the sensor's frame.
+  /// The plane beyond an edge, in the sensor's frame.
   [[nodiscard]] const SurfacePoints::EdgePlane& plane(std::uint32_t number) const {
     return told_[number].plane;
   }

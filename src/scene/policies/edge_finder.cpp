@@ -1,3 +1,4 @@
+// Finds where the faces of a depth frame meet.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +23,7 @@ constexpr std::uint8_t kInColumn = 2;
 
 }  // namespace
 
-/// What the blocks of a frame say of its faces.
+/// Answers questions about the faces to which the blocks of a frame belong.
 struct EdgeFinder::Faces {
   const FilteredDepth& depth;
   const BlockSurface& surface;
@@ -45,7 +46,7 @@ struct EdgeFinder::Faces {
     return depth.normals[above].dot(depth.positions[block] - depth.positions[above]);
   }
 
-  /// By which `block` may be off a face that it lies on, m.
+  /// The largest distance of `block` from a face that it lies on, m.
   [[nodiscard]] float room(std::size_t block, std::size_t of) const {
     const float variance = depth.deviations[of] * depth.deviations[of] +
                            depth.deviations[block] * depth.deviations[block];

@@ -1,3 +1,4 @@
+// Defines vectors of four lanes, for loops over blocks and points.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +28,7 @@ void store(T* to, const Lanes& lanes) {
   return b < a ? b : a;
 }
 
-/// Of comparisons.
+/// Is any (are all) of four comparisons true?
 [[nodiscard]] inline bool any(const Ints& lanes) {
   std::uint64_t halves[2];
   std::memcpy(halves, &lanes, sizeof lanes);

@@ -1,3 +1,4 @@
+// Makes the surface of a depth frame out of the one before it.
 #include "scene/policies/morph.hpp"
 
 #include <algorithm>
@@ -262,7 +263,7 @@ SurfacePoints::EdgePlane Morph::old_edge(std::uint32_t i) const {
   return edge_now({.points = last_.get(), .progress = std::min(progress_, 1.0)}, i);
 }
 
-/// Of what the block shows that is looked at.
+/// The edge of a point that the frame shows, in the world frame.
 SurfacePoints::EdgePlane Morph::new_edge(const Point& point) const {
   if (point.edge == kNone) return {};
   const SurfacePoints::EdgePlane& edge = edges_.plane(point.edge);

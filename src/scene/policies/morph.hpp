@@ -1,3 +1,4 @@
+// Declares the policy for depth streams, its options and its input.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,6 +15,7 @@
 #include "palpate/geometry/shapes.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/policies/block_surface.hpp"
+#include "scene/policies/fate.hpp"
 #include "scene/policies/point_writer.hpp"
 
 namespace palpate {
@@ -42,13 +44,13 @@ struct MorphInput {
 /// decides: about the same place, or what moves as fast as a hand, and the point goes there;
 /// something nearer, and it is hidden and stays, trusted ever less over a minute; something
 /// farther, and it is gone. Nothing at all, or a camera that looks elsewhere: it stays for a while.
-/// What appears and goes does so by its presence, which is stiffness.
+/// Points appear and go by their presence, which is stiffness.
 class Morph {
  public:
   explicit Morph(const MorphOptions& options)
       : options_(options), surface_(options.kernel, options.minimum_radius) {}
 
-  /// What can be done of a frame before it is known when it starts. Allocates only to grow.
+  /// Does all that needs no start time. Allocates only to grow.
   void look(const MorphInput& input);
 
   /// The rest: fills `points`, keeping it as what the next frame starts from. Allocates only to
@@ -71,13 +73,13 @@ class Morph {
   static constexpr float kUnsure = 4;
   static constexpr float kAgree = 5;
 
-  // Of what a frame says of a point's radius, confidence and edge, this share is taken over.
+  // Share by which a point's radius, confidence and edge follow a frame (docs/method.md 7.3).
   static constexpr float kShare = 0.25f;
 
   // The least cosine of the angle between the normals of one surface before and after a frame.
   static constexpr float kTurns = 0.5f;
 
-  /// What the frame shows at a place of the curve; R = 0: nothing.
+  /// The point that the frame shows at a place of the curve; R = 0: none.
   struct alignas(64) Point {
     PointState state;
     float area = 0;  // a_i R_i^2
@@ -97,7 +99,7 @@ class Morph {
     Ints edges;
     std::uint32_t place;  // the first
   };
-  /// What becomes of four points that their blocks show again.
+  /// Four points that their blocks show again, at both ends of their paths.
   struct FourWays {
     PointStates from, to;
     Floats variance;
@@ -129,7 +131,9 @@ class Morph {
   [[nodiscard]] PointStates old_points(std::uint32_t i) const;
   void follow(const Four& seen, FourWays& ways) const;
   [[nodiscard]] static Point point_of(const Four& seen, int lane);
-  void hold_one(std::span<const std::uint32_t> old, const Point& point, Piece& to) const;
+  [[nodiscard]] bool is_sure(const FilteredDepth& depth, const Point& point, std::uint32_t partner,
+                             const PointState& before) const;
+  [[nodiscard]] Way way_of(Fate fate, std::uint32_t i) const;
   [[nodiscard]] PointState old_point(std::uint32_t i) const;
   [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const;
   [[nodiscard]] float speed_of(std::uint32_t i) const;
@@ -171,7 +175,7 @@ class Morph {
   PointWriter writer_;
   std::vector<Ball> local_reach_;
 
-  // What was shown last.
+  // The surface that was shown last.
   std::shared_ptr<const SurfacePoints> last_;
   FrameTiming last_moment_;
   std::vector<Entry> entries_;  // of its points
@@ -179,7 +183,7 @@ class Morph {
   std::vector<std::uint32_t> place_of_block_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
 
-  // What is being made.
+  // The surface that is being made.
   FrameTiming moment_;
   float comes_ = 1;       // presence that what is seen gains
   float doubt_ = 1;       // by which variances of what is known grow

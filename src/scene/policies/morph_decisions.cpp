@@ -1,3 +1,4 @@
+// Gathers the facts on which the fate of each point depends, and moves it accordingly.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -5,73 +6,75 @@
 
 #include "scene/policies/morph.hpp"
 
-// What becomes of each point of a morphing surface: what a block shows next decides.
-
 namespace palpate {
 namespace {
 
-// Of the blocks around one, how many have to show the same surface: those of a line.
+// Share of the blocks around one that have to show the same surface; a line has 2 of 8 (derived).
 constexpr float kVouch = 0.25f;
 
-// What has faded so far is gone.
+// A weight below this is gone (judgement: far below what a force resolves).
 constexpr float kGone = 1e-4f;
 
-// In which trust in what has been seen through, or is hidden, goes, s: what is gone five times as
-// slowly as a proxy's spring follows (EnergyTank::kTime); what hides a thing may take it along.
+// Fade times, s. Surfaces seen through: 5 x EnergyTank::kTime, so that the spring can follow.
+// Hidden surfaces: slow, but not forever, as what hides them may carry them off (judgement).
 constexpr double kGoes = 0.1;
 constexpr double kHidden = 60;
 
 }  // namespace
 
-/// What becomes of one block: of the point that the frame has there, and of the old ones. What lies
-/// nearer than what is seen now has been seen through; what lies farther is hidden.
+/// Decides on the point that the frame has at a block, and on the old ones there.
 void Morph::settle(const FilteredDepth& depth, const Point& point, Piece& to) const {
   const std::span<const std::uint32_t> old = by_block_.at(point.place);
-  if (!(point.state.radius > 0)) return hold_one(old, point, to);
   PointState before;
-  const std::uint32_t partner = partner_of(depth, old, point, before);
-  const bool flies = partner == kNone ? last_ && beside(depth, order_.blocks[point.place]) < kVouch
-                                      : turns_away(point, partner, before);
-  if (flies) return hold_one(old, point, to);
+  std::uint32_t partner =
+      point.state.radius > 0 ? partner_of(depth, old, point, before) : std::uint32_t{kNone};
+  const bool shown = point.state.radius > 0 && is_sure(depth, point, partner, before);
+  if (!shown) partner = kNone;
   float at = depth_of(point.state.position);
-  if (partner == kNone) {
-    add(appear(point), point, to);
-  } else if (stays(depth, point, before)) {
-    at = depth_of(before.position);
+  if (shown && partner == kNone) add(appear(point), point, to);
+  if (partner != kNone) {
+    const bool vouched = !stays(depth, point, before);
+    const Fate own = fate({.shown = true, .same = true, .vouched = vouched});
+    if (own == Fate::stay) at = depth_of(before.position);
     const float presence = before.presence + comes_;
-    add(keep(partner, before, presence, EntryKind::live, moment_.stamp), point, to);
-  } else {
-    add(follow(point, partner, before), point, to);
+    add(own == Fate::follow ? follow(point, partner, before)
+                            : keep(partner, before, presence, EntryKind::live, moment_.stamp),
+        point, to);
   }
+  bool held = false;
   for (const std::uint32_t i : old) {
     if (i == partner) continue;
-    const EntryKind kind = entries_[i].kind;
-    const float beyond = depth_of(old_point(i).position) - at;
-    if (kind == EntryKind::outside) {
-      add(hold(i, kind), point, to);
-    } else if (kind == EntryKind::leaving || std::abs(beyond) <= point.state.radius) {
-      add(leave(i), point, to);
-    } else if (kind == EntryKind::going || beyond < 0 || !may_hide(old, i)) {
-      add(go(i), point, to);
+    FateFacts facts{.kind = entries_[i].kind, .shown = shown};
+    if (shown) {
+      facts.beyond = depth_of(old_point(i).position) - at;
+      facts.radius = point.state.radius;
+      facts.may_hide = facts.beyond > facts.radius && may_hide(old, i);
     } else {
-      add(hide(i), point, to);
+      facts.second = facts.kind == EntryKind::live && std::exchange(held, true);
     }
+    add(way_of(fate(facts), i), point, to);
   }
 }
 
-/// Nothing sure is measured there: of the points that were seen, one stands for the surface.
-void Morph::hold_one(std::span<const std::uint32_t> old, const Point& point, Piece& to) const {
-  bool held = false;
-  for (const std::uint32_t i : old) {
-    const EntryKind kind = entries_[i].kind;
-    const bool second = kind == EntryKind::live && std::exchange(held, true);
-    if (kind == EntryKind::going) {
-      add(go(i), point, to);
-    } else if (kind == EntryKind::leaving || second) {
-      add(leave(i), point, to);
-    } else {
-      add(hold(i, kind), point, to);
-    }
+/// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal
+/// that noise has turned?
+bool Morph::is_sure(const FilteredDepth& depth, const Point& point, std::uint32_t partner,
+                    const PointState& before) const {
+  if (partner != kNone) return !turns_away(point, partner, before);
+  return !last_ || beside(depth, order_.blocks[point.place]) >= kVouch;
+}
+
+/// `fate`: of a point that is not seen again.
+Way Morph::way_of(Fate fate, std::uint32_t i) const {
+  switch (fate) {
+    case Fate::go:
+      return go(i);
+    case Fate::hide:
+      return hide(i);
+    case Fate::hold:
+      return hold(i, entries_[i].kind);
+    default:
+      return leave(i);
   }
 }
 
@@ -125,7 +128,7 @@ Way Morph::appear(const Point& point) const {
   return {from, to, EdgeWay{edge, edge}, Entry{moment_.stamp, point.variance}};
 }
 
-/// Of a time that something takes, s, how much a snapshot lasts.
+/// The snapshot's duration as a share of `time`, s.
 float Morph::share_of(double time) const {
   return static_cast<float>(moment_.duration / time);
 }

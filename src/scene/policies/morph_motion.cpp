@@ -1,21 +1,20 @@
+// Decides whether a point goes to where its block shows a surface now, and how far.
 #include <algorithm>
 #include <cmath>
 
 #include "scene/policies/morph.hpp"
 
-// Whether a point of a morphing surface goes to where its block shows a surface now, and how far.
-
 namespace palpate {
 namespace {
 
-// Of the blocks around one, how many have to show what moves: most.
+// Share of the blocks around one that have to show what moves: most (judgement).
 constexpr float kVouchToMove = 0.6f;
 
 constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
 
 constexpr float kLeastShare = 0.01f;  // of an edge; with less it is none
 
-// What moves faster along its normal is another surface, m/s.
+// A surface that moves faster than this along its normal is taken for another one, m/s.
 constexpr float kFastest = 1;
 
 // The least cosine of the angle between a ray and a normal that can be trusted.
@@ -125,7 +124,7 @@ Way Morph::follow(const Point& seen, std::uint32_t i, const PointState& from) co
   return {from, to, edge_of(seen, i), Entry{moment_.stamp, gain < 1 ? known : seen.variance}};
 }
 
-/// What an old point that is seen again meets: most meet nothing.
+/// The edge of an old point that is seen again. Most have none.
 EdgeWay Morph::edge_of(const Point& seen, std::uint32_t i) const {
   if (seen.edge == kNone && last_->edges.of_point[i] == SurfacePoints::Edges::kNone) return {};
   const SurfacePoints::EdgePlane was = old_edge(i);

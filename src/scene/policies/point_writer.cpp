@@ -1,3 +1,4 @@
+// Orders the blocks of an image and writes moving points into columns.
 #include "scene/policies/point_writer.hpp"
 
 #include <algorithm>
@@ -137,7 +138,7 @@ void PointWriter::write(std::size_t at, const std::uint32_t* codes, const PointS
   extremes.add({least(from.radius, to.radius), least(from.presence, to.presence)});
 }
 
-/// Where there is none, there is the other end's plane.
+/// An end without an edge gets the other end's plane.
 void PointWriter::add_edge(std::size_t at, const EdgeWay& edge) {
   if (edge.start.share == 0 && edge.end.share == 0) return;
   SurfacePoints::Edges& edges = points_->edges;

@@ -42,7 +42,7 @@ void visit_beside(int columns, int rows, std::size_t block, const Visit& visit) 
   }
 }
 
-/// What a point of a morphing surface is.
+/// The state of a point of a morphing surface.
 enum class EntryKind : std::uint8_t {
   live,     ///< the surface that a block shows, or showed last
   hidden,   ///< by what the block shows
@@ -51,7 +51,7 @@ enum class EntryKind : std::uint8_t {
   outside,  ///< has left the image, which a moving camera looks elsewhere now
 };
 
-/// What is remembered of a point besides what the field needs of it.
+/// Remembers of a point what the field does not need.
 struct Entry {
   double confirmed = 0;          ///< stamp of the last frame that showed it, or what hides it, s
   float variance = 0;            ///< of where it is along its ray, m^2
@@ -96,19 +96,19 @@ struct PointState {
   float presence = 1;
 };
 
-/// Of points side by side.
+/// Four points side by side.
 struct PointStates {
   Vectors position, normal;
   Floats weight, radius, confidence, presence;
 };
 
-/// What a point meets at either end of its way; share 0: no edge.
+/// The edges beside a point at both ends of its path; share 0: none.
 struct EdgeWay {
   SurfacePoints::EdgePlane start;
   SurfacePoints::EdgePlane end;
 };
 
-/// Of a point while a snapshot lasts.
+/// A point while a snapshot lasts.
 struct Way {
   PointState from;
   PointState to;
@@ -121,7 +121,7 @@ struct Way {
 /// threads may write points of their own.
 class PointWriter {
  public:
-  /// What is to be known of all points together.
+  /// The extremes of all points together.
   struct Extremes {
     Floats radius = Floats{} + std::numeric_limits<float>::max();  ///< the smallest in each lane, m
     Floats presence = Floats{} + 1.0f;                             ///< the least
@@ -132,7 +132,7 @@ class PointWriter {
     }
   };
 
-  /// What `points` held is lost. `expected`: about how many points will come.
+  /// Discards what `points` held. `expected`: about how many points will come.
   void begin(SurfacePoints& points, std::size_t expected);
 
   /// Makes room for so many points behind those there are; tells where. Allocates only to grow.

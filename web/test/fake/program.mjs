@@ -15,7 +15,7 @@ const settings = () => [
   { key: "friction", label: "Friction", unit: "", kind: "number", least: 0, most: 1, step: 0.05, value: 0.2 },
   { key: "bound", label: "Force, at most", unit: "N", kind: "number", least: 0.5, most: 20, step: 0.1, value: 6 },
   { key: "field", label: "Surface", unit: "", kind: "choice", choices: ["balanced", "pointset", "metaball"], value: "balanced" },
-  { key: "policy", label: "Time", unit: "", kind: "choice", choices: ["morph", "replace", "average", "crossfade", "fusion"], value: "morph" },
+  { key: "policy", label: "Time", unit: "", kind: "choice", choices: ["morph", "replace", "average", "crossfade"], value: "morph" },
   { key: "texture", label: "Texture", unit: "", kind: "switch", value: false },
 ];
 const kPresets = { default: { stiffness: 500, field: "balanced", texture: false }, paper: { stiffness: 300, field: "pointset", policy: "average" }, hard: { stiffness: 1500 } };

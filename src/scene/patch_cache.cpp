@@ -1,0 +1,160 @@
+// Gathers patches when they are needed, and bounds the work of a step.
+#include "scene/patch_cache.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate {
+
+using Eigen::Vector3d;
+
+void PatchCache::set_layers(std::span<const ActiveLayer> layers, int sources, bool same) noexcept {
+  layers_ = layers;
+  sources_ = sources;
+  if (!same) step_.far.patch.clear();
+  others_ = others_ || !same;
+  // Nobody has renewed it: its layers may be gone, and others come to their addresses.
+  if (near_.patch.outdated()) near_.patch.clear();
+  near_.patch.advance(layers_);
+  step_.far.stale = true;
+}
+
+void PatchCache::set_tool(const Vector3d& proxy) noexcept {
+  constexpr double kMoved = 0.15;  // R after which sheets further on come into view
+  // A proxy that has been moved since its step touches nothing.
+  tool_ = step_.last.proxy == proxy ? step_.last : Stance{proxy, Vector3d::Zero()};
+  const double moved = (tool_.proxy - faced_.proxy).norm();
+  const bool same =
+      tool_.touches() == faced_.touches() && moved < kMoved * near_.patch.mean_radius();
+  if (!std::exchange(others_, false) && same) return;
+  faced_ = tool_;
+  const Ball here{tool_.proxy, 0};
+  const bool covered = near_.patch.covers(here);
+  // A step that went beyond the near patch knows from which side it came.
+  if (!covered && step_.far.patch.covers(here)) near_.patch.follow_sides(step_.far.patch);
+  step_.far.patch.clear();
+  step_.far.patch.forget_sides();
+  const bool free =
+      !tool_.touches() && (covered ? is_free(*surface_, near_.patch, here) : walk_is_free(here));
+  if (free) near_.patch.forget_sides();
+  near_.stale = covered;
+}
+
+void PatchCache::face_near() noexcept {
+  if (std::exchange(near_.stale, false)) near_.patch.face(tool_);
+}
+
+void PatchCache::forget() noexcept {
+  near_.patch.clear();
+  near_.patch.forget_sides();
+  step_.far.patch.clear();
+  radius_ = 0;
+}
+
+void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
+  const double before = std::exchange(radius_, 0);
+  const double nearest =
+      gather(step_.far.patch, x, 0, update_visits_) ? step_.far.patch.nearest_radius(x) : 0;
+  radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
+  step_.far.patch.clear();
+  if (radius_ != before) near_.patch.clear();
+}
+
+void PatchCache::gather_near(const Vector3d& center, double extra) noexcept {
+  near_.stale = false;
+  gather(near_.patch, center, extra, update_visits_);
+}
+
+bool PatchCache::near_covers(std::span<const Ball> balls, double extra) noexcept {
+  constexpr double kTooWide = 4;  // a patch that lacks points for the sake of far ones
+  if (near_.patch.thinned() && near_.patch.extra() > kTooWide * extra) return false;
+  const auto reached = [this](const Ball& ball) { return near_.patch.reaches(ball); };
+  if (near_.patch.outdated() && std::ranges::all_of(balls, reached)) {
+    near_.stale = false;
+    count(near_.patch, near_.patch.renew(layers_, sources_, update_visits_, &tool_),
+          update_visits_);
+  }
+  return std::ranges::all_of(balls, [this](const Ball& ball) { return near_.patch.covers(ball); });
+}
+
+const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexcept {
+  // Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
+  constexpr int kBallsASum = 4;
+  constexpr int kSumsAGather = 20;
+  const std::uint64_t before = step_.gathers;
+  const Patch* const patch = find(ball, margin);
+  if (!patch || !step_.running) return patch;
+  const auto points = static_cast<int>(patch->points());
+  step_.summed += ball.radius > 0 ? points / kBallsASum : points;
+  if (step_.gathers != before) step_.summed += kSumsAGather * points;
+  return patch;
+}
+
+const Patch* PatchCache::find(const Ball& ball, double margin) const noexcept {
+  if (near_.patch.covers(ball)) return &near_.patch;
+  if (step_.far.patch.covers(ball) && (!step_.far.stale || step_.far.patch.advance(layers_))) {
+    step_.far.stale = false;
+    return &step_.far.patch;
+  }
+  step_.far.stale = false;
+  if (!step_.running)
+    step_.far.patch.forget_sides();  // what a step has seen once, it sees so to its end
+  step_.far.patch.follow_sides(near_.patch);
+  int alone = kGatherVisits;
+  int& left = step_.running ? step_.gather_visits : alone;
+  return gather(step_.far.patch, ball.center, std::max(margin, ball.radius), left)
+             ? &step_.far.patch
+             : nullptr;
+}
+
+bool PatchCache::walk_is_free(const Ball& ball) const noexcept {
+  int left = step_.running ? step_.free_visits : kFreeVisits;
+  const int before = left;
+  const bool free = is_free_space(*surface_, layers_, sources_, ball, radius_, left);
+  if (step_.running) step_.free_visits = left;
+  if (left <= 0) step_.notes = step_.notes | FieldNote::work_spent;
+  step_.visits += static_cast<std::uint64_t>(before - left);
+  return free;
+}
+
+bool PatchCache::gather(Patch& patch, const Vector3d& center, double extra,
+                        int& left) const noexcept {
+  const bool whole =
+      patch.gather(layers_, sources_, center, extra,
+                   {.radius = radius_,
+                    .raw_weights = surface_->options.raw_weights,
+                    .normals = surface_->options.kind != FieldOptions::Kind::metaball,
+                    .rise = surface_->rise,
+                    .most_visits = left,
+                    .stance = &tool_});
+  count(patch, whole, left);
+  return whole;
+}
+
+/// The work of a gather.
+void PatchCache::count(const Patch& patch, bool whole, int& left) const noexcept {
+  left -= patch.visits();
+  if (patch.thinned()) step_.notes = step_.notes | FieldNote::thinned;
+  if (!whole) step_.notes = step_.notes | FieldNote::work_spent;
+  step_.visits += static_cast<std::uint64_t>(patch.visits());
+  ++step_.gathers;
+}
+
+void PatchCache::begin_update() noexcept {
+  update_visits_ = kGatherVisits;
+  step_.notes = FieldNote::none;
+}
+
+void PatchCache::begin_step() const noexcept {
+  step_.running = true;
+  step_.gather_visits = kGatherVisits;
+  step_.free_visits = kFreeVisits;
+  step_.summed = 0;
+}
+
+void PatchCache::end_step(const Stance& tool) const noexcept {
+  step_.running = false;
+  step_.last = tool;
+}
+
+}  // namespace palpate
