@@ -1,3 +1,4 @@
+// The weights of points on a surface that is sampled more or less densely.
 #pragma once
 
 #include <cstdint>

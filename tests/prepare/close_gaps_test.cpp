@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "prepare/radii.hpp"
-#include "prepare/weights.hpp"
+#include "prepare/gaps.hpp"
 
 namespace palpate {
 namespace {

@@ -1,10 +1,11 @@
 // Normals of the file replace fitted ones where both agree.
+#include "prepare/given_normals.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "geometry/clouds.hpp"
-#include "prepare/columns.hpp"
 
 namespace palpate {
 namespace {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/radii.hpp"
 #include "prepare/sheet_fit.hpp"
 #include "prepare/weights.hpp"
 

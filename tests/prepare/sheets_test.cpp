@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "geometry/clouds.hpp"
-#include "prepare/columns.hpp"
+#include "prepare/assemble.hpp"
 #include "prepare/fitted.hpp"
 
 namespace palpate {
