@@ -4,10 +4,10 @@
 #include <span>
 
 #include "palpate/prepare/prepare.hpp"
-#include "prepare/join_sheets.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
-#include "prepare/weigh.hpp"
+#include "prepare/sheets.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 

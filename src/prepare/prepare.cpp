@@ -6,13 +6,13 @@
 
 #include "prepare/assemble.hpp"
 #include "prepare/gaps.hpp"
-#include "prepare/join_sheets.hpp"
 #include "prepare/place.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
+#include "prepare/sheets.hpp"
 #include "prepare/stopwatch.hpp"
-#include "prepare/weigh.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 

@@ -14,6 +14,7 @@
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/places.hpp"
+#include "prepare/plane_fits.hpp"
 
 namespace palpate {
 namespace {

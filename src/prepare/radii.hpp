@@ -8,9 +8,10 @@
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/sampling.hpp"
-#include "prepare/sheets.hpp"
 
 namespace palpate {
+
+struct OwnSheets;
 
 /// The support radii.
 struct Radii {

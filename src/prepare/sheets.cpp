@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "prepare/join_sheets.hpp"
-
 namespace palpate {
 namespace {
 

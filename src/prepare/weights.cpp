@@ -10,7 +10,6 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
-#include "prepare/weigh.hpp"
 
 namespace palpate {
 namespace {
