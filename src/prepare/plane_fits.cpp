@@ -10,16 +10,12 @@
 #include "geometry/normals.hpp"
 #include "prepare/given_normals.hpp"
 #include "prepare/sheet_fit.hpp"
-#include "prepare/strays.hpp"
 
 namespace palpate {
 namespace {
 
 constexpr double kSmoothFit = 0.03;  // of R that a quadric may leave before others are looked for,
 constexpr double kNoisyFit = 1.2;    // of the noise
-
-// R of strays, in typical spacings: they are not to reach what is sampled finely; judgement.
-constexpr float kStrayRadius = 2.5f;
 
 }  // namespace
 
@@ -64,19 +60,15 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
   return sheets;
 }
 
-OwnSheets fit_planes(const Sampling& sampling, const PrepareOptions& options, Radii& radii) {
+OwnSheets fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {
   if (!options.estimate_normals) return {};
   OwnSheets fits =
       fit_own_sheets(sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas);
   if (!sampling.normals.empty()) {
     take_given_normals(sampling.grid, sampling.normals, fits.normals);
   }
-  if (!options.remove_speckle || options.radius || options.paper) return fits;
-  radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
   for (std::size_t i = 0; i < radii.strays.size(); ++i) {
-    if (radii.strays[i] == 0) continue;
-    fits.confidences[i] = 0;
-    radii.values[i] = kStrayRadius * static_cast<float>(sampling.spacing);
+    if (radii.strays[i] != 0) fits.confidences[i] = 0;
   }
   return fits;
 }

@@ -28,9 +28,9 @@ inline constexpr float kNormalsReach = 1.15f;  // of R
 [[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
                                        std::span<const float> radii, std::span<const float> noise);
 
-/// Fits the points' planes, lets given normals take part, and finds strays, whose `radii` it makes
-/// small. Empty where no normals are asked for.
-[[nodiscard]] OwnSheets fit_planes(const Sampling& sampling, const PrepareOptions& options,
-                                   Radii& radii);
+/// Fits the points' planes and lets given normals take part; strays get no confidence. Empty where
+/// no normals are asked for.
+[[nodiscard]] OwnSheets fit_planes(const Sampling& sampling, const Radii& radii,
+                                   const PrepareOptions& options);
 
 }  // namespace palpate

@@ -15,6 +15,7 @@
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/places.hpp"
 #include "prepare/plane_fits.hpp"
+#include "prepare/strays.hpp"
 
 namespace palpate {
 namespace {
@@ -207,6 +208,9 @@ constexpr double kFinestShape = 25;
 // 2.5 spacings' support bridges. Measured: tests/scene/no_holes_test.cpp.
 constexpr double kIrregularMultiple = 3;
 
+// R of strays, in typical spacings: they are not to reach what is sampled finely; judgement.
+constexpr float kStrayRadius = 2.5f;
+
 constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
 
 /// The diagonal of the points' box, m; never 0.
@@ -244,6 +248,13 @@ Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
     return all(options.radius_multiple.value_or(kPaperMultiple) * sampling.spacing);
   Radii radii{radii_by_noise(sampling, options), {}};
   limit_growth(sampling.grid, kSlope, radii.values);
+  if (!options.remove_speckle || !options.estimate_normals) return radii;
+  radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
+  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
+    if (radii.strays[i] != 0) {
+      radii.values[i] = kStrayRadius * static_cast<float>(sampling.spacing);
+    }
+  }
   return radii;
 }
 

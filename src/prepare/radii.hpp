@@ -16,7 +16,7 @@ struct OwnSheets;
 /// The support radii.
 struct Radii {
   std::vector<float> values;         ///< R_i in sorted order, m
-  std::vector<std::uint8_t> strays;  ///< 1: one; empty: not looked for
+  std::vector<std::uint8_t> strays;  ///< 1: one, whose R is small; empty: not looked for
 };
 
 /// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say
