@@ -61,7 +61,10 @@ class Outlook {
 
   void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
                  std::vector<SheetVote>& votes) {
-    for (std::uint32_t q = 0; q < count; ++q) others_[q].clear();
+    for (std::uint32_t q = 0; q < count; ++q) {
+      others_[q].clear();
+      eyes_[q] = eye_at(first + q);
+    }
     pairs_.each(
         input_.grid, first, count, runs,
         [this](std::uint32_t i) {
@@ -71,28 +74,46 @@ class Outlook {
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
-  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
-    const std::uint32_t i = first + q;
-    if (j == i) return;
-    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
-    const float squared = way.squaredNorm();
-    measure_gap(i, j, way, squared);
+  /// What a point sees others with: copies, so that a pair costs few reads of memory.
+  struct Eye {
+    Vector3f at;
+    Vector3f normal;
+    float tube;    // to the side, m
+    float least;   // height of another sheet, m
+    float voting;  // squared reach, m^2; below 0: it has no vote
+    std::uint32_t sheet;
+  };
+
+  [[nodiscard]] Eye eye_at(std::uint32_t i) const {
+    const float spacing = input_.spacings[i];
     const float voting = kVoteReach * input_.radii[i];
-    const bool votes_on = sure_[i] != 0 && sure_[j] != 0 && sheets_.sheet[j] != sheets_.sheet[i] &&
-                          squared <= voting * voting;
+    return {input_.grid.points()[i],
+            own_.normals[i],
+            kGapTube * spacing,
+            std::max(kGapResiduals * own_.residuals[i], kGapSpacings * spacing),
+            sure_[i] != 0 ? voting * voting : -1,
+            sheets_.sheet[i]};
+  }
+
+  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
+    if (j == first + q) return;
+    const Eye& eye = eyes_[q];
+    const Vector3f way = input_.grid.points()[j] - eye.at;
+    const float squared = way.squaredNorm();
+    measure_gap(eye, first + q, j, way, squared);
+    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet && sure_[j] != 0;
     if (votes_on) others_[q].push_back({squared, j});
   }
 
-  void measure_gap(std::uint32_t i, std::uint32_t j, const Vector3f& way, float squared) {
-    const float height = own_.normals[i].dot(way);
+  void measure_gap(const Eye& eye, std::uint32_t i, std::uint32_t j, const Vector3f& way,
+                   float squared) {
+    const float height = eye.normal.dot(way);
     const float off = std::abs(height);
-    const float tube = kGapTube * input_.spacings[i];
+    if (off <= eye.least) return;
     const float aside = std::max(0.f, squared - height * height);
-    const float least =
-        std::max(kGapResiduals * own_.residuals[i], kGapSpacings * input_.spacings[i]);
-    if (off <= least || aside > tube * tube || off < kGapSlope * std::sqrt(aside)) return;
+    if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return;
     if (own_.confidences[j] < kGapTrust) return;
-    if (std::abs(own_.normals[i].dot(own_.normals[j])) < kGapCosine) return;
+    if (std::abs(eye.normal.dot(own_.normals[j])) < kGapCosine) return;
     float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
     gap = std::min(gap, off);
   }
@@ -123,6 +144,7 @@ class Outlook {
   SurfacePoints::Sheets& sheets_;
   const std::vector<std::uint8_t>& sure_;
   detail::NearPairs pairs_;
+  std::array<Eye, simd::kQueries> eyes_;
   std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
 };
 
