@@ -12,10 +12,10 @@
 namespace palpate {
 namespace {
 
-constexpr float kMultiple = 2.5f;    // R over the gap
-constexpr float kFaint = 2.5f;       // sums of weights: 5.8 on a square grid
-constexpr float kFirstReach = 1.5f;  // radii
-constexpr int kWidenings = 2;        // of the reach, each twofold: gaps up to three radii
+constexpr float kMultiple = 2.5f;  // R over the gap, as R = 2.5 s bridges grids: docs/method.md 5.3
+constexpr float kFaint = 2.5f;     // sum of weights; a square grid has 5.8; judgement
+constexpr float kFirstReach = 1.5f;  // radii; judgement
+constexpr int kWidenings = 2;        // reaches tried, each twice the last: gaps up to three radii
 
 }  // namespace
 

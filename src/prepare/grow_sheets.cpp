@@ -1,3 +1,5 @@
+// Joins points into sheets, and asks pairs of points how the sheets around them lie.
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -20,9 +20,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLooked = 9;  // itself, and others of which some may share its place
+constexpr std::size_t kLooked = 9;  // nearest, itself among them; some may share its position
 
-// Random points have 0.52; scanners' meshes, frames and jittered grids 0.71 and above.
+// Nearest distance in spacings. Measured: random points 0.52; meshes, frames and jittered grids
+// 0.71 and above (docs/preparation.md, Support radius).
 constexpr double kIrregular = 0.65;
 
 }  // namespace
@@ -45,11 +46,11 @@ bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
 
 namespace {
 
-constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
-constexpr std::uint32_t kBlockPoints = 64;
-constexpr float kPlane = 0.5f;  // confidence
-constexpr float kResiduals = 3;
-constexpr float kOff = 0.12f;  // of the way
+constexpr float kMatters = 0.8f;  // of the point's R: only a smaller limit is applied; judgement
+constexpr std::uint32_t kBlockPoints = 64;  // that share one list of leaves; judgement, for speed
+constexpr float kPlane = 0.5f;              // confidence from which on a point has a plane
+constexpr float kResiduals = 3;             // off the plane, in its residuals: three sigma
+constexpr float kOff = 0.12f;               // off the plane, of the distance (7 degrees); judgement
 
 /// The limits of one block after another.
 class Limiter {

@@ -1,3 +1,5 @@
+// Fits a plane and a quadric to the points of one sheet, and finds where heights fall into two.
+
 #include "prepare/sheet_fit.hpp"
 
 #include <Eigen/Dense>
@@ -36,7 +38,8 @@ constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
 constexpr int kTerms = 6;  // of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
-// Of each term, and of x and y together. Products of two terms are found by both: the moments.
+// Powers of y, and of x and y together, in each term. They give the index of the moment that the
+// product of two terms sums up to.
 constexpr std::array kPowerOfY{0, 0, 1, 0, 1, 2};
 constexpr std::array kPower{0, 1, 1, 2, 2, 2};
 using Two __attribute__((vector_size(16))) = double;  // one register, on any x86-64

@@ -1,3 +1,5 @@
+// Which points reach across the gap around them.
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Noise, its map, and the radii that follow from it, on layers whose sigma is known.
+
 #include "prepare/noise.hpp"
 
 #include <gtest/gtest.h>
