@@ -31,15 +31,13 @@ constexpr double kApartSpacings = 0.5;
 constexpr double kEmpty = 0.45;
 constexpr std::size_t kFewestInSheet = 5;
 constexpr std::size_t kFewestToSplit = 6;
-
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
 constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
 
 constexpr int kTerms = 6;  // of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
-// Powers of y, and of x and y together, in each term. They give the index of the moment that the
-// product of two terms sums up to.
+// Powers of y, and of x and y together, in each term; those of products number the moments.
 constexpr std::array kPowerOfY{0, 0, 1, 0, 1, 2};
 constexpr std::array kPower{0, 1, 1, 2, 2, 2};
 using Two __attribute__((vector_size(16))) = double;  // one register, on any x86-64
@@ -237,9 +235,8 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
-  std::array<Two, 7> sums = {};  // of the first 14 moments
+  std::array<Two, 8> sums = {};  // the moments
   std::array<Two, 3> right = {};
-  double last = 0;
   double squares = 0;
   for (const Vector3d& offset : offsets_) {
     const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
@@ -249,24 +246,23 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
     const double xy = x * y;
     const double yy = y * y;
     const Two low[] = {{1, x}, {y, xx}, {xy, yy}};
-    const Two high[] = {{xx * x, xx * y}, {yy * x, yy * y}, {xx * xx, xx * xy}, {xx * yy, yy * xy}};
+    const Two high[] = {
+        {xx * x, xx * y}, {yy * x, yy * y}, {xx * xx, xx * xy}, {xx * yy, yy * xy}, {yy * yy, 0}};
     for (int k = 0; k < 3; ++k) {
       sums[k] += low[k];
       right[k] += p.z() * low[k];
     }
-    for (int k = 0; k < 4; ++k) sums[3 + k] += high[k];
-    last += yy * yy;
+    for (int k = 0; k < 5; ++k) sums[3 + k] += high[k];
     squares += p.z() * p.z();
   }
-  const auto moment = [&](int k) { return k < 14 ? sums[k / 2][k % 2] : last; };
   Terms heights;
   Eigen::Matrix<double, kTerms, kTerms> matrix;
   for (int row = 0; row < kTerms; ++row) {
     heights[row] = right[row / 2][row % 2];
     for (int column = 0; column < kTerms; ++column) {
-      const int y = kPowerOfY[row] + kPowerOfY[column];
       const int power = kPower[row] + kPower[column];
-      matrix(row, column) = moment(power * (power + 1) / 2 + y);
+      const int k = power * (power + 1) / 2 + kPowerOfY[row] + kPowerOfY[column];
+      matrix(row, column) = sums[k / 2][k % 2];
     }
   }
   quadric_ = matrix.ldlt().solve(heights);
