@@ -1,3 +1,4 @@
+// Lines of points, and the gaps between them: slices of a volume, the lines of a scanner.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,10 +1,11 @@
+// Measures noise in windows of several widths, and maps it.
+
 #include "prepare/noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "geometry/normals.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/sheet_fit.hpp"
@@ -20,12 +21,10 @@ struct Window {
   double reach;
   std::size_t fewest;        // points
   double quarter_to_median;  // of the residuals that noise alone gives
-  bool widens = false;       // where noise fills it
 };
 constexpr Window kNarrow{3, 12, 1.1};
 constexpr Window kNarrowest{2.2, 10, 1.2};
-constexpr Window kWidening{3, 12, 1.1, true};
-constexpr double kShape = 0.65;
+constexpr double kShape = 0.65;  // of the wider window's noise: the rest is shape
 
 // A ball full of points has a residual of 0.3 to 0.45 of its reach, and a layer whose sigma is a
 // quarter of the reach 0.23 (computed: uniform and normal heights, less the quadric). Where a
@@ -69,31 +68,52 @@ SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen
   return fit.bend > kVolume * reach ? first : fit;
 }
 
-/// The residual over samples of the grid, as the flatter quarter has it: where shape is finer than
-/// the window it passes for noise. 0 where no sample has enough neighbours.
-double noise_in_windows(const CellGrid& grid, double spacing, const Window& window) {
+/// What was fitted around one sampled point.
+struct Row {
+  Eigen::Vector3f at;
+  SheetFit narrow;
+  SheetFit narrowest;
+};
+
+std::vector<Row> fit_windows(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kSamples);
-  std::vector<float> residuals((grid.size() - step / 2 + step - 1) / step, -1);
-  detail::parallel_each_with<SheetFitter>(residuals.size(), 64, [&](std::size_t k, auto& fitter) {
+  std::vector<Row> rows((grid.size() - step / 2 + step - 1) / step);
+  detail::parallel_each_with<SheetFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
     const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-    const double reach = window.reach * spacing;
-    SheetFit fit = fitter.fit(grid, at, reach, spacing);
-    if (window.widens) fit = fit_beyond_noise(fitter, grid, at, reach, spacing, fit);
-    if (fit.points >= window.fewest) residuals[k] = static_cast<float>(fit.bend);
+    rows[k] = {at, fitter.fit(grid, at, kNarrow.reach * spacing, spacing),
+               fitter.fit(grid, at, kNarrowest.reach * spacing, spacing)};
   });
-  std::erase(residuals, -1.f);
+  return rows;
+}
+
+/// The noise that rows tell, as the flatter quarter has it: where shape is finer than the window it
+/// passes for noise. 0 where no row has enough points.
+double noise_in(const std::vector<Row>& rows, SheetFit Row::*fit, const Window& window) {
+  std::vector<float> residuals;
+  for (const Row& row : rows) {
+    if ((row.*fit).points >= window.fewest) {
+      residuals.push_back(static_cast<float>((row.*fit).bend));
+    }
+  }
   if (residuals.empty()) return 0;
   const auto quarter = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
   std::nth_element(residuals.begin(), quarter, residuals.end());
   return window.quarter_to_median * *quarter;
 }
 
+/// Widens windows that noise fills.
 double narrow_noise(const CellGrid& grid, double spacing) {
-  const double narrow = noise_in_windows(grid, spacing, kNarrow);
-  const double narrowest = noise_in_windows(grid, spacing, kNarrowest);
+  std::vector<Row> rows = fit_windows(grid, spacing);
+  const double narrow = noise_in(rows, &Row::narrow, kNarrow);
+  const double narrowest = noise_in(rows, &Row::narrowest, kNarrowest);
   if (narrowest > 0 && narrowest < kShape * narrow) return narrowest;
-  return fills(narrow, kNarrow.reach * spacing) ? noise_in_windows(grid, spacing, kWidening)
-                                                : narrow;
+  const double reach = kNarrow.reach * spacing;
+  if (!fills(narrow, reach)) return narrow;
+  detail::parallel_each_with<SheetFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
+    Row& row = rows[k];
+    row.narrow = fit_beyond_noise(fitter, grid, row.at, reach, spacing, row.narrow);
+  });
+  return noise_in(rows, &Row::narrow, kNarrow);
 }
 
 /// What windows of several widths round one place say.
@@ -221,58 +241,6 @@ LocalNoise NoiseMap::at(std::span<const Eigen::Vector3f> points, const Noise& wh
     }
   });
   return local;
-}
-
-namespace {
-
-// Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
-constexpr double kNoiseToTilt = 3.2;
-
-// No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
-// noise that needs it is the sensor's to filter.
-constexpr float kMostFloors = 2.4f;
-
-// Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
-// 0.04; a right angle 0.2.
-constexpr float kBends = 0.08f;
-constexpr float kEdge = 0.14f;
-constexpr float kShrink = 0.25f;
-constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
-
-}  // namespace
-
-std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, double normal_error,
-                               std::vector<float> floors) {
-  const double scale = kNoiseToTilt / normal_error;
-  std::vector<float> radii = noise.products;
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
-    radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
-    const float layer = static_cast<float>(kSigmasInReach) * noise.sigmas[i];
-    floors[i] = std::clamp(layer, floors[i], kMostFloors * floors[i]);
-    radii[i] = std::max(radii[i], floors[i]);
-  }
-  shrink_at_edges(grid, floors, radii);
-  return radii;
-}
-
-void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
-                     std::vector<float>& radii) {
-  const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
-  std::vector<float> small(radii.size());
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
-    small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
-  }
-  // Averaged, so that noise in the residuals does not make R flicker from point to point.
-  detail::parallel_each_with<std::vector<std::uint32_t>>(
-      radii.size(), 1024, [&](std::size_t i, auto& near) {
-        near.clear();
-        grid.within(grid.points()[i], kSmoothing * radii[i], near);
-        float sum = 0;
-        for (const std::uint32_t k : near) sum += small[k];
-        if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
-      });
 }
 
 }  // namespace palpate

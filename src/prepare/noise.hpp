@@ -1,3 +1,4 @@
+// The noise of a cloud: of all, and from place to place.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,17 +61,5 @@ class NoiseMap {
   float reach_ = 0;            // how far a value is of interest, m
   Value typical_;
 };
-
-/// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
-/// `normal_error` (rad), and at least four sigma, nowhere below a point's `floor` nor above
-/// 2.4 times that. All in sorted order, m.
-[[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
-                                             double normal_error, std::vector<float> floors);
-
-/// Makes support radii smaller again, by a quarter at most, where the points within them bend away
-/// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R
-/// (docs/method.md 5.3), a little noise is the smaller evil. Part of noisy_radii().
-void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
-                     std::vector<float>& radii);
 
 }  // namespace palpate

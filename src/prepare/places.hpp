@@ -1,3 +1,4 @@
+// Looks at single points and at the positions nearest to them.
 #pragma once
 
 #include <algorithm>

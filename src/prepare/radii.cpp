@@ -1,3 +1,5 @@
+// Chooses the support radius R of each point.
+
 #include "prepare/radii.hpp"
 
 #include <algorithm>
@@ -8,18 +10,20 @@
 #include <utility>
 
 #include "geometry/neighborhoods.hpp"
+#include "geometry/normals.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/lines.hpp"
 #include "prepare/places.hpp"
-#include "prepare/sheet_fit.hpp"
+#include "prepare/plane_fits.hpp"
+#include "prepare/strays.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLooked = 9;  // itself, and others of which some may share its place
+constexpr std::size_t kLooked = 9;  // nearest, itself among them; some may share its position
 
-// Random points have 0.52; scanners' meshes, frames and jittered grids 0.71 and above.
+// Nearest distance in spacings. Measured: random points 0.52; meshes, frames and jittered grids
+// 0.71 and above (docs/preparation.md, Support radius).
 constexpr double kIrregular = 0.65;
 
 }  // namespace
@@ -42,53 +46,11 @@ bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
 
 namespace {
 
-constexpr float kMultiple = 2.5f;    // R over the gap
-constexpr float kFaint = 2.5f;       // sums of weights: 5.8 on a square grid
-constexpr float kFirstReach = 1.5f;  // radii
-constexpr int kWidenings = 2;        // of the reach, each twofold: gaps up to three radii
-
-}  // namespace
-
-std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own) {
-  std::vector<std::uint32_t> faint;
-  for (std::uint32_t i = 0; i < radii.size(); ++i) {
-    if (sums[i] < kFaint) faint.push_back(i);
-  }
-  std::vector<std::uint8_t> raised(faint.size());
-  const std::vector<float> before = radii;
-  detail::parallel_ranges(faint.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> near;
-    std::vector<CellGrid::Neighbor> nearest;
-    SheetFitter fitter;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = faint[k];
-      const Line line = line_at(grid, i, nearest);
-      const float gap = gap_across(grid, i, line, kFirstReach * before[i], kWidenings, near);
-      const float wanted = kMultiple * gap;
-      if (!(wanted > before[i])) continue;
-      const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
-                                      static_cast<double>(spacings[i]));
-      if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
-      radii[i] = wanted;
-      spacings[i] = std::max(spacings[i], wanted / kMultiple);
-      own.normals[i] = fit.normal.cast<float>();
-      own.confidences[i] = static_cast<float>(fit.planarity);
-      own.residuals[i] = static_cast<float>(fit.residual);
-      own.bends[i] = static_cast<float>(fit.bend);
-      raised[k] = 1;
-    }
-  });
-  return static_cast<std::size_t>(std::ranges::count(raised, 1));
-}
-
-namespace {
-
-constexpr float kMatters = 0.8f;  // of the own R: a smaller limit is worth looking for
-constexpr std::uint32_t kBlockPoints = 64;
-constexpr float kPlane = 0.5f;  // confidence
-constexpr float kResiduals = 3;
-constexpr float kOff = 0.12f;  // of the way
+constexpr float kMatters = 0.8f;  // of the point's R: only a smaller limit is applied; judgement
+constexpr std::uint32_t kBlockPoints = 64;  // that share one list of leaves; judgement, for speed
+constexpr float kPlane = 0.5f;              // confidence from which on a point has a plane
+constexpr float kResiduals = 3;             // off the plane, in its residuals: three sigma
+constexpr float kOff = 0.12f;               // off the plane, of the distance (7 degrees); judgement
 
 /// The limits of one block after another.
 class Limiter {
@@ -181,6 +143,120 @@ void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
     for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
   });
   radii = std::move(limited);
+}
+
+namespace {
+
+// Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
+constexpr double kNoiseToTilt = 3.2;
+
+// No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
+// noise that needs it is the sensor's to filter.
+constexpr float kMostFloors = 2.4f;
+
+// Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
+// 0.04; a right angle 0.2.
+constexpr float kBends = 0.08f;
+constexpr float kEdge = 0.14f;
+constexpr float kShrink = 0.25f;
+constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
+
+}  // namespace
+
+std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, double normal_error,
+                               std::vector<float> floors) {
+  const double scale = kNoiseToTilt / normal_error;
+  std::vector<float> radii = noise.products;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
+    radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
+    const float layer = static_cast<float>(kSigmasInReach) * noise.sigmas[i];
+    floors[i] = std::clamp(layer, floors[i], kMostFloors * floors[i]);
+    radii[i] = std::max(radii[i], floors[i]);
+  }
+  shrink_at_edges(grid, floors, radii);
+  return radii;
+}
+
+void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
+                     std::vector<float>& radii) {
+  const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
+  std::vector<float> small(radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
+    small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
+  }
+  // Averaged, so that noise in the residuals does not make R flicker from point to point.
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      radii.size(), 1024, [&](std::size_t i, auto& near) {
+        near.clear();
+        grid.within(grid.points()[i], kSmoothing * radii[i], near);
+        float sum = 0;
+        for (const std::uint32_t k : near) sum += small[k];
+        if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
+      });
+}
+
+namespace {
+
+// The paper's multiple m (section V).
+constexpr double kPaperMultiple = 2.5;
+
+// Noise is not smoothed away at the price of shape of this part of the cloud's size; judgement.
+constexpr double kFinestShape = 25;
+
+// R in spacings at least, where points lie irregularly: gaps between random points are wider than
+// 2.5 spacings' support bridges. Measured: tests/scene/no_holes_test.cpp.
+constexpr double kIrregularMultiple = 3;
+
+// R of strays, in typical spacings: they are not to reach what is sampled finely; judgement.
+constexpr float kStrayRadius = 2.5f;
+
+constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
+
+/// The diagonal of the points' box, m; never 0.
+double extent(const CellGrid& grid) {
+  const CellGrid::Cell& root = grid.cells().front();
+  return std::max(static_cast<double>((root.upper - root.lower).norm()), kLoneSpacing);
+}
+
+/// Where the cloud is noisy, R follows the noise from place to place.
+std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
+  SupportOptions support{.multiple = options.radius_multiple,
+                         .noise = sampling.noise,
+                         .footprint = sampling.voxel > 0 ? sampling.footprint : 0,
+                         .normal_error = options.normal_error,
+                         .minimum = options.minimum_radius,
+                         .finest_shape = extent(sampling.grid) / kFinestShape};
+  if (!support.multiple && sampling.voxel <= 0 && is_irregular(sampling.grid, sampling.spacings)) {
+    support.multiple =
+        std::max(kIrregularMultiple, support_multiple(sampling.noise, sampling.spacing));
+  }
+  if (sampling.local.products.empty()) return support_radii(sampling.spacings, support);
+  support.noise = 0;
+  return noisy_radii(sampling.grid, sampling.local, options.normal_error,
+                     support_radii(sampling.spacings, support));
+}
+
+}  // namespace
+
+Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
+  const auto all = [&](double radius) {
+    return Radii{std::vector<float>(sampling.grid.size(), static_cast<float>(radius)), {}};
+  };
+  if (options.radius) return all(std::max(*options.radius, options.minimum_radius));
+  if (options.paper)
+    return all(options.radius_multiple.value_or(kPaperMultiple) * sampling.spacing);
+  Radii radii{radii_by_noise(sampling, options), {}};
+  limit_growth(sampling.grid, kSlope, radii.values);
+  if (!options.remove_speckle || !options.estimate_normals) return radii;
+  radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
+  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
+    if (radii.strays[i] != 0) {
+      radii.values[i] = kStrayRadius * static_cast<float>(sampling.spacing);
+    }
+  }
+  return radii;
 }
 
 }  // namespace palpate

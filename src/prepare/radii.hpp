@@ -1,13 +1,27 @@
+// The third step of prepare(): the support radius of each point.
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
-#include "prepare/sheets.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/sampling.hpp"
 
 namespace palpate {
+
+struct OwnSheets;
+
+/// The support radii.
+struct Radii {
+  std::vector<float> values;         ///< R_i in sorted order, m
+  std::vector<std::uint8_t> strays;  ///< 1: one, whose R is small; empty: not looked for
+};
+
+/// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say
+/// so.
+[[nodiscard]] Radii choose_radii(const Sampling& sampling, const PrepareOptions& options);
 
 /// How far a point's nearest other is, in spacings: the median over a sample of the points. 1 on a
 /// square grid, 0.9 where each is off its place by up to a tenth of the spacing, 0.5 where points
@@ -18,15 +32,6 @@ namespace palpate {
 /// Do the points lie so irregularly that the gaps between them need a larger support?
 [[nodiscard]] bool is_irregular(const CellGrid& grid, std::span<const float> spacings);
 
-/// Raises the support radii (m) of points that hardly any other's support reaches, though others
-/// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
-/// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a
-/// handful of near-duplicates is enough) spacings and limit_growth() make R too small, which tears
-/// a hole. A stray point has all others on one side and keeps its radius; so does the corner of a
-/// sheet. Returns how many were raised. Does not depend on the number of threads.
-std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own);
-
 /// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
 /// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
 /// what is sampled finely. In sorted order, m.
@@ -34,5 +39,17 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
 /// nullptr: all do.
 void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
                   const OwnSheets* own = nullptr);
+
+/// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
+/// `normal_error` (rad), and at least four sigma, nowhere below a point's `floor` nor above
+/// 2.4 times that. All in sorted order, m.
+[[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
+                                             double normal_error, std::vector<float> floors);
+
+/// Makes support radii smaller again, by a quarter at most, where the points within them bend away
+/// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R
+/// (docs/method.md 5.3), a little noise is the smaller evil. Part of noisy_radii().
+void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
+                     std::vector<float>& radii);
 
 }  // namespace palpate

@@ -1,3 +1,5 @@
+// Fits a plane and a quadric to the points of one sheet, and finds where heights fall into two.
+
 #include "prepare/sheet_fit.hpp"
 
 #include <Eigen/Dense>
@@ -29,17 +31,16 @@ constexpr double kApartSpacings = 0.5;
 constexpr double kEmpty = 0.45;
 constexpr std::size_t kFewestInSheet = 5;
 constexpr std::size_t kFewestToSplit = 6;
-
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
 constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
 
 constexpr int kTerms = 6;  // of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
-// Of each term, and of x and y together. Products of two terms are found by both: the moments.
+// Powers of y, and of x and y together, in each term; those of products number the moments.
 constexpr std::array kPowerOfY{0, 0, 1, 0, 1, 2};
 constexpr std::array kPower{0, 1, 1, 2, 2, 2};
-using Moments = Eigen::Matrix<double, 15, 1>;
+using Two __attribute__((vector_size(16))) = double;  // one register, on any x86-64
 
 Terms terms_at(const Vector3d& p) {
   return Terms(1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
@@ -234,29 +235,38 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
-  Moments moments = Moments::Zero();
-  Terms right = Terms::Zero();
+  std::array<Two, 8> sums = {};  // the moments
+  std::array<Two, 3> right = {};
   double squares = 0;
   for (const Vector3d& offset : offsets_) {
     const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
-    const Terms t = terms_at(p / reach);
-    moments.head<kTerms>() += t;
-    moments.segment<4>(6) += Eigen::Vector4d(t[3] * t[1], t[3] * t[2], t[5] * t[1], t[5] * t[2]);
-    moments.segment<3>(10) += t[3] * t.tail<3>();
-    moments.tail<2>() += t[5] * t.tail<2>();
-    right += p.z() * t;
+    const double x = p.x() / reach;
+    const double y = p.y() / reach;
+    const double xx = x * x;
+    const double xy = x * y;
+    const double yy = y * y;
+    const Two low[] = {{1, x}, {y, xx}, {xy, yy}};
+    const Two high[] = {
+        {xx * x, xx * y}, {yy * x, yy * y}, {xx * xx, xx * xy}, {xx * yy, yy * xy}, {yy * yy, 0}};
+    for (int k = 0; k < 3; ++k) {
+      sums[k] += low[k];
+      right[k] += p.z() * low[k];
+    }
+    for (int k = 0; k < 5; ++k) sums[3 + k] += high[k];
     squares += p.z() * p.z();
   }
+  Terms heights;
   Eigen::Matrix<double, kTerms, kTerms> matrix;
   for (int row = 0; row < kTerms; ++row) {
+    heights[row] = right[row / 2][row % 2];
     for (int column = 0; column < kTerms; ++column) {
-      const int y = kPowerOfY[row] + kPowerOfY[column];
       const int power = kPower[row] + kPower[column];
-      matrix(row, column) = moments[power * (power + 1) / 2 + y];
+      const int k = power * (power + 1) / 2 + kPowerOfY[row] + kPowerOfY[column];
+      matrix(row, column) = sums[k / 2][k % 2];
     }
   }
-  quadric_ = matrix.ldlt().solve(right);
-  squares = std::max(squares - quadric_.dot(right), 0.);
+  quadric_ = matrix.ldlt().solve(heights);
+  squares = std::max(squares - quadric_.dot(heights), 0.);
   fit.bend = std::sqrt(squares / static_cast<double>(placed_.size() - kTerms));
   fit.off = std::abs(quadric_[0]);
 }

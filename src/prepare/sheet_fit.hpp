@@ -1,3 +1,4 @@
+// One fit of a smooth sheet to the points around a position.
 #pragma once
 
 #include <Eigen/Core>

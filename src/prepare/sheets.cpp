@@ -1,62 +1,12 @@
+// Makes parts of sheets, within which signs agree, and turns their normals outward.
+
 #include "prepare/sheets.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "geometry/neighborhoods.hpp"
-#include "geometry/normals.hpp"
-#include "prepare/sheet_fit.hpp"
-
 namespace palpate {
-namespace {
-
-constexpr double kSmoothFit = 0.03;  // of R that a quadric may leave before others are looked for,
-constexpr double kNoisyFit = 1.2;    // of the noise
-
-}  // namespace
-
-OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                         std::span<const float> radii, std::span<const float> noise) {
-  Normals planes = estimate_normals(grid, radii, kNormalsReach);
-  OwnSheets sheets{std::move(planes.normals),
-                   std::move(planes.confidences),
-                   std::move(planes.residuals),
-                   {},
-                   std::vector<std::uint8_t>(grid.size())};
-  sheets.bends = sheets.residuals;
-  std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double flat = flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
-    if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
-  }
-  const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
-                         std::span<const std::uint32_t> near) {
-    const double smooth = std::max(kSmoothFit * static_cast<double>(radii[i]),
-                                   kNoisyFit * static_cast<double>(noise[i]));
-    const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
-                                    static_cast<double>(spacings[i]), smooth);
-    sheets.normals[i] = fit.normal.cast<float>();
-    sheets.confidences[i] = static_cast<float>(fit.planarity);
-    sheets.residuals[i] = static_cast<float>(fit.residual);
-    sheets.bends[i] = static_cast<float>(fit.bend);
-    sheets.others[i] = fit.others ? 1 : 0;
-  };
-  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    SheetFitter fitter;
-    detail::NearLists near;
-    detail::for_each_part(
-        grid, {.of_points = reaches, .of_cells = {}}, block, around,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          near.find(grid, first, count, runs, reaches);
-          for (std::uint32_t q = 0; q < count; ++q) {
-            if (reaches[first + q] > 0) refit(fitter, first + q, near.of(q));
-          }
-        });
-  });
-  return sheets;
-}
-
 namespace {
 
 using Eigen::Vector3d;
@@ -265,6 +215,31 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   join_parts(input, links_of(votes, signs), signs, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
+}
+
+Sheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
+                   const KnownSigns& known, OwnSheets& fits) {
+  if (fits.normals.empty()) return {};
+  for (std::size_t i = 0; i < weights.values.size(); ++i) {
+    if (weights.values[i] <= 0) fits.confidences[i] = 0;
+  }
+  Sheets result;
+  result.sheets =
+      make_sheets({sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas}, known,
+                  fits, result.twins);
+  return result;
+}
+
+KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+                       const PrepareOptions& options) {
+  using Orientation = PrepareOptions::Orientation;
+  const Orientation how = options.orientation;
+  KnownSigns known;
+  const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
+  if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
+  const bool given = how == Orientation::automatic || how == Orientation::given;
+  if (given && !options.viewpoint) known.given = sampling.normals;
+  return known;
 }
 
 }  // namespace palpate

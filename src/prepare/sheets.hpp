@@ -1,3 +1,4 @@
+// The step of prepare() that puts points on sheets and sheets into parts.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,6 +12,12 @@
 
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/place.hpp"
+#include "prepare/plane_fits.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate::detail {
 
@@ -55,22 +62,6 @@ class SignedSets {
 }  // namespace palpate::detail
 
 namespace palpate {
-
-/// What the sheet of each point is like, in sorted order.
-struct OwnSheets {
-  std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
-  std::vector<float> confidences;        ///< planarity, 0-1
-  std::vector<float> residuals;          ///< from the plane, m
-  std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
-  std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
-};
-
-// Normals come from a little further away than the surface: the balanced field adds their noise.
-inline constexpr float kNormalsReach = 1.15f;  // of R
-
-/// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
-[[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                                       std::span<const float> radii, std::span<const float> noise);
 
 /// Sorted points and what is known of them before sheets.
 struct SheetInput {
@@ -156,5 +147,19 @@ struct Snapped {
 // against the turn: an arc's is half.
 inline constexpr float kTurnMargin = 1.5f;
 inline constexpr float kChord = 0.6f;
+
+/// The sheets of all points, and the points that lie on two of them.
+struct Sheets {
+  SurfacePoints::Sheets sheets;
+  std::vector<Twin> twins;  ///< in rising order
+};
+
+/// make_sheets() of the points that weigh something. None where there are no fits.
+[[nodiscard]] Sheets join_sheets(const Sampling& sampling, const Radii& radii,
+                                 const Weights& weights, const KnownSigns& known, OwnSheets& fits);
+
+/// What the options let sheets know of signs.
+[[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+                                     const PrepareOptions& options);
 
 }  // namespace palpate

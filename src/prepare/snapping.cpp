@@ -1,3 +1,5 @@
+// Gives points at edges and creases the plane of a confident point nearby.
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// Finds points that are evidence of no surface: around them is neither a sheet nor a line.
+// Finds strays: points around which the others form neither a sheet nor a line.
 
 #include "prepare/strays.hpp"
 

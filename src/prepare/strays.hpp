@@ -1,3 +1,4 @@
+// Points that are evidence of no surface.
 #pragma once
 
 #include <cstdint>

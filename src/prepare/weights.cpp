@@ -1,3 +1,5 @@
+// Weighs points by how many others share their surface.
+
 #include "prepare/weights.hpp"
 
 #include <fmt/core.h>
@@ -120,6 +122,24 @@ std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const flo
         mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
       });
   return mask;
+}
+
+Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
+              const PrepareOptions& options) {
+  Weights weights{density_weights(sums), 0};
+  if (!sampling.counts.empty()) {
+    weigh_by_counts(sampling.grid, sampling.counts, radii.values, weights.values);
+  }
+  if (!options.remove_speckle || options.paper) return weights;
+  auto mask = speckle_mask(sampling.grid, radii.values, sums);
+  for (std::size_t i = 0; i < radii.strays.size(); ++i) mask[i] |= radii.strays[i];
+  const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+  if (speckle == mask.size()) return weights;  // a cloud of nothing else is a sparse one
+  weights.speckle = speckle;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] != 0) weights.values[i] = 0;
+  }
+  return weights;
 }
 
 }  // namespace palpate

@@ -1,11 +1,16 @@
+// The weights of points on a surface that is sampled more or less densely.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
 
 namespace palpate {
 
@@ -38,5 +43,15 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 [[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
                                                      std::span<const float> radii,
                                                      const WeightSums& sums);
+
+struct Weights {
+  std::vector<float> values;  ///< a_i in sorted order; 0: noise put the point there
+  std::size_t speckle = 0;    ///< how many are 0
+};
+
+/// Density weights (docs/method.md 2.2) by the `sums` of the radii, by how many points each stands
+/// for, and 0 for speckle and strays, which stay in the index.
+[[nodiscard]] Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
+                            const PrepareOptions& options);
 
 }  // namespace palpate

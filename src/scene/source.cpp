@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "prepare/columns.hpp"
+#include "prepare/place.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {

@@ -1,9 +1,10 @@
+// Which points reach across the gap around them.
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "prepare/radii.hpp"
-#include "prepare/weights.hpp"
+#include "prepare/gaps.hpp"
 
 namespace palpate {
 namespace {

@@ -1,3 +1,5 @@
+// Random points are told from regular ones.
+
 #include <gtest/gtest.h>
 
 #include <random>

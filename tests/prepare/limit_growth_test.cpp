@@ -1,3 +1,5 @@
+// R varies slowly from point to point.
+
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Noise, its map, and the radii that follow from it, on layers whose sigma is known.
+
 #include "prepare/noise.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +9,7 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/radii.hpp"
 #include "prepare/sheet_fit.hpp"
 #include "prepare/weights.hpp"
 
@@ -179,6 +182,19 @@ TEST(NoisyRadii, AreAtLeastFourSigma) {
                          std::vector<float>(grid.size(), 3 * kSpacing * kSpacing)};
   const std::vector<float> floors(grid.size(), 5 * kSpacing);  // as voxels of two spacings have
   for (const float r : noisy_radii(grid, noise, 0.3, floors)) EXPECT_GE(r, 11.99f * kSpacing);
+}
+
+TEST(NoisyRadii, AreTheRootOfNoiseOverTheWantedError) {
+  const CellGrid grid(sheet(60, 0));
+  const float product = 0.02f / 3.2f * 5e-5f;  // theta / 3.2 of R^2
+  const LocalNoise noise{std::vector<float>(grid.size(), 0.f),
+                         std::vector<float>(grid.size(), product)};
+  for (const float r : noisy_radii(grid, noise, 0.02, std::vector<float>(grid.size(), 5e-3f))) {
+    EXPECT_NEAR(r, std::sqrt(5e-5f), 1e-6f);
+  }
+  for (const float r : noisy_radii(grid, noise, 0.02, std::vector<float>(grid.size(), 2e-3f))) {
+    EXPECT_NEAR(r, 4.8e-3f, 1e-6f) << "at most 2.4 times what it would be without noise";
+  }
 }
 
 TEST(NoisyRadii, ShrinkAtAnEdgeAndKeepTheirFloor) {

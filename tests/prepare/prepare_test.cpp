@@ -1,3 +1,5 @@
+// prepare() as a whole: what it finds, keeps and refuses.
+
 #include "palpate/prepare/prepare.hpp"
 
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "prepare/columns.hpp"
+#include "prepare/given_normals.hpp"
 
 namespace palpate {
 namespace {

@@ -4,32 +4,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "prepare/sheets.hpp"
+#include "geometry/clouds.hpp"
+#include "prepare/fitted.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kRadius = 2.5f;  // R; a spacing is 1
+struct Made : test::Fitted {
+  explicit Made(const std::vector<Vector3f>& points)
+      : Fitted(points), snapped(snap_to_planes(input(), own)) {}
 
-struct Made {
-  CellGrid grid;
-  std::vector<float> spacings;
-  std::vector<float> radii;
-  OwnSheets own;
   Snapped snapped;
 };
-
-Made snap(const std::vector<Vector3f>& points) {
-  Made made{CellGrid(points), {}, {}, {}, {}};
-  made.spacings.assign(points.size(), 1.f);
-  made.radii.assign(points.size(), kRadius);
-  const std::vector<float> noise(points.size(), 0.f);
-  made.own = fit_own_sheets(made.grid, made.spacings, made.radii, noise);
-  made.snapped = snap_to_planes({made.grid, made.spacings, made.radii, noise}, made.own);
-  return made;
-}
 
 TEST(Snapping, GivesEdgesOfABoxThePlanesOfItsFaces) {
   std::vector<Vector3f> points;
@@ -40,11 +28,32 @@ TEST(Snapping, GivesEdgesOfABoxThePlanesOfItsFaces) {
       if (a > 0 && b > 0) points.emplace_back(0.f, a, b);
     }
   }
-  const Made made = snap(points);
+  const Made made(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_GE(made.own.confidences[i], 0.5f) << made.grid.points()[i].transpose();
     EXPECT_GT(made.own.normals[i].cwiseAbs().maxCoeff(), 0.99f);
   }
+}
+
+TEST(Snapping, PutsPointsOfACreaseOnTheSurePointsPlane) {
+  const Made made(test::floor_and_wall(15));
+  for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
+    const std::uint32_t host = made.snapped.hosts[i];
+    ASSERT_NE(host, kNoHost);
+    EXPECT_EQ(made.snapped.sure[i] != 0, host == i);
+    const Vector3f off = made.grid.points()[i] - made.grid.points()[host];
+    EXPECT_LT(std::abs(made.own.normals[host].dot(off)), 0.31f);
+  }
+}
+
+TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsSure) {
+  test::Clouds clouds(3);
+  std::vector<Vector3f> points = clouds.plane(14, 1);
+  for (Vector3f& p : points) p.z() = static_cast<float>(clouds.uniform(-0.8, 0.8));
+  const Made made(points);
+  std::size_t on_own = 0;
+  for (std::uint32_t i = 0; i < made.grid.size(); ++i) on_own += made.snapped.hosts[i] == i ? 1 : 0;
+  EXPECT_GT(2 * on_own, made.grid.size());
 }
 
 TEST(Snapping, LeavesBumpsFinerThanRWithoutAPlane) {
@@ -56,7 +65,7 @@ TEST(Snapping, LeavesBumpsFinerThanRWithoutAPlane) {
                           std::sin(k * x) * std::sin(k * (y + 0.4f)));
     }
   }
-  const Made made = snap(points);
+  const Made made(points);
   std::size_t hosted = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t host = made.snapped.hosts[i];
@@ -66,7 +75,7 @@ TEST(Snapping, LeavesBumpsFinerThanRWithoutAPlane) {
     std::size_t all = 0;
     for (const Vector3f& q : made.grid.points()) {
       const Vector3f way = q - made.grid.points()[i];
-      if (way.norm() > kRadius) continue;
+      if (way.norm() > test::kFittedRadius) continue;
       ++all;
       if (std::abs(made.own.normals[host].dot(way)) < 0.5f) ++on;
     }

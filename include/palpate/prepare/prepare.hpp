@@ -1,3 +1,4 @@
+// Makes a cloud into surface points that a field can be made of.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,0 +1,23 @@
+// The last step of prepare(): columns become SurfacePoints and a report.
+#pragma once
+
+#include <span>
+
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
+#include "prepare/sheets.hpp"
+#include "prepare/weights.hpp"
+
+namespace palpate {
+
+/// Moves all columns into their places; adds the twins; completes the `report`.
+[[nodiscard]] Prepared assemble(Sampling sampling, Radii radii, OwnSheets fits, Weights weights,
+                                Sheets sheets, const PrepareOptions& options,
+                                Prepared::Report report);
+
+/// Puts points that lie on two sheets on both, with half their weight each: a sheet that lacks the
+/// points of its crease would give way there. Indexes the points again.
+void add_twins(std::span<const Twin> twins, SurfacePoints& points);
+
+}  // namespace palpate

@@ -1,0 +1,65 @@
+// Finds points that hardly any other's support reaches, and bridges the gaps around them.
+
+#include "prepare/gaps.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "geometry/parallel.hpp"
+#include "prepare/lines.hpp"
+#include "prepare/sheet_fit.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr float kMultiple = 2.5f;  // R over the gap, as R = 2.5 s bridges grids: docs/method.md 5.3
+constexpr float kFaint = 2.5f;     // sum of weights; a square grid has 5.8; judgement
+constexpr float kFirstReach = 1.5f;  // radii; judgement
+constexpr int kWidenings = 2;        // reaches tried, each twice the last: gaps up to three radii
+
+}  // namespace
+
+std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own) {
+  std::vector<std::uint32_t> faint;
+  for (std::uint32_t i = 0; i < radii.size(); ++i) {
+    if (sums[i] < kFaint) faint.push_back(i);
+  }
+  std::vector<std::uint8_t> raised(faint.size());
+  const std::vector<float> before = radii;
+  detail::parallel_ranges(faint.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    std::vector<CellGrid::Neighbor> nearest;
+    SheetFitter fitter;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = faint[k];
+      const Line line = line_at(grid, i, nearest);
+      const float gap = gap_across(grid, i, line, kFirstReach * before[i], kWidenings, near);
+      const float wanted = kMultiple * gap;
+      if (!(wanted > before[i])) continue;
+      const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
+                                      static_cast<double>(spacings[i]));
+      if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
+      radii[i] = wanted;
+      spacings[i] = std::max(spacings[i], wanted / kMultiple);
+      own.normals[i] = fit.normal.cast<float>();
+      own.confidences[i] = static_cast<float>(fit.planarity);
+      own.residuals[i] = static_cast<float>(fit.residual);
+      own.bends[i] = static_cast<float>(fit.bend);
+      raised[k] = 1;
+    }
+  });
+  return static_cast<std::size_t>(std::ranges::count(raised, 1));
+}
+
+WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
+                      OwnSheets& fits) {
+  constexpr float kSlope = 1;  // of R over distance, once gaps are closed
+  WeightSums sums(sampling.grid, radii.values, options.kernel);
+  if (options.radius || options.paper || !options.estimate_normals) return sums;
+  if (close_gaps(sampling.grid, sums.own, sampling.spacings, radii.values, fits) == 0) return sums;
+  limit_growth(sampling.grid, kSlope, radii.values, &fits);
+  return WeightSums(sampling.grid, radii.values, options.kernel);
+}
+
+}  // namespace palpate

@@ -1,0 +1,172 @@
+// Measures the way to the next sheet, and lets pairs of points vote on how their sheets lie.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "field/formulas.hpp"
+#include "geometry/neighborhoods.hpp"
+#include "prepare/sheets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kNoneNear = std::numeric_limits<float>::infinity();
+
+// The next other sheet along a normal.
+constexpr float kGapReach = 1.6f;  // R
+constexpr float kGapTube = 1.3f;   // spacings to the side
+constexpr float kGapSlope = 0.5f;  // of the way to the side, the least height
+constexpr float kGapCosine = 0.8f;
+constexpr float kGapTrust = 0.3f;
+constexpr float kGapResiduals = 3;
+constexpr float kGapSpacings = 0.3f;
+
+// Votes of one sheet on another.
+constexpr float kVoteReach = 1.3f;  // R
+constexpr std::size_t kVoteSheets = 4;
+constexpr int kVotesEach = 3;
+/// What the points of one block see of other sheets.
+class Outlook {
+ public:
+  Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
+      : input_(input), own_(own), sheets_(grown.sheets), sure_(grown.sure) {}
+
+  void look(const detail::Block& block, detail::Surroundings& surroundings,
+            std::vector<SheetVote>& votes) {
+    const detail::Reach reach{.of_points = input_.radii, .times = kGapReach, .of_cells = {}};
+    detail::for_each_part(
+        input_.grid, reach, block, surroundings,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          if (!alone(first, runs)) look_from(first, count, runs, votes);
+        });
+  }
+
+ private:
+  /// Is there but one sheet, and does it not curl up?
+  [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
+    constexpr float kCurled = 0.3f;
+    const std::uint32_t sheet = sheets_.sheet[first];
+    const Vector3f& n = own_.normals[first];
+    for (const simd::Run& run : runs) {
+      for (std::uint32_t j = run.begin; j < run.end; ++j) {
+        if (sheets_.sheet[j] != sheet || !(n.dot(own_.normals[j]) > kCurled)) return false;
+      }
+    }
+    return true;
+  }
+
+  void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
+                 std::vector<SheetVote>& votes) {
+    for (std::uint32_t q = 0; q < count; ++q) {
+      others_[q].clear();
+      eyes_[q] = eye_at(first + q);
+    }
+    pairs_.each(
+        input_.grid, first, count, runs,
+        [this](std::uint32_t i) {
+          return own_.confidences[i] > 0 ? kGapReach * input_.radii[i] : 0;
+        },
+        [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
+    for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
+  }
+
+  /// What a point sees others with: copies, so that a pair costs few reads of memory.
+  struct Eye {
+    Vector3f at;
+    Vector3f normal;
+    float tube;    // to the side, m
+    float least;   // height of another sheet, m
+    float voting;  // squared reach, m^2; below 0: it has no vote
+    std::uint32_t sheet;
+  };
+
+  [[nodiscard]] Eye eye_at(std::uint32_t i) const {
+    const float spacing = input_.spacings[i];
+    const float voting = kVoteReach * input_.radii[i];
+    return {input_.grid.points()[i],
+            own_.normals[i],
+            kGapTube * spacing,
+            std::max(kGapResiduals * own_.residuals[i], kGapSpacings * spacing),
+            sure_[i] != 0 ? voting * voting : -1,
+            sheets_.sheet[i]};
+  }
+
+  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
+    if (j == first + q) return;
+    const Eye& eye = eyes_[q];
+    const Vector3f way = input_.grid.points()[j] - eye.at;
+    const float squared = way.squaredNorm();
+    measure_gap(eye, first + q, j, way, squared);
+    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet && sure_[j] != 0;
+    if (votes_on) others_[q].push_back({squared, j});
+  }
+
+  void measure_gap(const Eye& eye, std::uint32_t i, std::uint32_t j, const Vector3f& way,
+                   float squared) {
+    const float height = eye.normal.dot(way);
+    const float off = std::abs(height);
+    if (off <= eye.least) return;
+    const float aside = std::max(0.f, squared - height * height);
+    if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return;
+    if (own_.confidences[j] < kGapTrust) return;
+    if (std::abs(eye.normal.dot(own_.normals[j])) < kGapCosine) return;
+    float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
+    gap = std::min(gap, off);
+  }
+
+  /// The nearest points of the nearest other sheets.
+  void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
+            std::vector<SheetVote>& votes) {
+    std::sort(others.begin(), others.end());
+    std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
+    std::size_t count = 0;
+    for (const auto& [squared, j] : others) {
+      const std::uint32_t sheet = sheets_.sheet[j];
+      std::size_t k = 0;
+      while (k < count && heard[k].first != sheet) ++k;
+      if (k == kVoteSheets) continue;
+      if (k == count) heard[count++] = {sheet, 0};
+      if (heard[k].second++ >= kVotesEach) continue;
+      const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+      const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
+      votes.push_back(
+          {a, b,
+           agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, own_, i, j))});
+    }
+  }
+
+  const SheetInput& input_;
+  const OwnSheets& own_;
+  SurfacePoints::Sheets& sheets_;
+  const std::vector<std::uint8_t>& sure_;
+  detail::NearPairs pairs_;
+  std::array<Eye, simd::kQueries> eyes_;
+  std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
+};
+
+}  // namespace
+
+std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own, Growths& grown) {
+  grown.sheets.above.assign(input.grid.size(), kNoneNear);
+  grown.sheets.below.assign(input.grid.size(), kNoneNear);
+  const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
+  std::vector<std::vector<SheetVote>> votes(blocks.size());
+  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    detail::Surroundings surroundings;
+    Outlook outlook(input, own, grown);
+    for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
+  });
+  std::vector<SheetVote> all;
+  for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
+  std::stable_sort(all.begin(), all.end(), [](const SheetVote& x, const SheetVote& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  });
+  return all;
+}
+
+}  // namespace palpate

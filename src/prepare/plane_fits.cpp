@@ -1,0 +1,76 @@
+// Fits the plane of each point, and a quadric where that does not do.
+
+#include "prepare/plane_fits.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "geometry/neighborhoods.hpp"
+#include "geometry/normals.hpp"
+#include "prepare/given_normals.hpp"
+#include "prepare/sheet_fit.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kSmoothFit = 0.03;  // of R that a quadric may leave before others are looked for,
+constexpr double kNoisyFit = 1.2;    // of the noise
+
+}  // namespace
+
+OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
+                         std::span<const float> radii, std::span<const float> noise) {
+  Normals planes = estimate_normals(grid, radii, kNormalsReach);
+  OwnSheets sheets{std::move(planes.normals),
+                   std::move(planes.confidences),
+                   std::move(planes.residuals),
+                   {},
+                   std::vector<std::uint8_t>(grid.size())};
+  sheets.bends = sheets.residuals;
+  std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double flat = flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
+    if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
+  }
+  const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
+                         std::span<const std::uint32_t> near) {
+    const double smooth = std::max(kSmoothFit * static_cast<double>(radii[i]),
+                                   kNoisyFit * static_cast<double>(noise[i]));
+    const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
+                                    static_cast<double>(spacings[i]), smooth);
+    sheets.normals[i] = fit.normal.cast<float>();
+    sheets.confidences[i] = static_cast<float>(fit.planarity);
+    sheets.residuals[i] = static_cast<float>(fit.residual);
+    sheets.bends[i] = static_cast<float>(fit.bend);
+    sheets.others[i] = fit.others ? 1 : 0;
+  };
+  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
+    SheetFitter fitter;
+    detail::NearLists near;
+    detail::for_each_part(
+        grid, {.of_points = reaches, .of_cells = {}}, block, around,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          near.find(grid, first, count, runs, reaches);
+          for (std::uint32_t q = 0; q < count; ++q) {
+            if (reaches[first + q] > 0) refit(fitter, first + q, near.of(q));
+          }
+        });
+  });
+  return sheets;
+}
+
+OwnSheets fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {
+  if (!options.estimate_normals) return {};
+  OwnSheets fits =
+      fit_own_sheets(sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas);
+  if (!sampling.normals.empty()) {
+    take_given_normals(sampling.grid, sampling.normals, fits.normals);
+  }
+  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
+    if (radii.strays[i] != 0) fits.confidences[i] = 0;
+  }
+  return fits;
+}
+
+}  // namespace palpate

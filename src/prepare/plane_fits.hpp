@@ -1,0 +1,36 @@
+// The fourth step of prepare(): the plane of each point.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
+
+namespace palpate {
+
+/// What the sheet of each point is like, in sorted order.
+struct OwnSheets {
+  std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
+  std::vector<float> confidences;        ///< planarity, 0-1
+  std::vector<float> residuals;          ///< from the plane, m
+  std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
+  std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
+};
+
+// Normals come from a little further away than the surface: the balanced field adds their noise.
+inline constexpr float kNormalsReach = 1.15f;  // of R
+
+/// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
+[[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
+                                       std::span<const float> radii, std::span<const float> noise);
+
+/// Fits the points' planes and lets given normals take part; strays get no confidence. Empty where
+/// no normals are asked for.
+[[nodiscard]] OwnSheets fit_planes(const Sampling& sampling, const Radii& radii,
+                                   const PrepareOptions& options);
+
+}  // namespace palpate
