@@ -77,6 +77,7 @@ class Pokes {
       passed_ = passed_ || lost_run_ == kThroughTicks;
     }
     if (wanted > 0 || felt <= kFelt || true_distance(scene_, tick.hand) < kOutside) return;
+    if (true_distance(scene_, trace_.proxy[i]) > kAtBody) return;
     held_ = true;
     most_ = std::max(most_, felt);
   }
@@ -93,6 +94,7 @@ class Pokes {
  private:
   static constexpr double kInside = 1;   // s: what edges round off is no way through
   static constexpr double kOutside = 8;  // s
+  static constexpr double kAtBody = 4;   // s; a proxy farther out touches strays, not the body
   static constexpr double kMostOver = 1.3;
   static constexpr double kRough = 0.5;  // s: what a surface of points may be off its solid
 

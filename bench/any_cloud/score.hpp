@@ -21,7 +21,7 @@ struct Score {
   double highest = 0;       ///< the largest, s
   double pokes = 0;         ///< strokes and pokes in which contact is required
   double passed = 0;        ///< of them those that went through
-  double held = 0;          ///< of all those that were held 8 spacings outside, the ideal free
+  double held = 0;          ///< of all those held by the body 8 spacings outside, the ideal free
   double most_outside = 0;  ///< the largest force there, N
   double over = 0;          ///< share of ticks above 1.3 of the ideal force and the noise in it, %
   double energy = 0;        ///< given to the hand by a stroke, the most, mJ at 1 mm a spacing

@@ -75,8 +75,9 @@ std::string legend() {
          "K v dt, N. lost: % of required\ncontact. thru: pushes that went through. free: ticks "
          "with force in free air. side: ticks with force\nthe other way. h: mean distance "
          "of the proxy from the surface. pokes: in which contact is\nrequired, pass: that went "
-         "through the surface, held: outside by 8 spacings, outN: there by so much at\nmost, over: "
-         "% of ticks above 1.3 of the ideal force. mJ: given to the hand. us: a step.\n";
+         "through the surface, held: by the body, 8 spacings outside, outN: there by so much "
+         "at\nmost, over: % of ticks above 1.3 of the ideal force. mJ: given to the hand. us: a "
+         "step.\n";
 }
 
 std::string header() {
