@@ -29,10 +29,11 @@ constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many (
 constexpr std::size_t kStride = 8;   // one sample in so many is tried from all starts (judgement)
 constexpr std::size_t kEnough = 30;  // samples or matches (judgement)
 constexpr float kTrusted = 0.5f;     // confidence of a normal (judgement)
-// Cosine of 45 degrees between normals of one surface (docs/method.md 9)
+// Least cosine between normals of one surface: 45 degrees (docs/method.md 9)
 constexpr double kAlike = 0.7071;
 constexpr double kTukey = 4.685;  // sigmas: 95 % efficiency on Gaussian noise (docs/method.md 9)
-constexpr double kGaussian = 1.4826;  // sigma over the median of absolute values (derived)
+// Sigma over the median of absolute values, on Gaussian noise: 1 / Phi^-1(3/4) (derived)
+constexpr double kGaussian = 1.4826;
 constexpr double kTurn = 10 * std::numbers::pi / 180;  // rad between starts (docs/method.md 9)
 constexpr double kShrink = 0.7;  // of the reach, from step to step (judgement)
 
@@ -156,7 +157,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
   const MatrixXd zero = MatrixXd::Zero(size, size);
   Equations e{zero, zero, zero, VectorXd::Zero(size)};
   limit = std::max({limit, kTukey * kGaussian * middle_height(matches), 1e-9 * size_});
-  // Residuals within one part of the scene are correlated; assume four parts to its size.
+  // Residuals within one part of the scene err together; a part is a quarter of its size.
   std::map<std::array<int, 3>, VectorXd> parts;
   for (const Match& m : matches) {
     const double w = weight(m.height, limit);

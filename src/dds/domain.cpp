@@ -13,7 +13,7 @@
 namespace palpate::dds {
 namespace {
 
-// Ports of higher domains exceed 65535 (derived, DDSI-RTPS 9.6.1)
+// Ports begin at 7400 + 250 d (DDSI-RTPS 9.6.1); those of larger d exceed 65535 (derived)
 constexpr std::uint32_t kLargestDomain = 232;
 // Bytes; a depth image is a burst of packets (judgement)
 constexpr std::size_t kReceiveBuffer = 4 << 20;

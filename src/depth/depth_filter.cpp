@@ -28,7 +28,7 @@ constexpr double kBeyond = 0.25;
 
 // Outputs of some blocks of a row, in columns so that the compiler can vectorise.
 struct Part {
-  static constexpr int kMost = 64;
+  static constexpr int kMost = 64;  // blocks (judgement)
   float x[kMost], z[kMost], normal_x[kMost], normal_y[kMost], normal_z[kMost];
 };
 

@@ -16,7 +16,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint16_t kTooFar = 65535;
+constexpr std::uint16_t kTooFar = 65535;  // largest sample: some sensors' mark of too far
 
 }  // namespace
 

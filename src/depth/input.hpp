@@ -69,6 +69,7 @@ struct ImagePoint {
   double x = 0;
   double y = 0;
 };
+/// Where a camera with `distortion` sees what is at x, y without it.
 [[nodiscard]] ImagePoint distort(const CameraModel::Distortion& distortion, double x, double y);
 
 }  // namespace palpate::depth

@@ -13,8 +13,8 @@ namespace palpate::depth {
 namespace {
 
 constexpr std::size_t kShares = 128;  // frames in which all windows are visited once (judgement)
-constexpr std::size_t kPatience = 8;  // frames after which something is concluded
-constexpr double kNoteworthy = 0.1;   // relative change that is reported (judgement)
+constexpr std::size_t kPatience = 8;  // frames from one conclusion to the next (judgement)
+constexpr double kNoteworthy = 0.1;   // relative change that makes a new model (judgement)
 constexpr double kPattern = 4;  // times the frames' differences; more is shape (docs/method.md 6.2)
 constexpr double kMoved = 1.25;  // times the noise; larger differences are motion (judgement)
 // c, at least: windows grow in steps, and where pixels err alone some stop early by chance.

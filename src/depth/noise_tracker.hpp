@@ -49,8 +49,8 @@ class NoiseFit {
   /// `size`: values along a side, at most kLargest.
   explicit NoiseFit(int size);
 
-  static constexpr int kLargest = 40;
-  static constexpr int kTerms = 6;
+  static constexpr int kLargest = 40;  ///< values; the largest of kNoiseSizes
+  static constexpr int kTerms = 6;     ///< of a quadratic surface: 1, u, v, u^2, u v, v^2
 
   [[nodiscard]] int size() const { return size_; }
 
@@ -58,7 +58,7 @@ class NoiseFit {
   WindowNoise fit(std::span<const float> values);
 
  private:
-  static constexpr std::size_t kDegrees = 4;
+  static constexpr std::size_t kDegrees = 4;  // 0 to 3: the cubic terms tell the power
   using Row = std::array<float, kLargest>;
   using Coefficients = std::array<std::array<float, kDegrees>, kDegrees>;  // by degrees in u, v
 

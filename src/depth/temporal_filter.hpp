@@ -79,13 +79,12 @@ struct TemporalOptions {
   int hold = 10;            ///< frames for which a block that is not measured is remembered
 };
 
-/// Options that suit a sensor: G = 5, or 7 if pixels are correlated (c > 2), since the variances of
-/// fits tell less then.
+/// Options that suit a sensor: G = 5, or 7 if many pixels err together (c > 4), since the variances
+/// of fits are less certain then (docs/method.md 6.6).
 [[nodiscard]] TemporalOptions temporal_options(int memory, double correlation, double normal_error);
 
-/// The filter over time, after the fit, a block at a time: what stands
-/// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when
-/// the grid's size changes.
+/// Filters each block over time, after the fit: averages what stands still, takes what moves as it
+/// is measured. Bounded work; it allocates only when the grid's size changes.
 class TemporalFilter {
  public:
   /// Takes in one frame and replaces its columns by the filtered ones. Blocks that are empty stay

@@ -20,7 +20,7 @@ constexpr double kDiscovery = 3;        // s for a running node to be discovered
 constexpr double kMeasuring = 0.5;      // s of poses that give rate and delay (judgement)
 constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs (judgement)
 constexpr double kOldest = 1;           // s; a stamp further off is from another clock (judgement)
-constexpr double kClockError = 5e-4;    // s between two readings of one machine's clock (judgement)
+constexpr double kClockError = 5e-4;    // s that a good clock's stamp may be ahead (judgement)
 constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity (judgement)
 
 // The 95th percentile.
@@ -145,7 +145,7 @@ void RosDriver::check_clocks(const std::vector<double>& ages) const {
                   oldest > kOldest ? "past" : "future", kRemedy));
 }
 
-// Throws if the age of stamps has drifted from the age measured at start.
+// Throws if a pose has no stamp, or its age is far from the one measured at start.
 void RosDriver::check_age() const {
   if (!usual_age_) return;
   if (!told_.stamp) {

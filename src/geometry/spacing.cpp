@@ -15,8 +15,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMany = std::size_t{1} << 17;
-constexpr std::size_t kDigits = std::size_t{1} << 16;
+constexpr std::size_t kMany = std::size_t{1} << 17;    // values; from here on select() (judgement)
+constexpr std::size_t kDigits = std::size_t{1} << 16;  // values of half a float's bits
 
 // Integers in the order of the numbers.
 std::uint32_t rank_of(float value) {
@@ -65,8 +65,8 @@ namespace {
 using detail::Block;
 using detail::Surroundings;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kLargestFloat = std::numeric_limits<float>::max();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();  // m^2: no such neighbour
+constexpr float kLargestFloat = std::numeric_limits<float>::max();   // 1/m^2, for radii of 0
 // Other points that a spacing is measured from (docs/method.md 5.1)
 constexpr std::size_t kNearest = 8;
 constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over (docs/method.md 5.1)

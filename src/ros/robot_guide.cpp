@@ -31,12 +31,13 @@ constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
-constexpr double kBlink = 0.3;    // s without a sight of it that stop no robot for good (judgement)
+constexpr double kBlink = 0.3;    // s; after a shorter loss of sight it resumes at once (judgement)
 constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
 constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
-constexpr double kJoin = 0.02;      // m; a hand finds a place to that (judgement)
-constexpr double kJump = 0.01;      // m in one frame; hands and tools are thicker (judgement)
-// s; after a longer pause a retreat starts slowly again (judgement)
+constexpr double kJoin = 0.02;      // m; a hand finds a place again to that (judgement)
+// m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
+constexpr double kJump = 0.01;
+// s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
 constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -97,9 +98,9 @@ RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
   return place.free() && solid.source != nullptr && outdated ? solid : place;
 }
 
-// Lag that the rendered surface may have behind the seen one, m: it keeps moving while a frame is
-// prepared, takes one frame interval to arrive, and waits if the next frame is late. In one frame
-// the lag grows by at most one frame's motion; more has another cause.
+// Largest lag of the rendered surface behind the seen one, m. The seen one moves on while a frame
+// is prepared; the rendered one takes an interval to get there, and waits if the next frame is
+// late. In one frame the lag grows by at most one frame's motion; more has another cause.
 double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, double dt) {
   const double interval = proxy.source->state().interval;
   const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
@@ -129,7 +130,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   const Place proxy = judge(state.contact.proxy, now);
   if (proxy.source == nullptr) return without_view(state, now, anew);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
-  // Only a surface that it has followed may lag behind the one that is seen.
+  // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = place_ && (follows_ || now - followed_ <= kBlink);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
@@ -140,8 +141,8 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   return anew || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 
-// Lets the robot follow while proxy and hand are free. After a short loss of sight it resumes at
-// once.
+// Stops following when the proxy is not free. Starts again when proxy and hand have been free for
+// kFreeFor, when the button is pressed anew, or after a loss of sight shorter than kBlink.
 void RobotGuide::note(bool proxy_free, bool both_free, double now, bool anew) {
   free_since_ = both_free ? std::min(free_since_, now) : kNever;
   const bool may = follows_ || anew || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;

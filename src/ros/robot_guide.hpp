@@ -48,7 +48,7 @@ class RobotGuide {
     Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this place, m
   };
 
-  // Knowledge of the sources about one ball.
+  // The sources' answer about one ball.
   struct Place {
     const Source* source = nullptr;  // who says so; null: there is no camera
     Seen seen = {};
@@ -68,7 +68,7 @@ class RobotGuide {
   void note_held(const Place& held, double now);
   [[nodiscard]] Answer without_view(const ServoState& state, double now, bool anew);
 
-  // Obstacle that came over the robot's waiting position.
+  // Surface or obstacle that came over the waiting robot.
   struct Over {
     std::string_view what = {};  // empty: nothing
     double since = 0;            // s

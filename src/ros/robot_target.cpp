@@ -43,7 +43,7 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
-  constexpr double kGuide = 250;  // Hz at which a guide checks the way (judgement)
+  constexpr double kGuide = 250;  // Hz; a guide is asked at least so often (judgement)
   return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
 }
 

@@ -1,4 +1,4 @@
-// Limits, damps and slows the force between proxy and device.
+// Passes a force through watchdog, damper, soft start, slew limit, brake and clamp.
 #include "palpate/servo/guard.hpp"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
 
 }  // namespace
 
-/// Steps of a guard, and what it keeps from one to the next.
+/// Links of a guard, and its state between steps.
 class Guard::Inside {
  public:
   explicit Inside(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
@@ -186,7 +186,7 @@ Guard::Inside::Motion Guard::Inside::follow(const Guard::Input& input) const noe
           velocity_ + Guard::kSmoothing * (now - velocity_)};
 }
 
-// Energy in the spring, J, or in a force that still fades after the surface has gone.
+// Energy in the spring, or in a force that still fades after the surface has gone: the larger, J.
 double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }

@@ -1,4 +1,4 @@
-// Keeps the ledger of energy given to the hand and brakes when it is overdrawn.
+// Keeps the ledger of energy given to the hand and brakes while it is above zero.
 #include "servo/passivity.hpp"
 
 #include <algorithm>

@@ -34,13 +34,14 @@ class Passivity {
   void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
                double dt) noexcept;
 
-  /// Braking force (N) to add to `force` before it is sent, if the hand keeps moving by `way` (m)
-  /// per step. Counts the forces in the delay line. Zero while no energy was given. `damping` (N
-  /// s/m): B, of a damper that is part of `force`.
+  /// Braking force, N, to add to `force` before it is sent, if the hand keeps moving by `way` (m)
+  /// per step. Zero unless committed(), with `force`, is above zero. `damping`, N s/m: B of a
+  /// damper that is part of `force`.
   [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
                                       double dt, double damping = 0) const noexcept;
 
-  /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
+  /// Predicted ledger, J, after the forces in the delay line have acted, if the hand keeps moving
+  /// by `way` (m) per step.
   [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
 
   /// J; above zero: given to the hand, below: taken from it recently.

@@ -156,8 +156,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
         });
   }
 
-  // With a control callback a read posts itself when it finds a close frame at once; it and a close
-  // that begins meanwhile wait for each other for ever. So the close comes later, and without.
+  // A read with a control callback and a close may wait for each other; so drop it, post the close.
   void close() {
     closing_ = true;
     stream_.control_callback();

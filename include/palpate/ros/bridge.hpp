@@ -16,7 +16,7 @@
 namespace palpate {
 
 struct RosBridgeOptions {
-  /// Robot that follows a hand's proxy (docs/ros2.md).
+  /// Options of a robot that follows the first hand's proxy (docs/ros2.md).
   struct Robot {
     /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
     std::string preset;
@@ -33,7 +33,7 @@ struct RosBridgeOptions {
         {};  ///< targets are told only while this button of the hand is down, 0 to 31
     /// Names of the sources whose cameras say which places are free; empty: all.
     std::vector<std::string> sources = {};
-    /// Speed of retreat when a surface came over it, m/s, 0 to 1; 0: it stands still.
+    /// Speed at which it goes back from a surface that came over it, m/s, 0 to 1; 0: it stays.
     double retreat = 0.05;
   };
 

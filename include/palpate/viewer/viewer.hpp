@@ -96,7 +96,7 @@ struct ViewerControls {
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
-  /// Moves a tool to the target of a page's hand, world frame.
+  /// Gives a tool the target of a page's hand, world frame.
   std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
   /// The page let go of the tool, or went away.
   std::function<void(std::size_t device)> release = {};

@@ -10,7 +10,7 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kChunk = 64;
+constexpr int kChunk = 64;     // blocks (judgement)
 constexpr int kBentSizes = 4;  // quadratic fits up to 2/3 r_max: cubic terms would bias larger ones
 
 enum Kind : int { kNone, kAffine, kQuadratic };
@@ -130,11 +130,12 @@ inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
   return fit(in, shape(half_u, half_v), s);
 }
 
-// Four windows beside a block: along the axes, or between them.
+// Four windows beside a block.
 struct Directions {
   int u[kLanes];
   int v[kLanes];
 };
+// Along the axes, and along the diagonals.
 constexpr Directions kDirections[2] = {{{1, 0, -1, 0}, {0, 1, 0, -1}},
                                        {{1, -1, -1, 1}, {1, 1, -1, -1}}};
 
@@ -145,8 +146,8 @@ struct Aside {
   double
       promise;  // best score of windows there, over that of the largest one's mean: if it is flat
 };
-constexpr int kWays = 4;
-constexpr int kAsides = kWays * kSizes;
+constexpr int kWays = 4;                 // half or whole, along axes or diagonals
+constexpr int kAsides = kWays * kSizes;  // each of them in each size
 
 // The most promising first.
 struct Asides {
@@ -234,7 +235,7 @@ inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
                 .half_u = c.best_u[i],
                 .half_v = c.best_v[i]};
   if (c.kind[i] != kNone) search.score = centred_score(in, row, c, search);
-  constexpr int kLast = kSizes - 1;
+  constexpr int kLast = kSizes - 1;  // the largest size
   const double per_n =
       kExtents.of[c.half_u[kLast][i]].per_n * kExtents.of[c.half_v[kLast][i]].per_n;
   const double mean = shared_over(in.shared, 1, per_n) * c.variance[i] * per_n;

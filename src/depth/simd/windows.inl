@@ -10,7 +10,7 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = 4;  // doubles in 256 bits
 typedef double Doubles __attribute__((vector_size(kLanes * sizeof(double))));
 typedef long long Mask __attribute__((vector_size(kLanes * sizeof(double))));
 
@@ -87,7 +87,7 @@ struct Shape {
   return {u.v[0] * v.v[0], u.v[1], v.v[1], u.v[2], v.v[2], u.v[3], v.v[3], area};
 }
 
-// Of four windows of one size.
+// The same for four windows of one size.
 [[gnu::always_inline]] inline Shape shape(int half_u, int half_v) {
   const Extent& u = kExtents.of[half_u];
   const Extent& v = kExtents.of[half_v];
