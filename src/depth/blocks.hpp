@@ -85,7 +85,7 @@ void for_rows(const BlockGrid& grid, const Body& body) {
 /// The measured means of 2x2 blocks, in rows with a margin of empty blocks all around so that
 /// neighbours may be looked at without asking where the image ends.
 struct Blocks {
-  static constexpr int kMargin = 8;  ///< of blocks on each side
+  static constexpr int kMargin = 8;  ///< blocks on each side; kPlainLanes asks for it (derived)
 
   BlockGrid grid;
   std::size_t stride = 0;            ///< from row to row
@@ -204,7 +204,7 @@ void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& 
 /// neighbours that show the same surface.
 void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
 
-inline constexpr int kLongestGap = 3;  ///< blocks
+inline constexpr int kLongestGap = 3;  ///< blocks (docs/method.md 6.3)
 
 /// Blocks of `range` without small holes: `filled` gets a copy in which gaps in rows, then in
 /// columns, of up to kLongestGap blocks between two ends that may be one surface are bridged.

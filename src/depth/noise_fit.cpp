@@ -83,11 +83,12 @@ NoiseModel fit_noise_curve(std::span<const NoiseSample> samples, const NoiseMode
 
 namespace {
 
-constexpr int kFitRounds = 4;         // each leaves an eighth of what holes have pulled the fit off
-constexpr double kOneSurface = 0.75;  // share of the values that must lie on it
-constexpr float kDeviations = 3;      // from which on a value is none of the surface
-constexpr float kPerMedian = 1.4826F;   // sigma over the median of absolute values, 1 / Phi^-1(3/4)
-constexpr std::size_t kMedianOf = 256;  // values, about
+constexpr int kFitRounds = 4;  // each leaves an eighth of a hole's pull on the fit (judgement)
+constexpr double kOneSurface = 0.75;  // share of the values that must lie on it (judgement)
+constexpr float kDeviations = 3;      // beyond, a value is left out (docs/method.md 6.2)
+// Sigma over the median of absolute values, on Gaussian noise: 1 / Phi^-1(3/4) (derived)
+constexpr float kPerMedian = 1.4826F;
+constexpr std::size_t kMedianOf = 256;  // values that a median takes, about (judgement)
 
 }  // namespace
 

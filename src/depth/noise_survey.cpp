@@ -16,9 +16,9 @@ constexpr float kFlat = 2;  // variances up to this times the sample's are noise
 constexpr double kMedianOfFour = 0.839;
 constexpr double kMissing = 0.125;  // share of the noise that a size may take for shape (judgement)
 
-// Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
-// Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
-// most.
+// Where n_c grew by a factor f from windows of half the size, infinite ones are taken to find
+// f^kSharedPower times more (judgement). For Gaussian correlation over up to a tenth of the size,
+// n_c comes out 6 % too small at most.
 constexpr double kSharedPower = 0.6;
 
 // Mean and width of the half of sorted values that lie closest together.

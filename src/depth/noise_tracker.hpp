@@ -14,7 +14,7 @@ namespace palpate::depth {
 
 /// Depths in steps of a fourth of an octave from 0.1 m on: narrow enough that sigma(z) z0^2 / z^2
 /// is the same all over a bin for sensors that match patterns.
-inline constexpr int kNoiseBins = 32;
+inline constexpr int kNoiseBins = 32;  // to 26 m (derived)
 
 [[nodiscard]] inline int noise_bin(double z) {
   return std::clamp(static_cast<int>(std::floor(4 * std::log2(z / 0.1))), 0, kNoiseBins - 1);
@@ -84,7 +84,7 @@ struct NoiseWindow {
 
 /// Pixels along a side. Small windows see noise and little shape; where neighbours err together
 /// they take noise for shape.
-inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
+inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};  // docs/method.md 6.2
 
 /// Some 256 windows of each size, all over the image.
 [[nodiscard]] std::vector<NoiseWindow> lay_noise_windows(int width, int height);

@@ -29,7 +29,7 @@ struct DeviceInfo {
 
 /// A device at the beginning of a step, in its own frame.
 struct DeviceState {
-  /// State of the connection to the device.
+  /// Condition of the device.
   enum class Status {
     ok,
     silent,    ///< not latched: no data from the hand, so no force may be applied; the position is

@@ -10,8 +10,10 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kChunk = 64;     // blocks (judgement)
-constexpr int kBentSizes = 4;  // quadratic fits up to 2/3 r_max: cubic terms would bias larger ones
+constexpr int kChunk = 64;  // blocks (judgement)
+// Sizes of quadratic fits, up to 0.57 r_max: cubic terms would bias larger ones
+// (docs/method.md 6.3)
+constexpr int kBentSizes = 4;
 
 enum Kind : int { kNone, kAffine, kQuadratic };
 
@@ -51,10 +53,9 @@ inline void round_sizes(Chunk& c) {
   }
 }
 
-// Largest windows: what noise and wanted error ask for, in blocks foreshortened as the slopes
-// tell.
+// Sets the largest windows: by noise and wanted error, in blocks that the slopes foreshorten.
 inline void size_windows(const FitInput& in, int row, Chunk& c) {
-  constexpr float kSide = .88F;  // a square with the second moments of a disc
+  constexpr float kSide = .88F;  // half side over radius: a disc's moments (docs/method.md 6.3)
   const auto y = static_cast<float>(in.y0 + row * in.step_y);
   const auto step_x = static_cast<float>(in.step_x);
   const auto step_y = static_cast<float>(in.step_y);
