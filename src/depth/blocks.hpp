@@ -181,7 +181,7 @@ struct BlockFits {
   }
 };
 
-/// Decides from inverse depths whether neighbouring blocks show the same surface.
+/// Limits by how much the inverse depths of neighbouring blocks differ on one surface.
 struct SameSurface {
   static constexpr float kClose = 4.3F;  ///< 3 sigma of two blocks' difference: 3 sqrt(2) (derived)
 

@@ -1,4 +1,4 @@
-// Averages each block over time, and restarts it when the surface changes.
+// Averages each block over time while it stands still, and follows it while it moves.
 #include "depth/temporal_filter.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// Builds the cells of a CellGrid: bounds, Morton keys, sorting, and splits of cells that are too
-// full.
+// Builds the cells of a CellGrid: bounds, Morton keys, sorting, and splits of full cells.
 #include "geometry/cell_builder.hpp"
 
 #include <fmt/core.h>

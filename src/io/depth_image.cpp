@@ -1,4 +1,4 @@
-// Turns a depth image into points.
+// Reads depth images (PGM, PNG) and turns them into points.
 #include "io/depth_image.hpp"
 
 #include <fmt/format.h>

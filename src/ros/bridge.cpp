@@ -1,4 +1,4 @@
-// Publishes hands, surfaces and reports to ROS 2 at their rates.
+// Publishes hands, surfaces and reports to ROS 2, each at its rate, and takes forces from robots.
 #include "palpate/ros/bridge.hpp"
 
 #include <fmt/format.h>

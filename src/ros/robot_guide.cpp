@@ -76,8 +76,8 @@ RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& option
   for (const Witness& witness : witnesses_) (void)witness.source->seen({}, 0);  // asks for frames
 }
 
-// A ball is free where a camera sees it free and no camera that looks there is silent. One that
-// sees something does not believe another's frame that is older than when that came.
+// The highest answer of the sources counts, in the order of Seen::Says. But free gives way to solid
+// where its frame is older than kStays, or than the moment when the solid came.
 RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
   const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
   Place place;
@@ -110,7 +110,7 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
-// Is the straight way from where the robot is seen free?
+// Is the straight way from the robot to the target seen to be free?
 bool RobotGuide::may_go_to(const Vector3d& target, double now) {
   if (!place_ || (target - *place_).norm() <= kWayStep) return true;
   const auto steps = static_cast<int>(std::ceil((target - *place_).norm() / kWayStep));
@@ -159,7 +159,7 @@ RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
 }
 
 void RobotGuide::pause() {
-  held_ = -kNever;  // who knows
+  held_ = -kNever;  // not seen meanwhile
   free_since_ = kNever;
   followed_ = -kNever;
   ahead_ = 0;
@@ -188,8 +188,8 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
   return answer;
 }
 
-// Only what is seen to come steadily over the place is a surface to go back from. What came in a
-// jump, or while nobody looked, is between it and the camera: the way back would lead into it.
+// Lets the robot go back only from what came steadily over its position. What came in a jump, or
+// unseen, stands between it and the camera: the way back would lead into it.
 void RobotGuide::note_held(const Place& held, double now) {
   const double known = held.free() ? 0 : -kNever;
   const double before = std::exchange(held_, held.solid() ? held.seen.behind : known);
@@ -203,9 +203,9 @@ void RobotGuide::note_held(const Place& held, double now) {
   over_.what = held_ - before <= kJump ? kPassed : kCame;
 }
 
-// Clouds do not tell what is free, only the tool's own way through them does: a robot follows it
-// until a surface comes over it or lets it go, and again once nothing has held the hand for a while
-// and the tool is where the robot is.
+// Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
+// tool until a surface comes over it or lets it go. It follows again once nothing has held the hand
+// for kFreeFor and the tool is where the robot is.
 RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool anew) {
   const auto waits = [](Reason reason) {
     return Answer{.reason = reason, .why = std::string(reason)};

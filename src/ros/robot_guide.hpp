@@ -79,13 +79,12 @@ class RobotGuide {
   std::vector<Witness> witnesses_;
   std::optional<Eigen::Vector3d> place_ = {};  // where the robot is, m, world
   bool follows_ = true;
-  double speed_ = 0;  // of the touched surface towards the camera, at most of late, m/s
-  double ahead_ = 0;  // of the proxy the last target is, towards the camera, m
+  double speed_ = 0;  // highest of the touched surface towards the camera of late, m/s
+  double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
   double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
-  double followed_ = 0;  // when last, and nothing was solid since, s
+  double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
   double looked_ = 0;    // when it was asked last, s
-  double held_ = 0;      // how far the robot's place was behind what was seen then, m; -infinite:
-                         // it was not seen
+  double held_ = 0;      // how far the robot was behind what was seen then, m; -infinite: not seen
   Over over_;
 };
 
