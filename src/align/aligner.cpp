@@ -56,7 +56,7 @@ Isometry3d turned(const Vector3d& turn, const Vector3d& about) {
   return result;
 }
 
-// Not at all, about the axes of a cube's faces, and of its corners.
+// Turns of the starts: none, and about the axes of a cube's faces and corners.
 std::vector<Vector3d> turns() {
   std::vector<Vector3d> all = {Vector3d::Zero()};
   for (int i = 0; i < 27; ++i) {
@@ -102,8 +102,8 @@ Aligner::Aligner(const std::vector<RoughSource>& sources)
   size_ = std::sqrt(std::max(size_ / count - middle_.squaredNorm(), radius_ * radius_));
 }
 
-// The nearest place of a surface is straight below a point, except at the surface's rim: what is
-// beside its foot by more than R is over no surface.
+// The nearest point of a surface lies straight below a sample, except at the surface's rim: a
+// sample more than R beside it lies over no surface.
 void Aligner::match(const Poses& poses, std::size_t from, std::size_t to, double reach,
                     std::size_t stride, std::vector<Match>& found) const {
   const SurfacePoints& other = *sources_[to].points;
@@ -151,7 +151,7 @@ std::vector<Match> Aligner::matches(const Poses& poses, Moving moving, double re
   return found;
 }
 
-// Heights beyond `limit` count nothing, nor those far out of the noise that is measured.
+// Heights beyond `limit` do not count, or beyond what the measured noise makes if that is more.
 Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, double limit) const {
   const Index size = 6 * static_cast<Index>(moving.end);
   const MatrixXd zero = MatrixXd::Zero(size, size);

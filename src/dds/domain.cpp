@@ -30,8 +30,8 @@ std::uint32_t domain_id(const std::string& text) {
   return id;
 }
 
-// From Iron on. SYSTEM_DEFAULT leaves it to us, and OFF allows no less than what is on this
-// machine.
+// ROS 2 has the variable since Iron. SYSTEM_DEFAULT leaves the choice to palpate; OFF still allows
+// what is on this machine.
 Range range_from(const std::string& text) {
   if (text == "SUBNET") return Range::subnet;
   if (text == "LOCALHOST" || text == "OFF" || text == "SYSTEM_DEFAULT") return Range::localhost;

@@ -83,7 +83,8 @@ Sums sum_strips(const simd::WindowTable& table, int column, int row, int reach_u
   return sums;
 }
 
-// From the table's middle to (u, v) from there, and from inverse depth to that above `plane`.
+// Moves the sums' origin from the table's middle to (u, v), and makes inverse depths relative to
+// `plane`.
 void move_to_block(double u, double v, const Vector3d& plane, Sums& s) {
   s.r[5] += v * (v * s.r[0] - 2 * s.r[2]);
   s.r[4] += u * v * s.r[0] - u * s.r[2] - v * s.r[1];

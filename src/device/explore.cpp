@@ -242,7 +242,7 @@ class Explorer {
     return best;
   }
 
-  // From a to b; begins and ends in the direction of `rise`, to 3/4 of which it goes up.
+  // Arc from a to b; begins and ends in the direction of `rise`, and goes up by 3/4 of it.
   [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
     const double length = (b - a).norm() + 1.5 * rise.norm();
     const double piece = 0.5 * kClearance * options_.radius;

@@ -36,7 +36,7 @@ inline constexpr unsigned kNoDevice = 0xffffffff;
 inline constexpr int kEncoderReset = 1;
 inline constexpr int kAutomatic = 2;
 inline constexpr int kInkwell = 4;
-// Whether it is calibrated.
+// States of calibration.
 inline constexpr unsigned kCalibrated = 0x5000;
 inline constexpr unsigned kNeedsUpdate = 0x5001;
 inline constexpr unsigned kNeedsHand = 0x5002;

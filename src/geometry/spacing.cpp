@@ -164,7 +164,7 @@ float smoothed(float own, float weight, float sum) {
   return std::min(std::clamp(mean, kMinChange * own, kMaxChange * own), kMaxRatio * sum / weight);
 }
 
-// With its nearest alone.
+// Averages a point's spacing over its nearest others alone.
 float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std::uint32_t i) {
   std::vector<CellGrid::Neighbor> found;
   grid.nearest(grid.points()[i], kNearest + 1, found);

@@ -71,7 +71,7 @@ class Clutch {
     return rest;
   }
 
-  /// From the hand to the tool while the clutch is not held, m.
+  /// Offset from the hand to the tool while the clutch is not held, m.
   [[nodiscard]] const Eigen::Vector3d& shift() const noexcept { return shift_; }
 
  private:

@@ -45,8 +45,8 @@ struct DeviceState {
   /// m/s; damping and brake depend on it. Estimate it from positions where it is not measured.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::uint32_t buttons = 0;  ///< bit k: button k is down
-  /// From the tool's axes to the device's, of unit length; the identity while the tool is held
-  /// straight, along the device's axes, and where the device does not measure it.
+  /// Rotation from the tool's axes to the device's, of unit length; the identity while the tool is
+  /// held along the device's axes, and where the device does not measure it.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   double gripper = 0;  ///< opening between its fingers, m; 0 where there is none
 };

@@ -146,8 +146,8 @@ struct ViewerOptions {
   std::optional<Eigen::Vector3d> origin = {};
   /// Unit; unset: +z, or +y or -y where the points stand on a flat base along it.
   std::optional<Eigen::Vector3d> up = {};
-  /// From where the scene is seen at first where no stream says where its sensor is, m, world;
-  /// unset: from anywhere.
+  /// Position from which the scene is shown first if no stream has a sensor's pose, m, world;
+  /// unset: any.
   std::optional<Eigen::Vector3d> eye = {};
   /// States of the streams; two threads of the viewer call it about four times a second, perhaps at
   /// the same time.

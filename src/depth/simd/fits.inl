@@ -1,13 +1,13 @@
 #pragma once
 
-// Which window fits a block best. In an anonymous namespace: see windows.inl.
+// Chooses the window that fits a block best. In an anonymous namespace: see windows.inl.
 
 #include "depth/simd/aside.inl"
 
 namespace palpate::simd {
 namespace {
 
-// How far a window has to reach for slopes that tell the foreshortening; 1: the plain ones do.
+// Reach of a window whose slopes give the foreshortening well enough, blocks; 1: the plain ones do.
 inline int first_reach(const FitInput& in, const Chunk& c, int i) {
   constexpr double kSlopeError = 0.15;  // of the tangent (judgement)
   constexpr int kLargestReach = 8;      // blocks (judgement)

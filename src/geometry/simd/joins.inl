@@ -13,7 +13,7 @@
 namespace palpate::simd {
 namespace {
 
-// How many floats one instruction takes. Another number would give the same sums.
+// Floats that one instruction takes. Another number would give the same sums.
 constexpr std::size_t kNativeLanes = std::experimental::native_simd<float>::size();
 
 template <std::size_t kLanes>
