@@ -128,7 +128,7 @@ void NoiseFit::subtract(std::span<const float> values, const Coefficients& surfa
   }
 }
 
-// The median of a part of them tells as much.
+// Takes the median of some of them, which is enough.
 float NoiseFit::typical_residual() {
   sorted_.clear();
   const std::size_t step = 1 + residuals_.size() / kMedianOf;

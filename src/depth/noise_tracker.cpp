@@ -67,7 +67,7 @@ struct NoiseTracker::State {
   int width = 0;
   int height = 0;
   std::size_t turn = 0;    // windows i with i % kShares == turn are looked at
-  std::size_t waited = 0;  // frames that have told nothing
+  std::size_t waited = 0;  // frames that gave no samples
   bool told = false;
   std::vector<NoiseWindow> windows;
   std::vector<SeenNoise> single;       // what single frames show

@@ -58,7 +58,7 @@ class NoiseFit {
   WindowNoise fit(std::span<const float> values);
 
  private:
-  static constexpr std::size_t kDegrees = 4;  // 0 to 3: the cubic terms tell the power
+  static constexpr std::size_t kDegrees = 4;  // 0 to 3: the cubic terms give the power
   using Row = std::array<float, kLargest>;
   using Coefficients = std::array<std::array<float, kDegrees>, kDegrees>;  // by degrees in u, v
 

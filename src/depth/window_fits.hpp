@@ -52,8 +52,8 @@ struct FacePlane {
 [[nodiscard]] std::optional<double> left_by_paraboloid(const simd::FitInput& input,
                                                        const FacePlane& near, int reach);
 
-/// Fits faces beside edges and creases again, each from its own blocks alone, and tells which face
-/// a block lies on.
+/// Fits faces beside edges and creases again, each from its own blocks alone, and finds the face
+/// that a block lies on.
 ///
 /// Windows reach over an edge by as much as noise hides, and their planes lean by that; or they
 /// show what is hidden at their block. Where the planes of two faces meet is known better than what

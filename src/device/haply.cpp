@@ -130,8 +130,8 @@ class HaplyDriver final : public DeviceDriver {
     let_pass(socket_);
   }
 
-  // A frame is the answer to a command; what came before it is old. Who does not tell in time where
-  // the hand is gets no force.
+  // A frame is the answer to a command; what came before it is old. A service that does not report
+  // the hand's position in time gets no force.
   [[nodiscard]] std::vector<HaplyDevice> answer_to(const Vector3d& force) {
     socket_.poll();
     const std::uint64_t before = socket_.received();

@@ -1,4 +1,4 @@
-// Hands whose device another node of ROS 2 owns: it tells poses and takes forces, over DDS.
+// Hands whose device another node of ROS 2 owns: it publishes poses and takes forces, over DDS.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,8 +75,8 @@ class RosDriver final : public DeviceDriver {
   DeviceInfo info_;
   RosReading told_;
   std::optional<double> usual_age_;   // of a pose by its stamp, s; unset: there are no stamps
-  double velocity_time_ = 0;          // when a velocity was told last
-  Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is told, and its time
+  double velocity_time_ = 0;          // when a velocity came last
+  Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is found, and its time
   double from_time_ = 0;
 };
 

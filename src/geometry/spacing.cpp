@@ -75,8 +75,8 @@ constexpr float kMaxChange = 1.5f;   // of a spacing by averaging, at most (docs
 constexpr float kMaxRatio = 2;       // to the spacing around it (docs/method.md 5.1)
 constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range (derived)
 constexpr float kStray = 8;               // times its block's spacing: a stray point (judgement)
-// Fewer than eight others tell no area. A fifth of the way to the nearest makes R, which is 2.5
-// spacings, half of that gap.
+// Share of the distance to the nearest other, if fewer than eight give no area: R, which is 2.5
+// spacings, is then half of that distance (derived).
 constexpr float kGapShare = 0.2f;
 
 using Nearest = void (*)(const simd::Join&, simd::Row*);

@@ -13,10 +13,10 @@
 
 namespace palpate::ros {
 
-/// Decides where a robot may be told to go: to the proxy, where a camera sees that it is free, or
-/// on a surface from its front. Else it waits where it was told last, and goes back towards the
-/// camera when what is seen comes steadily over that place. It follows again once hand and proxy
-/// have been free for half a second, or the dead man's button is pressed anew. One thread asks.
+/// Decides where a robot may go: to the proxy, where a camera sees that it is free, or on a surface
+/// from its front. Else it waits at its last target, and goes back towards the camera when what is
+/// seen comes steadily over it. It follows again once hand and proxy have been free for half a
+/// second, or the dead man's button is pressed anew. One thread asks.
 class RobotGuide {
  public:
   /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
@@ -24,7 +24,7 @@ class RobotGuide {
   RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, double tool_radius);
 
   struct Answer {
-    std::optional<Eigen::Vector3d> target = {};  ///< m, world; none: it is told nothing
+    std::optional<Eigen::Vector3d> target = {};  ///< m, world; unset: no target is sent
     bool retreats = false;                       ///< the target is on its way back
     std::string_view reason = {};                ///< why it does not follow; empty: it does
     std::string why = {};                        ///< the same with what is known of it
@@ -34,7 +34,7 @@ class RobotGuide {
   /// dead man's button was up before, and what is on the way is the user's to see.
   [[nodiscard]] Answer look(const ServoState& state, double now, bool anew);
 
-  /// The robot is told nothing now for other reasons.
+  /// No target is sent now, for other reasons.
   void pause();
 
   /// The robot is there, whatever target was answered last.

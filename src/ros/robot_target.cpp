@@ -107,7 +107,7 @@ RosBridge::RobotState RobotTarget::state() const {
   return told_;
 }
 
-// Why the hand lets no target be told; empty: it does.
+// Why the hand allows no target; empty: it does.
 std::string_view RobotTarget::objection(const ServoState& state, double now) {
   if (state.step == 0 || now - stepped_ > kStill) return "the servo makes no steps";
   if (state.device == DeviceState::Status::silent) return "no data from the hand";

@@ -46,8 +46,8 @@ class RecentForces {
   [[nodiscard]] std::vector<Eigen::Vector3f> since(std::uint64_t& seen) const;
 
  private:
-  // A place is written with release and read with acquire: who reads a newer force than expected
-  // also sees a count that tells so.
+  // A place is written with release and read with acquire: a reader that meets a newer force than
+  // expected also sees the newer count.
   using Place = std::array<std::atomic<float>, 3>;
 
   std::array<Place, kSteps> forces_{};

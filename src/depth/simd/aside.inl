@@ -177,7 +177,7 @@ struct Search {
   int shift_u, shift_v, half_u, half_v;
 };
 
-// Looks at four windows, takes the best of them that are explained if it wins, and tells which are.
+// Tries four windows, takes the best of the explained ones if it wins, and returns which they are.
 inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search& search) {
   const Directions& to = kDirections[aside.diagonal ? 1 : 0];
   const int half_u = c.half_u[aside.size][search.i];
