@@ -131,7 +131,7 @@ class NoiseSurvey {
   SurveyedNoise noise_;
 };
 
-/// A depth image that somebody else owns. Depths along the optical axis, m, row by row; whatever
+/// View of a depth image, which it does not own. Depths along the optical axis, m, row by row; what
 /// is not within nearest ... farthest (0, NaN, infinity too) counts as not measured.
 struct DepthView {
   std::span<const float> depth;
@@ -148,12 +148,12 @@ struct DepthView {
   [[nodiscard]] bool valid(float z) const { return z >= nearest && z <= farthest; }
 };
 
-/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: the first frame
-/// gives a start by what quadratic surfaces leave of its windows, differences of frames replace it
-/// where the scene stands still, and from then on every frame adds a bounded share. What they do
-/// not tell (too few pixels, all of one value) is taken from the prior. The model that is handed
-/// out changes only when the evidence has moved by a tenth, so that the fits of a still scene stay
-/// the same. One thread uses it; it allocates only when the size of the frames changes.
+/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: by what quadratic
+/// surfaces leave of windows in single frames, completed and bounded by differences of frames where
+/// the scene stands still. The first frame shows all windows, later ones a share of them each. What
+/// they do not give (too few pixels, all of one value) is taken from the prior. The model changes
+/// only when the evidence has moved by a tenth, so that the fits of a still scene stay the same.
+/// One thread uses it; it allocates only when the size of the frames changes.
 class NoiseTracker {
  public:
   explicit NoiseTracker(const NoiseModel& prior);
