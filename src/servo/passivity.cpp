@@ -56,7 +56,7 @@ Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt,
   return -std::min(energy / square, strongest(dt, damping) / dt) * way;
 }
 
-// The brake, as a damper beside another, N s/m.
+// Strongest brake, as a damper beside another of `damping`, N s/m.
 double Passivity::strongest(double dt, double damping) const noexcept {
   return std::max(0.0, options_.mass / (2 * std::max(2, options_.delay + 1) * dt) - damping);
 }
