@@ -85,7 +85,7 @@ std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string&
   return camera;
 }
 
-// With a stamp time is simulated; without, it is that of the clock of servos.
+// Starts by simulated time if there is a stamp, else by the servos' clock.
 Source::StartTime start_of(const std::optional<double>& stamp, double latency) {
   if (!stamp) return [] { return SteadyClock().now() + kLead; };
   return [start = *stamp + latency] { return start; };

@@ -29,10 +29,11 @@ constexpr std::size_t kSamples = 2000;  // of each source, up to twice as many (
 constexpr std::size_t kStride = 8;   // one sample in so many is tried from all starts (judgement)
 constexpr std::size_t kEnough = 30;  // samples or matches (judgement)
 constexpr float kTrusted = 0.5f;     // confidence of a normal (judgement)
-// Cosine of 45 degrees between normals of one surface (docs/method.md 9)
+// Least cosine between normals of one surface: 45 degrees (docs/method.md 9)
 constexpr double kAlike = 0.7071;
 constexpr double kTukey = 4.685;  // sigmas: 95 % efficiency on Gaussian noise (docs/method.md 9)
-constexpr double kGaussian = 1.4826;  // sigma over the median of absolute values (derived)
+// Sigma over the median of absolute values, on Gaussian noise: 1 / Phi^-1(3/4) (derived)
+constexpr double kGaussian = 1.4826;
 constexpr double kTurn = 10 * std::numbers::pi / 180;  // rad between starts (docs/method.md 9)
 constexpr double kShrink = 0.7;  // of the reach, from step to step (judgement)
 
@@ -55,7 +56,7 @@ Isometry3d turned(const Vector3d& turn, const Vector3d& about) {
   return result;
 }
 
-// Not at all, about the axes of a cube's faces, and of its corners.
+// Turns of the starts: none, and about the axes of a cube's faces and corners.
 std::vector<Vector3d> turns() {
   std::vector<Vector3d> all = {Vector3d::Zero()};
   for (int i = 0; i < 27; ++i) {
@@ -101,8 +102,8 @@ Aligner::Aligner(const std::vector<RoughSource>& sources)
   size_ = std::sqrt(std::max(size_ / count - middle_.squaredNorm(), radius_ * radius_));
 }
 
-// The nearest place of a surface is straight below a point, except at the surface's rim: what is
-// beside its foot by more than R is over no surface.
+// The nearest point of a surface lies straight below a sample, except at the surface's rim: a
+// sample more than R beside it lies over no surface.
 void Aligner::match(const Poses& poses, std::size_t from, std::size_t to, double reach,
                     std::size_t stride, std::vector<Match>& found) const {
   const SurfacePoints& other = *sources_[to].points;
@@ -150,13 +151,13 @@ std::vector<Match> Aligner::matches(const Poses& poses, Moving moving, double re
   return found;
 }
 
-// Heights beyond `limit` count nothing, nor those far out of the noise that is measured.
+// Heights beyond `limit` do not count, or beyond what the measured noise makes if that is more.
 Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, double limit) const {
   const Index size = 6 * static_cast<Index>(moving.end);
   const MatrixXd zero = MatrixXd::Zero(size, size);
   Equations e{zero, zero, zero, VectorXd::Zero(size)};
   limit = std::max({limit, kTukey * kGaussian * middle_height(matches), 1e-9 * size_});
-  // Residuals within one part of the scene are correlated; assume four parts to its size.
+  // Residuals within one part of the scene err together; a part is a quarter of its size.
   std::map<std::array<int, 3>, VectorXd> parts;
   for (const Match& m : matches) {
     const double w = weight(m.height, limit);

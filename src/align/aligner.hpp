@@ -10,7 +10,7 @@ namespace palpate::detail {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Poses = std::vector<Eigen::Isometry3d>;
 
-/// A point that is looked for on other surfaces.
+/// A point of a source, to be matched with other surfaces.
 struct AlignSample {
   Eigen::Vector3d place;  // world, where it roughly is
   Eigen::Vector3d normal;
@@ -21,8 +21,8 @@ struct Match {
   std::size_t from, to, sample;
   Eigen::Vector3d place;  // world
   double height;          // over the other's plane, m
-  Vector6d row;  // of the height by a turn about the middle (times its size) and a shift of `from`
-  Vector6d doubt;  // what the row changes by with the normal of `from` in the other's stead
+  Vector6d row;  // of the height by size times a turn of `from` about the middle, and by its shift
+  Vector6d doubt;  // change of the row if the normal of `from` replaces the other's
 };
 
 /// Range of sources that move: those before `begin` stay fixed, those from `end` on wait.
@@ -30,26 +30,26 @@ struct Moving {
   std::size_t begin, end;
 };
 
-/// Normal equations of what moves.
+/// Normal equations of the sources that move.
 struct Equations {
   Eigen::MatrixXd information, doubt, scatter;
   Eigen::VectorXd slope;
 };
 
-/// Samples of all sources, and what they tell of poses.
+/// Samples all sources, and finds their poses.
 class Aligner {
  public:
   explicit Aligner(const std::vector<RoughSource>& sources);
 
-  /// Beside those before it: the best of what comes of several turns.
-  /// @throws Error when that shares too little.
+  /// Aligns `source` with those before it, from several starts, and keeps the best result.
+  /// @throws Error when it shares too little with them.
   void place(Poses& poses, std::size_t source) const;
-  /// From coarse to fine: where `reach` (m) is large, so are heights that count.
+  /// Refines poses from coarse to fine: while `reach` (m) is large, so are the heights that count.
   void refine(Poses& poses, Moving moving, double reach, std::size_t stride = 1) const;
-  /// Residuals within `reach`, overlap within R.
+  /// Fills in the fits: residuals within `reach`, overlap within R.
   void tell_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
                  std::vector<AlignedSource>& results) const;
-  /// @throws Error when something is left free to slide or turn.
+  /// Fills in the deviations. @throws Error when a source is left free to slide or turn.
   void tell_deviations(const Poses& poses, std::vector<AlignedSource>& results) const;
   [[nodiscard]] double size() const { return size_; }
   [[nodiscard]] double radius() const { return radius_; }
@@ -72,7 +72,7 @@ class Aligner {
   double radius_ = 0;  // R, m
 };
 
-/// Median of what matches are off by, m.
+/// Median of the matches' absolute heights, m.
 [[nodiscard]] double middle_height(const std::vector<Match>& matches);
 
 }  // namespace palpate::detail

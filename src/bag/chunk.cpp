@@ -11,7 +11,7 @@ namespace palpate::bag {
 
 namespace {
 
-// Bytes; an empty image may be packed any number of times (judgement)
+// Bytes that may be packed to any ratio, as empty images pack well (judgement)
 constexpr std::uint64_t kHarmless = 16 << 20;
 constexpr std::uint64_t kLargestRatio = 1000;  // unpacked over packed bytes (judgement)
 

@@ -12,7 +12,7 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema or metadata (judgement)
+constexpr std::uint64_t kLargestNote = 16 << 20;  // bytes of a schema, a channel ... (judgement)
 constexpr std::uint64_t kAllNotes = 256 << 20;    // bytes of all of them (judgement)
 constexpr std::uint64_t kLargestRun = 1 << 20;    // bytes outside chunks read at once (judgement)
 constexpr std::uint64_t kAttachmentHead = 64 << 10;  // bytes, mostly names (judgement)

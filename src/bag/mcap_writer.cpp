@@ -1,4 +1,4 @@
-// Writes MCAP files whose ending is complete after every chunk.
+// Writes MCAP files that can be read whenever the program or the machine stops.
 #include "bag/mcap_writer.hpp"
 
 #include <fcntl.h>
@@ -15,7 +15,7 @@ namespace palpate::bag {
 
 namespace {
 
-constexpr std::size_t kSmallEnding = 256 << 10;  // bytes (judgement)
+constexpr std::size_t kSmallEnding = 256 << 10;  // bytes; written after each chunk (judgement)
 // Bytes; leaves 16 MiB of a chunk for the rest (judgement)
 constexpr std::size_t kLargestMessage = kLargestChunk - (16 << 20);
 constexpr std::size_t kMostChannels = 65535;  // ids have 16 bits (derived)

@@ -15,7 +15,7 @@ class RandomFile {
   RandomFile(const RandomFile&) = delete;
   RandomFile& operator=(const RandomFile&) = delete;
 
-  /// Size when the file was opened, bytes; it may grow since.
+  /// Size when the file was opened, bytes; it may have grown since.
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   /// @throws Error when there are not so many bytes, and beyond kLargestChunk and a little more.

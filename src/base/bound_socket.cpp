@@ -1,5 +1,4 @@
-// Binds UNIX sockets that only their owner can use, and removes stale ones left by programs that
-// ended.
+// Binds UNIX sockets for their owner alone, and removes those that ended programs left behind.
 #include "base/bound_socket.hpp"
 
 #include <fcntl.h>

@@ -13,7 +13,7 @@ namespace palpate {
 /// it.
 class SharedLibrary {
  public:
-  /// Whether it may be unloaded. Libraries of devices start threads that they leave behind.
+  /// May the library be unloaded? Libraries of devices start threads that they leave behind.
   enum class Unload { with_the_last_copy, never };
 
   /// Loads the first of `names` that loads: file names as the system's linker knows them, or paths.

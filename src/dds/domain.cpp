@@ -13,7 +13,7 @@
 namespace palpate::dds {
 namespace {
 
-// Ports of higher domains exceed 65535 (derived, DDSI-RTPS 9.6.1)
+// Ports begin at 7400 + 250 d (DDSI-RTPS 9.6.1); those of larger d exceed 65535 (derived)
 constexpr std::uint32_t kLargestDomain = 232;
 // Bytes; a depth image is a burst of packets (judgement)
 constexpr std::size_t kReceiveBuffer = 4 << 20;
@@ -30,8 +30,8 @@ std::uint32_t domain_id(const std::string& text) {
   return id;
 }
 
-// From Iron on. SYSTEM_DEFAULT leaves it to us, and OFF allows no less than what is on this
-// machine.
+// ROS 2 has the variable since Iron. SYSTEM_DEFAULT leaves the choice to palpate; OFF still allows
+// what is on this machine.
 Range range_from(const std::string& text) {
   if (text == "SUBNET") return Range::subnet;
   if (text == "LOCALHOST" || text == "OFF" || text == "SYSTEM_DEFAULT") return Range::localhost;

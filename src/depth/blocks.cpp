@@ -11,10 +11,10 @@ namespace {
 
 // Pixels from a block's middle to its pixels' middles: sqrt(2) / 2 (derived)
 constexpr float kHalfDiagonal = .7F;
-// Tangent of the incidence up to which neighbours count as close
+// Tangent of an incidence of 70 degrees, up to which neighbours count as close (judgement)
 constexpr double kSteepest = 2.75;
 constexpr int kSupporters = 2;  // of eight neighbours; fewer: a flying pixel (docs/method.md 6.3)
-constexpr float kStraight = 7.3F;  // 3 sigma of a - 2 b + c
+constexpr float kStraight = 7.3F;  // 3 sigma of a - 2 b + c: 3 sqrt(6) (derived)
 
 simd::BlockLimits limits_of(const NoiseModel& noise, const BlockGrid& grid) {
   const auto& s = noise.coefficients;

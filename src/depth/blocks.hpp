@@ -61,7 +61,7 @@ struct BlockRange {
 /// Calls body(row) for each row, on several threads: see parallel_ranges().
 template <class Body>
 void for_rows(const BlockGrid& grid, const Body& body) {
-  constexpr std::size_t kRowsAtATime = 8;
+  constexpr std::size_t kRowsAtATime = 8;  // that a thread takes at once (judgement)
   detail::parallel_each(static_cast<std::size_t>(grid.rows), kRowsAtATime,
                         [&](std::size_t row) { body(static_cast<int>(row)); });
 }
@@ -71,8 +71,8 @@ void for_rows(const BlockGrid& grid, const Body& body) {
 [[nodiscard]] inline simd::DepthGate depth_gate(const BlockGrid& grid, float pixels,
                                                 const NoiseModel& noise,
                                                 const DepthFilterOptions& range) {
-  constexpr float kDeviations = 3;
-  constexpr float kSteepest = 3;  // tangent of the incidence
+  constexpr float kDeviations = 3;  // of a pixel (judgement)
+  constexpr float kSteepest = 3;    // tangent of the incidence (judgement)
   const auto& s = noise.coefficients;
   const double pixel = std::max(std::abs(grid.step_x), std::abs(grid.step_y)) / 2;
   return {static_cast<float>(range.nearest),
@@ -85,7 +85,7 @@ void for_rows(const BlockGrid& grid, const Body& body) {
 /// The measured means of 2x2 blocks, in rows with a margin of empty blocks all around so that
 /// neighbours may be looked at without asking where the image ends.
 struct Blocks {
-  static constexpr int kMargin = 8;  ///< of blocks on each side
+  static constexpr int kMargin = 8;  ///< blocks on each side; kPlainLanes asks for it (derived)
 
   BlockGrid grid;
   std::size_t stride = 0;            ///< from row to row
@@ -112,7 +112,7 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   return std::min(0.5 * correlation, 1.0);
 }
 
-/// Ratio of the variance of a mean of many blocks to that of independent blocks.
+/// Ratio of the variance of a mean of many blocks to that if blocks erred alone.
 [[nodiscard]] inline double shared_error(double correlation) {
   return std::max(0.25 * correlation * correlation, 1.0);
 }
@@ -181,9 +181,9 @@ struct BlockFits {
   }
 };
 
-/// Decides from inverse depths whether neighbouring blocks show the same surface.
+/// Limits by how much the inverse depths of neighbouring blocks differ on one surface.
 struct SameSurface {
-  static constexpr float kClose = 4.3F;  ///< 3 sigma of the difference of two blocks
+  static constexpr float kClose = 4.3F;  ///< 3 sigma of two blocks' difference: 3 sqrt(2) (derived)
 
   NoiseModel noise;
   float steep = 0;  ///< relative change of depth from block to block
@@ -204,7 +204,7 @@ void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& 
 /// neighbours that show the same surface.
 void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
 
-inline constexpr int kLongestGap = 3;  ///< blocks
+inline constexpr int kLongestGap = 3;  ///< blocks (docs/method.md 6.3)
 
 /// Blocks of `range` without small holes: `filled` gets a copy in which gaps in rows, then in
 /// columns, of up to kLongestGap blocks between two ends that may be one surface are bridged.

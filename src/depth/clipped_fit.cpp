@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr int kStrips = 8;            // strips that a window is cut into (judgement)
 constexpr double kFewestBlocks = 25;  // blocks; fewer fit no plane (judgement)
 constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2 (docs/method.md 6.3)
-// Times what noise bends a plane, three deviations up (docs/method.md 6.3)
+// Times the variance of a quadratic term: the most that noise makes of three (docs/method.md 6.3)
 constexpr double kBent = 12;
 
 // Sums over blocks of the products of 1, u, v, u^2, u v, v^2, and of these times inverse depth.
@@ -50,8 +50,8 @@ void add_strip(const simd::WindowTable& table, int column, int row, const int (&
   for (int k = 0; k < 6; ++k) sums.r[k] += sum(k);
   sums.rr += sum(6);
   sums.counts += sum(7);
-  constexpr int kU[] = {0, 1, 0, 2, 1, 0};
-  constexpr int kV[] = {0, 0, 1, 0, 1, 2};
+  constexpr int kU[] = {0, 1, 0, 2, 1, 0};  // powers of u in the six terms
+  constexpr int kV[] = {0, 0, 1, 0, 1, 2};  // powers of v
   const std::array<double, 5> of_u = powers(u[0], u[1]);
   const std::array<double, 5> of_v = powers(v[0], v[1]);
   for (int i = 0; i < 6; ++i) {
@@ -83,7 +83,8 @@ Sums sum_strips(const simd::WindowTable& table, int column, int row, int reach_u
   return sums;
 }
 
-// From the table's middle to (u, v) from there, and from inverse depth to that above `plane`.
+// Moves the sums' origin from the table's middle to (u, v), and makes inverse depths relative to
+// `plane`.
 void move_to_block(double u, double v, const Vector3d& plane, Sums& s) {
   s.r[5] += v * (v * s.r[0] - 2 * s.r[2]);
   s.r[4] += u * v * s.r[0] - u * s.r[2] - v * s.r[1];

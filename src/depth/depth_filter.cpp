@@ -19,16 +19,16 @@ namespace {
 
 using Eigen::Vector3f;
 
-// A plane that seems to be seen at less than 6 degrees is noise: its neighbours are not farther
-// away than so many block widths.
+// Block widths to a neighbour, at most: a plane that seems to be seen at less than 6 degrees is
+// noise (judgement; 1 / sin 6 degrees).
 constexpr float kMostGrazing = 10;
 
-// A fit may leave the range of measured depths by this share.
+// Share by which a fit may leave the range of measured depths (judgement).
 constexpr double kBeyond = 0.25;
 
 // Outputs of some blocks of a row, in columns so that the compiler can vectorise.
 struct Part {
-  static constexpr int kMost = 64;
+  static constexpr int kMost = 64;  // blocks (judgement)
   float x[kMost], z[kMost], normal_x[kMost], normal_y[kMost], normal_z[kMost];
 };
 

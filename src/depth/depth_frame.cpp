@@ -16,7 +16,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::uint16_t kTooFar = 65535;
+constexpr std::uint16_t kTooFar = 65535;  // largest sample: some sensors' mark of too far
 
 }  // namespace
 
@@ -46,9 +46,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kClose = 0.05;  // rms of an image's points, pixels; real ones have 4e-3 at most
-constexpr double kOutlying = 3;  // times the rms: such a point was moved
-constexpr double kFewestKept = 0.99;  // share of points that are where they were seen
-constexpr int kMostRounds = 10;       // of the fit (judgement)
+constexpr double kOutlying = 3;  // times the rms: such a point was moved (judgement)
+// Share of points that are where they were seen, at least (judgement)
+constexpr double kFewestKept = 0.99;
+constexpr int kMostRounds = 10;  // of the fit (judgement)
 
 // A point as the camera would see it.
 struct Sight {

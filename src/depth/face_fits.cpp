@@ -12,18 +12,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kTile = 4;  // blocks; the middle one looks (docs/method.md 6.4)
+constexpr int kTile = 4;  // blocks to a side; one in the middle looks (docs/method.md 6.4)
 constexpr int kWays[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
 constexpr int kAround = 2;  // tiles to each side that share faces: ten blocks (docs/method.md 6.4)
 constexpr int kBehind = 4;  // blocks from a face's end to one that shows what is beyond (judgement)
 constexpr int kLook = 2;    // blocks around the meeting line: 5 x 5 (docs/method.md 6.4)
 constexpr int kFarLook = 6;  // blocks; largest reach of the paraboloid (judgement)
-// Squared cosine of 45 degrees; less may be round (docs/method.md 6.4)
+// Squared cosine of 45 degrees: what turns less may be round (docs/method.md 6.4)
 constexpr double kTurnedSquare = 0.5;
-// Nine variances by which a paraboloid has to fit better (docs/method.md 6.4)
+// Variances: three deviations squared between planes, and by which a paraboloid has to fit better
+// (docs/method.md 6.4)
 constexpr double kSurelyAhead = 9;
 constexpr double kOffFace = 16;  // four deviations, squared (docs/method.md 6.4)
-// Ratio of slope variances; a plane this vague adds nothing (judgement)
+// Times the slopes' variance before; a vaguer plane adds nothing (judgement)
 constexpr double kLessSure = 2;
 
 FacePlane face_plane(const BlockFits& fits, int column, int row) {
@@ -132,7 +133,8 @@ struct FaceFits::Search {
     return true;
   }
 
-  // Residuals of both planes at the measured blocks around one, cut off at four deviations.
+  // Residuals of the edge or crease of both planes at the measured blocks around one, cut off at
+  // four deviations.
   struct Left {
     int count = 0;
     double sum = 0;
@@ -248,7 +250,7 @@ void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const No
   tiles_ = (fits.grid.columns + kTile - 1) / kTile;
   tile_rows_ = (fits.grid.rows + kTile - 1) / kTile;
   faces_.resize(static_cast<std::size_t>(tiles_) * tile_rows_);
-  constexpr std::size_t kAtATime = 4;
+  constexpr std::size_t kAtATime = 4;  // rows of tiles that a thread takes at once (judgement)
   const auto rows = static_cast<std::size_t>(tile_rows_);
   detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
     find(input, filled, noise, fits, static_cast<int>(row));

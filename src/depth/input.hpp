@@ -13,7 +13,7 @@ namespace palpate::depth {
 /// @throws Error when an option is out of range.
 void check(const DepthFilterOptions& options);
 
-/// Pixels across and down of three blocks: fewer tell no slope.
+/// Pixels across and down of three blocks: fewer give no slope (derived).
 inline constexpr int kFewestPixels = 6;
 
 /// @throws Error when the frame's size and depths disagree, its camera is none, or it is too small.
@@ -69,6 +69,7 @@ struct ImagePoint {
   double x = 0;
   double y = 0;
 };
+/// Where a camera with `distortion` sees what is at x, y without it.
 [[nodiscard]] ImagePoint distort(const CameraModel::Distortion& distortion, double x, double y);
 
 }  // namespace palpate::depth

@@ -1,4 +1,4 @@
-// Fits the curve of noise over depth to measured samples, robustly.
+// Fits sigma(z) to samples of noise, and quadratic surfaces to windows of values.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 // Farthest over nearest; below, the prior's shape is kept (judgement)
 constexpr double kNarrow = 1.25;
 constexpr int kCurveRounds = 5;  // of reweighting (judgement)
-constexpr int kDescents = 200;   // of the terms, one after the other (judgement)
+constexpr int kDescents = 200;   // passes over the terms (judgement)
 // Relative error where a sample's weight halves (docs/method.md 6.2)
 constexpr double kOutlier = 0.15;
 
@@ -83,11 +83,12 @@ NoiseModel fit_noise_curve(std::span<const NoiseSample> samples, const NoiseMode
 
 namespace {
 
-constexpr int kFitRounds = 4;         // each leaves an eighth of what holes have pulled the fit off
-constexpr double kOneSurface = 0.75;  // share of the values that must lie on it
-constexpr float kDeviations = 3;      // from which on a value is none of the surface
-constexpr float kPerMedian = 1.4826F;   // a Gaussian's deviation over its median
-constexpr std::size_t kMedianOf = 256;  // values, about
+constexpr int kFitRounds = 4;  // each leaves an eighth of a hole's pull on the fit (judgement)
+constexpr double kOneSurface = 0.75;  // share of the values that must lie on it (judgement)
+constexpr float kDeviations = 3;      // beyond, a value is left out (docs/method.md 6.2)
+// Sigma over the median of absolute values, on Gaussian noise: 1 / Phi^-1(3/4) (derived)
+constexpr float kPerMedian = 1.4826F;
+constexpr std::size_t kMedianOf = 256;  // values that a median takes, about (judgement)
 
 }  // namespace
 
@@ -127,7 +128,7 @@ void NoiseFit::subtract(std::span<const float> values, const Coefficients& surfa
   }
 }
 
-// The median of a part of them tells as much.
+// Takes the median of some of them, which is enough.
 float NoiseFit::typical_residual() {
   sorted_.clear();
   const std::size_t step = 1 + residuals_.size() / kMedianOf;

@@ -1,4 +1,4 @@
-// Measures the noise of one frame from flat windows spread over the image.
+// Finds the noise that windows all over the image have in common, by depth.
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +12,13 @@ constexpr std::size_t kFewest = 4;  // windows that make a sample (judgement)
 // Log of variances: half of them lie within a factor of 4 (judgement)
 constexpr float kAlike = 1.4F;
 constexpr float kFlat = 2;  // variances up to this times the sample's are noise (judgement)
-constexpr double kMedianOfFour = 0.839;  // of the mean of four squares that are 1 in the mean
+// Median of the mean of four squares of unit Gaussians (derived: of chi^2 with 4 degrees, over 4)
+constexpr double kMedianOfFour = 0.839;
 constexpr double kMissing = 0.125;  // share of the noise that a size may take for shape (judgement)
 
-// Windows of twice the size find more by some factor; infinite ones, by this power of it more. For
-// Gaussian correlation over up to a tenth of the size it leaves 6 % of n_c to be wished for at
-// most.
+// Where n_c grew by a factor f from windows of half the size, infinite ones are taken to find
+// f^kSharedPower times more (judgement). For Gaussian correlation over up to a tenth of the size,
+// n_c comes out 6 % too small at most.
 constexpr double kSharedPower = 0.6;
 
 // Mean and width of the half of sorted values that lie closest together.

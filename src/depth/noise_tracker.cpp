@@ -13,15 +13,15 @@ namespace palpate::depth {
 namespace {
 
 constexpr std::size_t kShares = 128;  // frames in which all windows are visited once (judgement)
-constexpr std::size_t kPatience = 8;  // frames after which something is concluded
-constexpr double kNoteworthy = 0.1;   // relative change that is reported (judgement)
+constexpr std::size_t kPatience = 8;  // frames from one conclusion to the next (judgement)
+constexpr double kNoteworthy = 0.1;   // relative change that makes a new model (judgement)
 constexpr double kPattern = 4;  // times the frames' differences; more is shape (docs/method.md 6.2)
 constexpr double kMoved = 1.25;  // times the noise; larger differences are motion (judgement)
-// c, at least: windows grow in steps, and where pixels err alone some stop early by chance.
+// Least c: windows grow in steps, and where pixels err alone some stop early by chance (judgement).
 constexpr double kLeastCorrelation = 1.15;
-constexpr float kSmallStep = 1e-6F;  // of the depth: rounding of floats is no step
-constexpr float kRounded = 0.02F;    // of a step: residuals that rounding to it leaves at least
-constexpr float kFinest = 1e-4F;     // of the depth: no depth camera errs less
+constexpr float kSmallStep = 1e-6F;  // of the depth; smaller steps are rounding of floats (derived)
+constexpr float kRounded = 0.02F;    // of a step: the least residual of rounding to it (judgement)
+constexpr float kFinest = 1e-4F;     // of the depth: no depth camera errs less (judgement)
 
 bool differs(double a, double b) {
   return std::abs(a - b) > kNoteworthy * b;
@@ -67,7 +67,7 @@ struct NoiseTracker::State {
   int width = 0;
   int height = 0;
   std::size_t turn = 0;    // windows i with i % kShares == turn are looked at
-  std::size_t waited = 0;  // frames that have told nothing
+  std::size_t waited = 0;  // frames that gave no samples
   bool told = false;
   std::vector<NoiseWindow> windows;
   std::vector<SeenNoise> single;       // what single frames show

@@ -14,7 +14,7 @@ namespace palpate::depth {
 
 /// Depths in steps of a fourth of an octave from 0.1 m on: narrow enough that sigma(z) z0^2 / z^2
 /// is the same all over a bin for sensors that match patterns.
-inline constexpr int kNoiseBins = 32;
+inline constexpr int kNoiseBins = 32;  // to 26 m (derived)
 
 [[nodiscard]] inline int noise_bin(double z) {
   return std::clamp(static_cast<int>(std::floor(4 * std::log2(z / 0.1))), 0, kNoiseBins - 1);
@@ -49,8 +49,8 @@ class NoiseFit {
   /// `size`: values along a side, at most kLargest.
   explicit NoiseFit(int size);
 
-  static constexpr int kLargest = 40;
-  static constexpr int kTerms = 6;
+  static constexpr int kLargest = 40;  ///< values; the largest of kNoiseSizes
+  static constexpr int kTerms = 6;     ///< of a quadratic surface: 1, u, v, u^2, u v, v^2
 
   [[nodiscard]] int size() const { return size_; }
 
@@ -58,7 +58,7 @@ class NoiseFit {
   WindowNoise fit(std::span<const float> values);
 
  private:
-  static constexpr std::size_t kDegrees = 4;
+  static constexpr std::size_t kDegrees = 4;  // 0 to 3: the cubic terms give the power
   using Row = std::array<float, kLargest>;
   using Coefficients = std::array<std::array<float, kDegrees>, kDegrees>;  // by degrees in u, v
 
@@ -84,7 +84,7 @@ struct NoiseWindow {
 
 /// Pixels along a side. Small windows see noise and little shape; where neighbours err together
 /// they take noise for shape.
-inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};
+inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};  // docs/method.md 6.2
 
 /// Some 256 windows of each size, all over the image.
 [[nodiscard]] std::vector<NoiseWindow> lay_noise_windows(int width, int height);
@@ -131,7 +131,7 @@ class NoiseSurvey {
   SurveyedNoise noise_;
 };
 
-/// A depth image that somebody else owns. Depths along the optical axis, m, row by row; whatever
+/// View of a depth image, which it does not own. Depths along the optical axis, m, row by row; what
 /// is not within nearest ... farthest (0, NaN, infinity too) counts as not measured.
 struct DepthView {
   std::span<const float> depth;
@@ -148,12 +148,12 @@ struct DepthView {
   [[nodiscard]] bool valid(float z) const { return z >= nearest && z <= farthest; }
 };
 
-/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: the first frame
-/// gives a start by what quadratic surfaces leave of its windows, differences of frames replace it
-/// where the scene stands still, and from then on every frame adds a bounded share. What they do
-/// not tell (too few pixels, all of one value) is taken from the prior. The model that is handed
-/// out changes only when the evidence has moved by a tenth, so that the fits of a still scene stay
-/// the same. One thread uses it; it allocates only when the size of the frames changes.
+/// Follows a sensor's sigma(z) and c (docs/method.md 6.2) from frame to frame: by what quadratic
+/// surfaces leave of windows in single frames, completed and bounded by differences of frames where
+/// the scene stands still. The first frame shows all windows, later ones a share of them each. What
+/// they do not give (too few pixels, all of one value) is taken from the prior. The model changes
+/// only when the evidence has moved by a tenth, so that the fits of a still scene stay the same.
+/// One thread uses it; it allocates only when the size of the frames changes.
 class NoiseTracker {
  public:
   explicit NoiseTracker(const NoiseModel& prior);

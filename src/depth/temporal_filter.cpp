@@ -1,4 +1,4 @@
-// Averages each block over time, and restarts it when the surface changes.
+// Averages each block over time while it stands still, and follows it while it moves.
 #include "depth/temporal_filter.hpp"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ constexpr float kLonger = 8;                  // times the memory, at most (docs
 constexpr int kCalmFrames = 2;  // calm frames after which a moving block rests (docs/method.md 6.6)
 constexpr float kLearn = 1 / 16.F;  // share of a frame in the learned scatter (docs/method.md 6.6)
 
-// Times a variance: five deviations above it, which scatter does not reach by chance. A product of
-// two moves has the variance 5 s^4, and s^4 in common with the next; the running mean has 1/31 of
-// the 7 (derived).
+// Times a variance s^2; learned scatter does not reach it by chance. A product of two moves has the
+// variance 5 s^4 and the covariance s^4 with the next; the running mean has 1/31 of the sum of 7.
+// Five deviations up: 1 + 5 sqrt(7 / 31) (derived).
 constexpr float kSure = 3.4F;
 
 float squared(float x) {
@@ -48,9 +48,9 @@ void restart(const Measured& now, BlockMemory& m) {
   m.state = now.state;
 }
 
-/// Learns the scatter between frames of one surface. It exceeds their variances where the fit's
-/// window depends on the noise and where rims flicker. For a still surface under noise of variance
-/// s^2, two successive moves have the mean product -s^2; for one that moves by v, v^2.
+/// Learns how frames of one surface scatter: more than they claim where the fit's window depends on
+/// the noise and where rims flicker. Under noise of variance s^2, two successive moves of a still
+/// surface have the mean product -s^2; a surface that moves by v adds v^2.
 void learn_scatter(const Measured& now, BlockMemory& m) {
   const bool sloped = now.confidence > 0;
   const float values[] = {now.rho, sloped ? now.slope_x : m.last[1],

@@ -37,10 +37,10 @@ struct BlockMemory {
   return 0.03F * rho * rho;
 }
 
-/// Puts what is remembered of blocks into the view of a camera that has moved: each block's piece
-/// of plane into the blocks of the new view that its middle falls next to. The nearer of two
-/// surfaces hides the other one; of one surface, the piece whose middle is nearest is taken. It
-/// is then cut with the new block's ray, bent as its neighbours say.
+/// Puts the memory of blocks into the view of a camera that has moved: each block's piece of plane
+/// into the blocks of the new view that its middle falls next to. The nearer of two surfaces hides
+/// the other one; of one surface, the piece whose middle is nearest is taken. It is then cut with
+/// the new block's ray, bent as its neighbours are.
 class TemporalWarp {
  public:
   /// Takes memory when there are more blocks than ever, and no more.
@@ -79,20 +79,18 @@ struct TemporalOptions {
   int hold = 10;            ///< frames for which a block that is not measured is remembered
 };
 
-/// Options that suit a sensor: G = 5, or 7 if pixels are correlated (c > 2), since the variances of
-/// fits tell less then.
+/// Options that suit a sensor: G = 5, or 7 if many pixels err together (c > 4), since the variances
+/// of fits are less certain then (docs/method.md 6.6).
 [[nodiscard]] TemporalOptions temporal_options(int memory, double correlation, double normal_error);
 
-/// The filter over time, after the fit, a block at a time: what stands
-/// still is averaged, what moves is taken as it is measured. Bounded work; it allocates only when
-/// the grid's size changes.
+/// Filters each block over time, after the fit: averages what stands still, takes what moves as it
+/// is measured. Bounded work; it allocates only when the grid's size changes.
 class TemporalFilter {
  public:
-  /// Takes in one frame and replaces its columns by the filtered ones. Blocks that are empty stay
-  /// so; that nothing confirms them is for others to deal with. What was known of them is
-  /// remembered for a while and goes on when they are measured again. `T_world_sensor` is the pose
-  /// at the stamp: when it is another than before, what is remembered is put into the new view
-  /// first. A block whose state changes between plain and fitted starts again.
+  /// Takes in one frame and replaces its columns by the filtered ones. Empty blocks stay empty, but
+  /// are remembered for TemporalOptions::hold frames, and continue if they are measured by then.
+  /// `T_world_sensor` is the pose at the stamp; if it has changed, the memory is put into the new
+  /// view first. A block whose state changes between plain and fitted starts again.
   void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
               BlockFits& fits);
 

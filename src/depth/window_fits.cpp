@@ -108,9 +108,9 @@ void FitRegion::columns(const Blocks& blocks, int row, std::vector<std::int32_t>
 
 namespace {
 
-constexpr std::size_t kRowsAtATime = 8;
+constexpr std::size_t kRowsAtATime = 8;  // that a thread takes at once (judgement)
 
-// Largest reach, in blocks, of windows beside a block.
+// Blocks that a window reaches at most when it is moved by all of its reach (derived).
 constexpr int kBorder = 2 * simd::kLargestWindow;
 
 simd::BlockRows rows_of(const Blocks& blocks) {

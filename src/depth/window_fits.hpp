@@ -52,17 +52,17 @@ struct FacePlane {
 [[nodiscard]] std::optional<double> left_by_paraboloid(const simd::FitInput& input,
                                                        const FacePlane& near, int reach);
 
-/// Fits faces beside edges and creases again, each from its own blocks alone, and tells which face
-/// a block lies on.
+/// Fits faces beside edges and creases again, each from its own blocks alone, and finds the face
+/// that a block lies on.
 ///
 /// Windows reach over an edge by as much as noise hides, and their planes lean by that; or they
-/// show what is hidden at their block. Where the planes of two faces meet is known better than what
-/// one window spans. So one block of each tile looks eight ways for where its face ends, at a plane
-/// that meets its own or at anything else, and fits all that is inside, up to twice a window's
-/// reach away: what is straight needs no smaller windows. Blocks of its tile and of those around
-/// take the nearest plane whose face holds them. What one bent surface explains better than two
-/// planes is no edge. Up to some sixteen blocks from the rim of what is fitted, such planes may be
-/// missing. Threads share the rows; results do not depend on how.
+/// show what is hidden at their block. The line where the planes of two faces meet is known better.
+/// So one block of each tile looks in eight directions for the end of its face, at a plane that
+/// meets its own or at anything else, and fits all blocks inside, up to twice a window's reach
+/// away. Blocks of its tile and of those around take the nearest plane whose face holds them. Where
+/// one bent surface explains the blocks better than two planes, there is no edge. Up to some
+/// sixteen blocks from the rim of the fitted region, such planes may be missing. Threads share the
+/// rows; results do not depend on how.
 class FaceFits {
  public:
   /// `input`: what the fits were made from; `filled`: the blocks that its table sums.

@@ -28,8 +28,8 @@ constexpr double kPatch = 0.6;          // m across; explored in some seconds ..
 constexpr double kPatchRadii = 20;      // ... or, if that is more, so many R (judgement)
 constexpr double kDepth = 0.75;         // R under the surface (judgement)
 constexpr double kLargestForce = 4;     // N (judgement)
-constexpr double kPaperMultiple = 2.5;  // m = R / s if s is unknown: the paper's
-constexpr float kUpward = 0.7F;         // of a normal's z: within 45 degrees of up (derived)
+constexpr double kPaperMultiple = 2.5;  // m = R / s if s is unknown (docs/method.md 5.3, the paper)
+constexpr float kUpward = 0.7F;         // of a normal's z: within 45 degrees of up (judgement)
 // m of the hand from the surface to the device's origin (judgement)
 constexpr double kStandoff = 2e-3;
 

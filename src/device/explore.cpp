@@ -25,11 +25,11 @@ constexpr double kStroke = 0.6;   // longest stroke, share of the region's exten
 constexpr double kLongest = 1.2;  // s; longest stroke (judgement)
 constexpr double kDwell = 0.1;    // s at rest before and after a stroke (judgement)
 constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down (judgement)
-// Share of the extent; so far from all touched places is enough ... (judgement)
+// Share of the extent: a start so far from all touched positions is far enough (judgement)
 constexpr double kFresh = 0.3;
-constexpr double kNear = 0.3;    // ... and its weight against the way there (judgement)
-constexpr int kCandidates = 24;  // start positions tried for a stroke (judgement)
-constexpr int kTries = 8;        // tries for a stroke with a free way (judgement)
+constexpr double kNear = 0.3;    // weight of the way there against that distance (judgement)
+constexpr int kCandidates = 24;  // start positions compared for a stroke (judgement)
+constexpr int kTries = 8;        // strokes tried until a free way leads to one (judgement)
 constexpr int kDirections = 4;   // directions tried from a start (judgement)
 
 // Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
@@ -242,7 +242,7 @@ class Explorer {
     return best;
   }
 
-  // From a to b; begins and ends in the direction of `rise`, to 3/4 of which it goes up.
+  // Arc from a to b; begins and ends in the direction of `rise`, and goes up by 3/4 of it.
   [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
     const double length = (b - a).norm() + 1.5 * rise.norm();
     const double piece = 0.5 * kClearance * options_.radius;

@@ -28,7 +28,8 @@ struct MapSample {
 /// obstacle: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
-  /// Takes the points within patch / 2 of the median point, or all points if those are fewer.
+  /// The region reaches patch / 2 from the median point; it is the whole surface if no side of its
+  /// box is longer than `patch`.
   SurfaceMap(const ExploredSurface& surface, double patch, double radius);
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }
@@ -62,7 +63,7 @@ class SurfaceMap {
   mutable std::vector<CellGrid::Neighbor> nearest_;
 };
 
-/// Plan of an exploring hand. World frame.
+/// Options of a hand that explores. Lengths and speeds are the world's.
 struct StrokeOptions {
   double duration = 10;        ///< s
   double period = 1e-3;        ///< s between rows

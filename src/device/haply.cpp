@@ -21,12 +21,13 @@ constexpr const char* kInstall =
     "Install Haply's Inverse Service and start it (sudo systemctl enable --now "
     "haply-inverse-service)";
 constexpr const char* kCheck = "Check its cable, its power and Haply's Inverse Service";
-constexpr double kConnecting = 1;   // s to connect (judgement)
-constexpr double kFirstFrame = 1;   // s for the service's first frame (judgement)
-constexpr int kFirstFrames = 3;     // one of so many has to describe a device (judgement)
-constexpr double kQuiet = 0.02;     // s without a frame: no more are coming (judgement)
-constexpr double kQuick = 5e-3;     // s for an answer; later the force goes (docs/devices.md)
-constexpr double kPatience = 0.1;   // s for an answer; later the service is given up (judgement)
+constexpr double kConnecting = 1;  // s to connect (judgement)
+constexpr double kFirstFrame = 1;  // s for the service's first frame (judgement)
+constexpr int kFirstFrames = 3;    // frames waited for at the start, at most (judgement)
+constexpr double kQuiet = 0.02;    // s without a frame: no more are coming (judgement)
+constexpr double kQuick = 5e-3;    // s for an answer; later the force goes (docs/devices.md)
+// s for an answer; later the service is given up (docs/devices/haply.md)
+constexpr double kPatience = 0.1;
 constexpr double kFarewell = 0.05;  // s for it to take the last force (judgement)
 
 TextSocket connect(const std::string& url) {
@@ -129,8 +130,8 @@ class HaplyDriver final : public DeviceDriver {
     let_pass(socket_);
   }
 
-  // A frame is the answer to a command; what came before it is old. Who does not tell in time where
-  // the hand is gets no force.
+  // A frame is the answer to a command; what came before it is old. A service that does not report
+  // the hand's position in time gets no force.
   [[nodiscard]] std::vector<HaplyDevice> answer_to(const Vector3d& force) {
     socket_.poll();
     const std::uint64_t before = socket_.received();

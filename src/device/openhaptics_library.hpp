@@ -11,8 +11,7 @@ namespace palpate::device {
 // Numbers of OpenHaptics' C interface to devices (HDAPI 3), as its header hdDefines.h gives them.
 namespace hd {
 
-// Readable values (HD_CURRENT_BUTTONS ...), as the maker numbers them; positions in mm, forces in
-// N.
+// Values that can be read; positions in mm, forces in N.
 inline constexpr unsigned kCurrentButtons = 0x2000;
 inline constexpr unsigned kCurrentPosition = 0x2050;
 inline constexpr unsigned kCurrentVelocity = 0x2051;  // mm/s
@@ -23,7 +22,7 @@ inline constexpr unsigned kMaximumStiffness = 0x2602;  // N/mm
 inline constexpr unsigned kContinuousForce = 0x2604;
 inline constexpr unsigned kMotorTemperature = 0x2605;  // of each motor; 1: as warm as allowed
 
-// Settable value and switch, as the maker numbers them.
+// A value that can be set, and a switch.
 inline constexpr unsigned kCurrentForce = 0x2700;
 inline constexpr unsigned kForceOutput = 0x4000;
 
@@ -37,7 +36,7 @@ inline constexpr unsigned kNoDevice = 0xffffffff;
 inline constexpr int kEncoderReset = 1;
 inline constexpr int kAutomatic = 2;
 inline constexpr int kInkwell = 4;
-// Whether it is calibrated.
+// States of calibration.
 inline constexpr unsigned kCalibrated = 0x5000;
 inline constexpr unsigned kNeedsUpdate = 0x5001;
 inline constexpr unsigned kNeedsHand = 0x5002;

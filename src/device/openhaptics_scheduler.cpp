@@ -35,7 +35,8 @@ steady_clock::duration seconds(double duration) {
       std::chrono::duration<double>(duration));
 }
 
-// Picks a style that the device knows; never the reset of encoders, which needs a certain pose.
+// Picks a style that the device knows; never the reset of encoders, which takes the present pose
+// for the one that it should be in.
 unsigned calibration_style(int known) {
   return (known & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
 }

@@ -1,4 +1,4 @@
-// Runs in OpenHaptics' scheduler, which is one for all devices of a program.
+// Frames of devices, which OpenHaptics' scheduler runs: one for all devices of a program.
 #pragma once
 
 #include <semaphore.h>

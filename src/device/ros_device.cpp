@@ -1,4 +1,4 @@
-// Hands whose device another node of ROS 2 owns: it tells poses and takes forces, over DDS.
+// Hands whose device another node of ROS 2 owns: it publishes poses and takes forces, over DDS.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr double kDiscovery = 3;        // s for a running node to be discovered
 constexpr double kMeasuring = 0.5;      // s of poses that give rate and delay (judgement)
 constexpr double kSilence = 0.02;       // s without a pose: the node is gone, or hangs (judgement)
 constexpr double kOldest = 1;           // s; a stamp further off is from another clock (judgement)
-constexpr double kClockError = 5e-4;    // s between two readings of one machine's clock (judgement)
+constexpr double kClockError = 5e-4;    // s that a good clock's stamp may be ahead (judgement)
 constexpr double kVelocitySpan = 0.01;  // s over which positions give a velocity (judgement)
 
 // The 95th percentile.
@@ -75,8 +75,8 @@ class RosDriver final : public DeviceDriver {
   DeviceInfo info_;
   RosReading told_;
   std::optional<double> usual_age_;   // of a pose by its stamp, s; unset: there are no stamps
-  double velocity_time_ = 0;          // when a velocity was told last
-  Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is told, and its time
+  double velocity_time_ = 0;          // when a velocity came last
+  Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is found, and its time
   double from_time_ = 0;
 };
 
@@ -145,7 +145,7 @@ void RosDriver::check_clocks(const std::vector<double>& ages) const {
                   oldest > kOldest ? "past" : "future", kRemedy));
 }
 
-// Throws if the age of stamps has drifted from the age measured at start.
+// Throws if a pose has no stamp, or its age is far from the one measured at start.
 void RosDriver::check_age() const {
   if (!usual_age_) return;
   if (!told_.stamp) {

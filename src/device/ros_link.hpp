@@ -13,8 +13,8 @@
 
 namespace palpate::device {
 
-// From a node's axes, which may be others for poses than for forces, to ours (x right, y away from
-// the operator, z up).
+// Rotations from a node's axes, for poses and for forces, to ours (x right, y away from the
+// operator, z up).
 struct RosAxes {
   Eigen::Matrix3d poses = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d forces = Eigen::Matrix3d::Identity();

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int kParts = 16;  // of a step; dry friction's direction is constant in each (judgement)
 constexpr int kEvents = 4;  // stops and starts followed in one part (judgement)
-constexpr int kBisections = 48;  // of a part, to find when the device stops; to rounding (derived)
+constexpr int kBisections = 48;    // of a part, to find when the device stops (judgement)
 constexpr double kAtRest = 1e-12;  // m/s; slower counts as at rest (judgement)
-constexpr int kMostDelay = 16;     // steps; size of the force buffer (judgement)
+constexpr int kMostDelay = 16;     // steps of delay, at most (judgement)
 
 // e^A by Taylor's series of A / 2^n, squared n times: exact to rounding for these small matrices.
 Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {

@@ -43,7 +43,7 @@ ThreadedDeviceOptions checked(ThreadedDeviceOptions options) {
   return options;
 }
 
-// Delay: the hardware's (unknown: one exchange) plus one each for readings and forces.
+// Delay: the hardware's (unknown: one exchange), plus one each that position and force may wait.
 DeviceInfo info_of(const DeviceDriver& driver) {
   DeviceInfo info = driver.info();
   info.keeps_time = false;
@@ -200,9 +200,9 @@ void ThreadedDevice::Inside::exchange() noexcept {
   }
 }
 
-// A position may be sampled at any moment of its exchange. The longer of the times between the two
-// begins and between the two ends is at least half the time between the samples: whatever the
-// delays, a hand slower than half of kFastestMove is never refused.
+// A position may be sampled at any moment of its exchange. The longer of the times between two
+// beginnings and two ends is at least half that between the samples: however late either came, a
+// hand slower than half of kFastestMove is not refused.
 void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
   if (newest.connection != reading.connection) return;
   const double time =

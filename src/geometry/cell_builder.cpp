@@ -1,5 +1,4 @@
-// Builds the cells of a CellGrid: bounds, Morton keys, sorting, and splits of cells that are too
-// full.
+// Builds the cells of a CellGrid: bounds, Morton keys, sorting, and splits of full cells.
 #include "geometry/cell_builder.hpp"
 
 #include <fmt/core.h>
@@ -16,9 +15,10 @@
 namespace palpate::detail {
 namespace {
 
-constexpr int kLevels = kKeyBits / 3;
+constexpr int kLevels = kKeyBits / 3;  // a bit of each axis a level
+// Points, and cells, that a thread takes at once (judgement).
 constexpr std::size_t kGrain = std::size_t{1} << 16;
-constexpr std::size_t kCellsAtATime = 512;
+constexpr std::size_t kCellsAtATime = 512;  // see kGrain
 
 // Levels that even out a surface of n points: four children a cell, and some to spare.
 int levels_for(std::size_t n) {
@@ -36,7 +36,7 @@ int levels_for(std::size_t n) {
 
 // Four points at a time: their twelve numbers side by side fill the processor's lanes.
 struct WideBounds {
-  static constexpr std::size_t kLanes = 12;
+  static constexpr std::size_t kLanes = 12;  // x, y, z of four points
   std::array<float, kLanes> lower;
   std::array<float, kLanes> upper;
   std::array<std::uint32_t, kLanes> exponents{};

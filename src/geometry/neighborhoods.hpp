@@ -132,7 +132,7 @@ class Surroundings {
  private:
   void push_back(const CellGrid::Cell& leaf, float reach);
 
-  static constexpr std::size_t kColumns = 7;
+  static constexpr std::size_t kColumns = 7;  // of the next line
 
   std::array<std::vector<float>, kColumns> columns_;  // lower x, y, z, upper x, y, z, squared reach
   std::vector<simd::Run> leaves_;
@@ -191,7 +191,7 @@ class NearLists {
   std::array<std::vector<std::uint32_t>, simd::kQueries> lists_;
 };
 
-inline constexpr std::uint32_t kBlockPoints = 256;
+inline constexpr std::uint32_t kBlockPoints = 256;  ///< of a block, at most (judgement)
 
 /// Calls body(block, surroundings) for all blocks, on every core when there are many.
 template <class Body>

@@ -36,7 +36,7 @@ struct Normals {
 [[nodiscard]] Normals estimate_normals(const CellGrid& grid, std::span<const float> radii,
                                        float times = 1);
 
-/// Choice of support radii.
+/// Options of support radii.
 struct SupportOptions {
   std::optional<double> multiple;  ///< m in R = m s; unset: support_multiple()
   double noise = 0;                ///< sigma_n, rms distance of raw points from the surface, m

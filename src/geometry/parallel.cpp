@@ -8,12 +8,12 @@
 namespace palpate::detail {
 namespace {
 
-constexpr int kMaxDigitBits = 12;
-constexpr int kPartitionBits = 12;
-constexpr std::size_t kPartitionFrom = std::size_t{1}
-                                       << 18;  // records; fewer fit the cache whole (judgement)
-constexpr std::size_t kSortBlock = std::size_t{1}
-                                   << 16;  // records that one thread counts (judgement)
+constexpr int kMaxDigitBits = 12;   // counts of 16 KiB: they fit the first cache (judgement)
+constexpr int kPartitionBits = 12;  // alike (judgement)
+// Records; fewer fit the cache whole (judgement).
+constexpr std::size_t kPartitionFrom = std::size_t{1} << 18;
+// Records that one thread counts (judgement).
+constexpr std::size_t kSortBlock = std::size_t{1} << 16;
 
 using Counts = std::array<std::uint32_t, std::size_t{1} << kMaxDigitBits>;
 

@@ -53,7 +53,7 @@ using detail::kPlaceBits;
 using detail::kPlaceMask;
 using detail::Record;
 
-constexpr std::size_t kVoxelGrain = std::size_t{1} << 16;
+constexpr std::size_t kVoxelGrain = std::size_t{1} << 16;  // points of a thread's share (judgement)
 constexpr double kMaxCubes = 1 << 21;  // along an axis: three such numbers fit in 63 bits
 
 // Grid of cubes, and the key of each cube.

@@ -15,8 +15,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMany = std::size_t{1} << 17;
-constexpr std::size_t kDigits = std::size_t{1} << 16;
+constexpr std::size_t kMany = std::size_t{1} << 17;    // values; from here on select() (judgement)
+constexpr std::size_t kDigits = std::size_t{1} << 16;  // values of half a float's bits
 
 // Integers in the order of the numbers.
 std::uint32_t rank_of(float value) {
@@ -65,8 +65,8 @@ namespace {
 using detail::Block;
 using detail::Surroundings;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kLargestFloat = std::numeric_limits<float>::max();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();  // m^2: no such neighbour
+constexpr float kLargestFloat = std::numeric_limits<float>::max();   // 1/m^2, for radii of 0
 // Other points that a spacing is measured from (docs/method.md 5.1)
 constexpr std::size_t kNearest = 8;
 constexpr float kSmoothing = 2.5f;   // spacings that it is averaged over (docs/method.md 5.1)
@@ -75,8 +75,8 @@ constexpr float kMaxChange = 1.5f;   // of a spacing by averaging, at most (docs
 constexpr float kMaxRatio = 2;       // to the spacing around it (docs/method.md 5.1)
 constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range (derived)
 constexpr float kStray = 8;               // times its block's spacing: a stray point (judgement)
-// Fewer than eight others tell no area. A fifth of the way to the nearest makes R, which is 2.5
-// spacings, half of that gap.
+// Share of the distance to the nearest other, if fewer than eight give no area: R, which is 2.5
+// spacings, is then half of that distance (derived).
 constexpr float kGapShare = 0.2f;
 
 using Nearest = void (*)(const simd::Join&, simd::Row*);
@@ -164,7 +164,7 @@ float smoothed(float own, float weight, float sum) {
   return std::min(std::clamp(mean, kMinChange * own, kMaxChange * own), kMaxRatio * sum / weight);
 }
 
-// With its nearest alone.
+// Averages a point's spacing over its nearest others alone.
 float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std::uint32_t i) {
   std::vector<CellGrid::Neighbor> found;
   grid.nearest(grid.points()[i], kNearest + 1, found);

@@ -1,4 +1,4 @@
-// Turns a depth image into points.
+// Reads depth images (PGM, PNG) and turns them into points.
 #include "io/depth_image.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +89,7 @@ CloudFile cloud_of(const Input& input, const DepthImage& image) {
 }
 
 void check_image_size(const Input& input, std::uint64_t width, std::uint64_t height) {
-  constexpr std::uint64_t kLargestRatio = 1032;  // of deflate, at most (derived from its format)
+  constexpr std::uint64_t kLargestRatio = 1032;  // of deflate: 258 bytes from 2 bits (derived)
   constexpr std::uint64_t kWidest = 65536;       // pixels (judgement)
   const bool sane = width > 0 && height > 0 && width <= kWidest && height <= kWidest &&
                     2 * width * height / kLargestRatio <= input.bytes.size();
@@ -213,8 +213,8 @@ struct FreeContext {
   void operator()(spng_ctx* context) const { spng_ctx_free(context); }
 };
 
-constexpr std::size_t kLargestChunk = std::size_t{64}
-                                      << 20U;  // bytes of text, profiles, ... (judgement)
+// Bytes of text, profiles, ... (judgement)
+constexpr std::size_t kLargestChunk = std::size_t{64} << 20U;
 
 void check(const Input& input, int status) {
   if (status == SPNG_OK) return;

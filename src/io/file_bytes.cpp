@@ -19,8 +19,8 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t kLongestStream = std::size_t{16}
-                                       << 30U;         // bytes; a pipe may never end (judgement)
+// Bytes; a pipe may never end (judgement)
+constexpr std::size_t kLongestStream = std::size_t{16} << 30U;
 constexpr std::size_t kBlock = std::size_t{1} << 20U;  // bytes read at once (judgement)
 
 class Descriptor {

@@ -47,8 +47,8 @@ std::string name_inside(const std::string& name) {
   return extension(name) == ".gz" ? name.substr(0, name.size() - 3) : name;
 }
 
-// Unpacks the file named `inside`. Refuses an unknown kind by its first bytes, before unpacking
-// all.
+// Unpacks a file, named `inside`. An unknown kind is refused by its first bytes, before the rest is
+// unpacked.
 Bytes unpack(const Input& input, const std::string& inside) {
   constexpr std::size_t kStart = std::size_t{1} << 16U;
   const Bytes start = gunzip(input, kStart);

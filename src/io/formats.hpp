@@ -129,7 +129,7 @@ inline const std::array<std::string, 2> kLaszipNames{"liblaszip.so.8", "liblaszi
 /// A header line names the columns. Without one their number decides: 3 x y z; 4 and an
 /// intensity; 6 and a normal if the last three have unit length in the first lines, else a colour;
 /// 7 intensity and colour; 9 and a normal and a colour, in the order in which unit length is found.
-/// Of other numbers the first three columns are used.
+/// With any other number the first three columns are used.
 [[nodiscard]] CloudFile read_xyz(const Input& input);
 
 }  // namespace palpate::io

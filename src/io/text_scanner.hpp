@@ -53,7 +53,7 @@ template <class T>
 /// Walks through text: line by line, or token by token where white space is all that separates.
 class TextScanner {
  public:
-  /// From the start a byte-order mark is left out.
+  /// Skips a byte-order mark at the start of the text.
   explicit TextScanner(const Input& input, std::size_t offset = 0)
       : input_(input), text_(input.text()), offset_(offset) {
     if (offset == 0 && text_.starts_with("\xEF\xBB\xBF")) offset_ = 3;

@@ -85,7 +85,7 @@ bool are_unit(const Rows& rows, std::size_t first) {
   return 2 * unit > rows.size();
 }
 
-// From a header line.
+// Roles that a header line names.
 Roles roles_from_names(const TextCells& names) {
   Roles roles;
   for (std::size_t i = 0; i < names.count; ++i) roles.add(role_of(bare_name(names.cells[i])));

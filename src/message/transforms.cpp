@@ -11,7 +11,7 @@ namespace palpate::message {
 namespace {
 
 constexpr double kKept = 10;            // s of moving frames (judgement)
-constexpr double kGap = 0.25;           // s; motion in a longer gap is unknown (judgement)
+constexpr double kGap = 0.25;           // s; motion is known over twice as much (judgement)
 constexpr std::size_t kFrames = 4096;   // frames of a robot (judgement)
 constexpr std::size_t kPoses = 20'000;  // of one frame: kKept at 2 kHz (derived)
 constexpr double kNanoseconds = 1e9;

@@ -34,9 +34,9 @@ class Transforms {
   /// Adds transforms; drops those that are no pose or make no tree.
   void add(const TFMessage& message, bool is_static);
 
-  /// From the axes of `from` to those of `to` at `stamp` (s): straight and by slerp between two
-  /// known poses. Nothing when they are not connected, or a part of the way is not known at that
-  /// time (what moves: up to 0.25 s from the nearest pose on either side); `why` then says which.
+  /// Transform from the axes of `from` to those of `to` at `stamp` (s), linear and by slerp between
+  /// known poses. nullopt if they are not connected, or the poses of a moving link on either side
+  /// are more than 0.5 s apart; `why` then says which.
   [[nodiscard]] std::optional<Eigen::Isometry3d> find(const std::string& to,
                                                       const std::string& from, double stamp,
                                                       std::string* why = nullptr) const;

@@ -1,4 +1,4 @@
-// Publishes hands, surfaces and reports to ROS 2 at their rates.
+// Publishes hands, surfaces and reports to ROS 2, each at its rate, and takes forces from robots.
 #include "palpate/ros/bridge.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ constexpr std::size_t kSurfacePoints = 10'000;  // points of a published surface
 constexpr double kMarkerRate = 30;              // Hz, for a display (judgement)
 constexpr double kSurfaceRate = 5;              // Hz, for a display (judgement)
 constexpr double kFrameRate = 50;               // Hz of /tf (judgement)
-constexpr double kReportRate = 1;               // Hz of diagnostics, as is usual in ROS
+constexpr double kReportRate = 1;               // Hz of diagnostics (judgement)
 
 struct HandTopics {
   HandTopics(const Participant& with, const std::function<std::string(const std::string&)>& name)

@@ -46,7 +46,7 @@ void add_markers(const message::Header& header, const ServoState& state, int ind
                                                     const Durations& lateness);
 /// A stream's phase, ages and drops.
 [[nodiscard]] message::DiagnosticStatus stream_status(const StreamState& state);
-/// Activity of a robot, and how long it waited for what.
+/// Says whether a robot follows, and how long it waited for each reason.
 [[nodiscard]] message::DiagnosticStatus robot_status(const RosBridge::RobotState& state);
 
 }  // namespace palpate::ros

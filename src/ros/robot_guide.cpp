@@ -31,12 +31,13 @@ constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
-constexpr double kBlink = 0.3;    // s without a sight of it that stop no robot for good (judgement)
+constexpr double kBlink = 0.3;    // s; after a shorter loss of sight it resumes at once (judgement)
 constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
 constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
-constexpr double kJoin = 0.02;      // m; a hand finds a place to that (judgement)
-constexpr double kJump = 0.01;      // m in one frame; hands and tools are thicker (judgement)
-// s; after a longer pause a retreat starts slowly again (judgement)
+constexpr double kJoin = 0.02;      // m; a hand finds a place again to that (judgement)
+// m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
+constexpr double kJump = 0.01;
+// s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
 constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -75,8 +76,8 @@ RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& option
   for (const Witness& witness : witnesses_) (void)witness.source->seen({}, 0);  // asks for frames
 }
 
-// A ball is free where a camera sees it free and no camera that looks there is silent. One that
-// sees something does not believe another's frame that is older than when that came.
+// The highest answer of the sources counts, in the order of Seen::Says. But free gives way to solid
+// where its frame is older than kStays, or than the moment when the solid came.
 RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
   const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
   Place place;
@@ -97,9 +98,9 @@ RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
   return place.free() && solid.source != nullptr && outdated ? solid : place;
 }
 
-// Lag that the rendered surface may have behind the seen one, m: it keeps moving while a frame is
-// prepared, takes one frame interval to arrive, and waits if the next frame is late. In one frame
-// the lag grows by at most one frame's motion; more has another cause.
+// Largest lag of the rendered surface behind the seen one, m. The seen one moves on while a frame
+// is prepared; the rendered one takes an interval to get there, and waits if the next frame is
+// late. In one frame the lag grows by at most one frame's motion; more has another cause.
 double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, double dt) {
   const double interval = proxy.source->state().interval;
   const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
@@ -109,7 +110,7 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
-// Is the straight way from where the robot is seen free?
+// Is the straight way from the robot to the target seen to be free?
 bool RobotGuide::may_go_to(const Vector3d& target, double now) {
   if (!place_ || (target - *place_).norm() <= kWayStep) return true;
   const auto steps = static_cast<int>(std::ceil((target - *place_).norm() / kWayStep));
@@ -129,7 +130,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   const Place proxy = judge(state.contact.proxy, now);
   if (proxy.source == nullptr) return without_view(state, now, anew);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
-  // Only a surface that it has followed may lag behind the one that is seen.
+  // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = place_ && (follows_ || now - followed_ <= kBlink);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
@@ -140,8 +141,8 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
   return anew || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 
-// Lets the robot follow while proxy and hand are free. After a short loss of sight it resumes at
-// once.
+// Stops following when the proxy is not free. Starts again when proxy and hand have been free for
+// kFreeFor, when the button is pressed anew, or after a loss of sight shorter than kBlink.
 void RobotGuide::note(bool proxy_free, bool both_free, double now, bool anew) {
   free_since_ = both_free ? std::min(free_since_, now) : kNever;
   const bool may = follows_ || anew || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;
@@ -158,7 +159,7 @@ RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
 }
 
 void RobotGuide::pause() {
-  held_ = -kNever;  // who knows
+  held_ = -kNever;  // not seen meanwhile
   free_since_ = kNever;
   followed_ = -kNever;
   ahead_ = 0;
@@ -187,8 +188,8 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
   return answer;
 }
 
-// Only what is seen to come steadily over the place is a surface to go back from. What came in a
-// jump, or while nobody looked, is between it and the camera: the way back would lead into it.
+// Lets the robot go back only from what came steadily over its position. What came in a jump, or
+// unseen, stands between it and the camera: the way back would lead into it.
 void RobotGuide::note_held(const Place& held, double now) {
   const double known = held.free() ? 0 : -kNever;
   const double before = std::exchange(held_, held.solid() ? held.seen.behind : known);
@@ -202,9 +203,9 @@ void RobotGuide::note_held(const Place& held, double now) {
   over_.what = held_ - before <= kJump ? kPassed : kCame;
 }
 
-// Clouds do not tell what is free, only the tool's own way through them does: a robot follows it
-// until a surface comes over it or lets it go, and again once nothing has held the hand for a while
-// and the tool is where the robot is.
+// Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
+// tool until a surface comes over it or lets it go. It follows again once nothing has held the hand
+// for kFreeFor and the tool is where the robot is.
 RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool anew) {
   const auto waits = [](Reason reason) {
     return Answer{.reason = reason, .why = std::string(reason)};

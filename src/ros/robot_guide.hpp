@@ -13,10 +13,10 @@
 
 namespace palpate::ros {
 
-/// Decides where a robot may be told to go: to the proxy, where a camera sees that it is free, or
-/// on a surface from its front. Else it waits where it was told last, and goes back towards the
-/// camera when what is seen comes steadily over that place. It follows again once hand and proxy
-/// have been free for half a second, or the dead man's button is pressed anew. One thread asks.
+/// Decides where a robot may go: to the proxy, where a camera sees that it is free, or on a surface
+/// from its front. Else it waits at its last target, and goes back towards the camera when what is
+/// seen comes steadily over it. It follows again once hand and proxy have been free for half a
+/// second, or the dead man's button is pressed anew. One thread asks.
 class RobotGuide {
  public:
   /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
@@ -24,7 +24,7 @@ class RobotGuide {
   RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, double tool_radius);
 
   struct Answer {
-    std::optional<Eigen::Vector3d> target = {};  ///< m, world; none: it is told nothing
+    std::optional<Eigen::Vector3d> target = {};  ///< m, world; unset: no target is sent
     bool retreats = false;                       ///< the target is on its way back
     std::string_view reason = {};                ///< why it does not follow; empty: it does
     std::string why = {};                        ///< the same with what is known of it
@@ -34,7 +34,7 @@ class RobotGuide {
   /// dead man's button was up before, and what is on the way is the user's to see.
   [[nodiscard]] Answer look(const ServoState& state, double now, bool anew);
 
-  /// The robot is told nothing now for other reasons.
+  /// No target is sent now, for other reasons.
   void pause();
 
   /// The robot is there, whatever target was answered last.
@@ -48,7 +48,7 @@ class RobotGuide {
     Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this place, m
   };
 
-  // Knowledge of the sources about one ball.
+  // The sources' answer about one ball.
   struct Place {
     const Source* source = nullptr;  // who says so; null: there is no camera
     Seen seen = {};
@@ -68,7 +68,7 @@ class RobotGuide {
   void note_held(const Place& held, double now);
   [[nodiscard]] Answer without_view(const ServoState& state, double now, bool anew);
 
-  // Obstacle that came over the robot's waiting position.
+  // Surface or obstacle that came over the waiting robot.
   struct Over {
     std::string_view what = {};  // empty: nothing
     double since = 0;            // s
@@ -79,13 +79,12 @@ class RobotGuide {
   std::vector<Witness> witnesses_;
   std::optional<Eigen::Vector3d> place_ = {};  // where the robot is, m, world
   bool follows_ = true;
-  double speed_ = 0;  // of the touched surface towards the camera, at most of late, m/s
-  double ahead_ = 0;  // of the proxy the last target is, towards the camera, m
+  double speed_ = 0;  // highest of the touched surface towards the camera of late, m/s
+  double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
   double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
-  double followed_ = 0;  // when last, and nothing was solid since, s
+  double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
   double looked_ = 0;    // when it was asked last, s
-  double held_ = 0;      // how far the robot's place was behind what was seen then, m; -infinite:
-                         // it was not seen
+  double held_ = 0;      // how far the robot was behind what was seen then, m; -infinite: not seen
   Over over_;
 };
 

@@ -43,7 +43,7 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
-  constexpr double kGuide = 250;  // Hz at which a guide checks the way (judgement)
+  constexpr double kGuide = 250;  // Hz; a guide is asked at least so often (judgement)
   return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
 }
 
@@ -107,7 +107,7 @@ RosBridge::RobotState RobotTarget::state() const {
   return told_;
 }
 
-// Why the hand lets no target be told; empty: it does.
+// Why the hand allows no target; empty: it does.
 std::string_view RobotTarget::objection(const ServoState& state, double now) {
   if (state.step == 0 || now - stepped_ > kStill) return "the servo makes no steps";
   if (state.device == DeviceState::Status::silent) return "no data from the hand";

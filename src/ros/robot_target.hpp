@@ -30,9 +30,9 @@ class Every {
 /// Rate at which a bridge has to check for news, Hz: enough for the robot's guide.
 [[nodiscard]] double look_rate(const RosBridgeOptions& options);
 
-/// Tells a robot where to go. While the hand is not known, its servo stands still, its button is
-/// up, or its guide has it wait, it is told nothing: it holds the last target, or stops by its own
-/// controller's watchdog.
+/// Sends targets to a robot. It sends none while there are no data from the hand, its servo makes
+/// no steps, its button is up, or the guide lets the robot wait: the robot then holds its last
+/// target, or stops by its own controller's watchdog.
 class RobotTarget {
  public:
   /// Scene and servo outlive it. @throws Error when the preset is none, or a source of the options.
@@ -61,7 +61,7 @@ class RobotTarget {
   std::uint64_t step_ = 0;                  // the last that was seen
   double stepped_ = 0;                      // when it was new, s
   bool up_ = true;                          // is the dead man's button?
-  std::optional<Eigen::Vector3d> at_ = {};  // the last target that was told, m, world
+  std::optional<Eigen::Vector3d> at_ = {};  // the last target that was sent, m, world
   double counted_ = 0;                      // up to when waits are, s; 0: from now on
   mutable std::mutex mutex_;                // of what follows
   RosBridge::RobotState told_;

@@ -46,7 +46,7 @@ const Known* known(const std::string& type) {
   return found == kKnown.end() ? nullptr : found;
 }
 
-// Command that uses such a topic; null: none. Skips the topics that palpate publishes.
+// Command or option that uses such a topic; null: none, as for palpate's own topics.
 const char* use_of(const dds::Endpoint& there, const Known& type) {
   if (there.topic.starts_with("/palpate/")) return nullptr;
   if (there.writes && there.topic.ends_with("/ee_pose")) return "--device ros:fd,ns=NAMESPACE";

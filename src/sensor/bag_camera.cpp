@@ -20,7 +20,7 @@ using message::Header;
 using message::TFMessage;
 using Status = DepthCamera::Status;
 
-// Ns that an image waits for its transform (judgement)
+// ns that an image waits for its transform (judgement)
 constexpr std::uint64_t kLateTransform = 100'000'000;
 constexpr std::size_t kMostWaiting = 64;      // images that wait (judgement)
 constexpr std::size_t kMostHeld = 256 << 20;  // bytes of them (judgement)

@@ -17,7 +17,8 @@ namespace {
 constexpr const char* kMissing = "USB is not accessible. Give this user access to /dev/bus/usb";
 constexpr const char* kSilence =
     "Is its power supply plugged in? A Kinect needs it in addition to USB.";
-constexpr double kTicks = 60e6;  // Hz of the device's clock (the maker's)
+constexpr double kTicks = 60e6;  // Hz of the device's clock; the maker gives no figure
+// Samples from here on are no depth (libfreenect's FREENECT_DEPTH_MM_MAX_VALUE)
 constexpr std::uint16_t kNoMillimetres = 10'000;
 
 struct Shutdown {

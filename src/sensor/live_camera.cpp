@@ -1,4 +1,4 @@
-// Converts raw Kinect disparities to metres, and device times to host times.
+// Converts raw Kinect disparities and device times, and keeps live cameras open.
 #include "sensor/live_camera.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ constexpr double kPixel = 1.042e-3;  // a pixel of the sensor (1280 x 960) on th
 constexpr double kBaseline = 0.075;  // from projector to camera, m
 constexpr double kShift = 200.375;   // of the reference plane's raw value, pixels of the sensor
 constexpr double kFarthest = 15;     // m; steps are above half a metre there
-// Raw value of a pixel without depth: 2^11 - 1 (the maker's)
+// Raw value of a pixel without depth: 2^11 - 1 (libfreenect's FREENECT_DEPTH_RAW_NO_VALUE)
 constexpr std::uint16_t kNoValue = 2047;
 
 }  // namespace

@@ -105,9 +105,9 @@ enum class Lost {
   ended,         ///< a recording: opened again, it plays from its beginning
 };
 
-/// Shares what drivers of real devices have in common: stamps on the host's clock, and reopening of
-/// lost devices. If the device does not pace itself, stamps are its own times, from 0 on, and
-/// continue when a recording starts again.
+/// Stamps the frames of a real device by the host's clock, and opens a lost device again. If the
+/// device does not pace itself, stamps are its own times, from 0 on, and continue when a recording
+/// starts again.
 class LiveCamera final : public DepthCamera {
  public:
   /// Opens the device. `silence` tells what a device that is silent for long may lack. Without a

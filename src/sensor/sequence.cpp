@@ -199,7 +199,7 @@ void add_poses(const fs::path& folder, const SequenceDescription& description,
   }
 }
 
-// Takes the median interval if each frame has its own stamp.
+// Frames a second: by the median interval if each frame has its own stamp, else as described.
 double rate_of(const SequenceDescription& description, const std::vector<SequenceFrame>& frames) {
   const bool told = description.rate && description.frames.empty() && description.stamps.empty();
   if (told || frames.size() < 2) return description.rate.value_or(kRate);

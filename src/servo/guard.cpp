@@ -1,4 +1,4 @@
-// Limits, damps and slows the force between proxy and device.
+// Passes a force through watchdog, damper, soft start, slew limit, brake and clamp.
 #include "palpate/servo/guard.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void validate(const GuardOptions& options) {
   require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "give a time above 0");
 }
 
-// False for what is not a number, too.
+// False for NaN, too.
 bool sane(const Vector3d& v) noexcept {
   return v.allFinite() && v.cwiseAbs().maxCoeff() <= Guard::kLargest;
 }
@@ -64,7 +64,7 @@ Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
 
 }  // namespace
 
-/// Steps of a guard, and what it keeps from one to the next.
+/// Links of a guard, and its state between steps.
 class Guard::Inside {
  public:
   explicit Inside(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
@@ -186,12 +186,12 @@ Guard::Inside::Motion Guard::Inside::follow(const Guard::Input& input) const noe
           velocity_ + Guard::kSmoothing * (now - velocity_)};
 }
 
-// Energy in the spring, J, or in a force that still fades after the surface has gone.
+// Energy in the spring, or in a force that still fades after the surface has gone: the larger, J.
 double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
-// The share of the hand's way along the surface in which the proxy goes along, smoothed; 1 at the
+// Share of the hand's displacement along the surface that the proxy follows, smoothed; 1 at the
 // first touch.
 double Guard::Inside::sliding(const Guard::Input& input, const Motion& motion) const noexcept {
   if (before_.normal.isZero(0) || before_.stiffness == 0 || input.stiffness == 0) return 1;
@@ -204,7 +204,7 @@ double Guard::Inside::sliding(const Guard::Input& input, const Motion& motion) c
   return sliding_ + Guard::kSmoothing * (share - sliding_);
 }
 
-// The part along the normal is never turned round.
+// Adds the damper; never turns round the part along the normal.
 Vector3d Guard::Inside::damp(const Guard::Input& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
@@ -221,7 +221,8 @@ Vector3d Guard::Inside::start(const Guard::Input& input, const Vector3d& force) 
   return gain_ * force;
 }
 
-// A stretched spring holds more as the gain rises: no more than the hand has put in.
+// Limits the gain so that the spring, which holds more as it rises, holds no more than the hand has
+// put in.
 double Guard::Inside::affordable_gain(const Guard::Input& input) const noexcept {
   if (options_.soft_start == 0) return 1;
   const double risen = gain_ + input.dt / options_.soft_start;
@@ -231,7 +232,7 @@ double Guard::Inside::affordable_gain(const Guard::Input& input) const noexcept 
   return put_in < risen * whole ? put_in / whole : risen;
 }
 
-// In the air there is nothing to brake against; what is owed waits for the next contact.
+// Brakes in contact only: in the air there is nothing to brake against, so the debt waits.
 Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
                               const Vector3d& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
@@ -241,14 +242,15 @@ Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
   return force + brake;
 }
 
-// A force that fades in the air and gives more than was paid for goes with the hand, as the spring
-// that it was.
+// Does a force that fades in the air hold more energy than the hand has put in? Then it falls as
+// fast as the hand moves, like the spring that made it.
 bool Guard::Inside::fades_unpaid(const Guard::Input& input, const Motion& motion) const noexcept {
   return options_.passivity.on && input.normal.isZero(0) &&
          stored(slewed_, stiffness_) > -passivity_.committed(motion.way);
 }
 
-// Leaving a surface, K of this step is 0 and the change is explained by that of the last one.
+// Takes the larger stiffness of two steps: where a hand leaves a surface, this step's is 0, and the
+// last one's explains the change.
 Vector3d Guard::Inside::limit_change(const Guard::Input& input, const Motion& motion,
                                      const Vector3d& force) noexcept {
   const double loose = fades_unpaid(input, motion) ? stiffness_ : 0;
@@ -279,7 +281,7 @@ Vector3d Guard::Inside::remember(const Guard::Input& input, const Motion& motion
   return force;
 }
 
-// At once: a step of force is the smaller evil.
+// Goes to zero at once: a step of force is the smaller evil.
 Vector3d Guard::Inside::fail(Guard::Fault fault) noexcept {
   if (state_.fault == Guard::Fault::none) ++state_.counts.faults;
   state_.fault = fault;

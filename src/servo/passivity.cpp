@@ -1,4 +1,4 @@
-// Keeps the ledger of energy given to the hand and brakes when it is overdrawn.
+// Keeps the ledger of energy given to the hand and brakes while it is above zero.
 #include "servo/passivity.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ const Vector3d& Passivity::sent(int steps_ago) const noexcept {
   return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
 }
 
-// Does no force act, and none come?
+// Is no force acting or on its way?
 bool Passivity::rests() const noexcept {
   for (int i = 0; i <= options_.delay; ++i) {
     if (!sent(i).isZero(0)) return false;
@@ -56,7 +56,7 @@ Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt,
   return -std::min(energy / square, strongest(dt, damping) / dt) * way;
 }
 
-// The brake, as a damper beside another, N s/m.
+// Strongest brake, as a damper beside another of `damping`, N s/m.
 double Passivity::strongest(double dt, double damping) const noexcept {
   return std::max(0.0, options_.mass / (2 * std::max(2, options_.delay + 1) * dt) - damping);
 }

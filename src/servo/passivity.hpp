@@ -8,16 +8,16 @@
 
 namespace palpate {
 
-/// The ledger of what forces gave to the hand, and the brake that takes it back: passivity observer
-/// and controller (Hannaford and Ryu 2002, in the impedance form; docs/method.md 8.5).
+/// Ledger of the energy that forces gave to the hand, and brake that takes it back: passivity
+/// observer and controller (Hannaford and Ryu 2002, in the impedance form; docs/method.md 8.5).
 ///
 ///   E += F . (dh - v_surface dt);   E > 0: F -= min(E / (|v|^2 dt), M / (2 n dt) - B) v
 ///
-/// F is what acted then, sent some steps before: a ledger that leaves the delay out misses just the
-/// energy that a delay makes. Work that a moving surface does on the hand is its own and is not
-/// counted. n = max(2, delay + 1) steps: dampers that are sampled and delayed shake what they are
-/// to brake when they are stronger than about M / (n dt) together; half of that bears a mass that
-/// was guessed too large by half. B is the one that acts beside the brake. Real-time.
+/// F acted in the step; it was sent `delay` steps before. Without the delay the ledger would miss
+/// just the energy that a delay makes. Work that a moving surface does on the hand is its own and
+/// not counted. n = max(2, delay + 1) steps: sampled and delayed dampers that are stronger than
+/// about M / (n dt) together shake the hand. Half of that is safe with a mass that was guessed up
+/// to twice too large. B is the damper that acts beside the brake. Real-time.
 class Passivity {
  public:
   static constexpr int kMaximumDelay = 16;
@@ -27,20 +27,21 @@ class Passivity {
     reset();
   }
 
-  /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand went
-  /// `way` (m) against the surface. `stored` (J): what the stretched spring holds and will give
-  /// back; that is never forgotten. What was taken is forgotten in `forget`, and when no force acts
-  /// any more: no contact pays for the next one.
+  /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand moved by
+  /// `way` (m) against the surface. `stored` (J): energy in the stretched spring, which it will
+  /// give back; never forgotten. Energy taken beyond that is forgotten with the time constant
+  /// `forget`, and at once when no force acts any more: no contact pays for the next one.
   void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
                double dt) noexcept;
 
-  /// Braking force (N) to add to `force` before it is sent, if the hand keeps moving by `way` (m)
-  /// per step. Counts the forces in the delay line. Zero while no energy was given. `damping` (N
-  /// s/m): B, of a damper that is part of `force`.
+  /// Braking force, N, to add to `force` before it is sent, if the hand keeps moving by `way` (m)
+  /// per step. Zero unless committed(), with `force`, is above zero. `damping`, N s/m: B of a
+  /// damper that is part of `force`.
   [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
                                       double dt, double damping = 0) const noexcept;
 
-  /// The ledger, J, when what is on its way has acted, if the hand goes on by `way` (m) a step.
+  /// Predicted ledger, J, after the forces in the delay line have acted, if the hand keeps moving
+  /// by `way` (m) per step.
   [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
 
   /// J; above zero: given to the hand, below: taken from it recently.

@@ -10,9 +10,9 @@ namespace palpate {
 namespace {
 
 constexpr double kShortest = 1.25e-7;  // s; lower end of the first bin, 1/8 us (judgement)
-constexpr double kLongest = 1e6;       // s; longer durations count in the last bin
+constexpr double kLongest = 1e6;       // s; longer durations count as this (judgement)
 
-// Device periods without data that count as silence (judgement)
+// Device periods without a step that trip the watchdog, at least (docs/method.md 8.6)
 constexpr double kSilencePeriods = 2.5;
 
 std::size_t bin_of(double duration) noexcept {

@@ -46,8 +46,8 @@ class RecentForces {
   [[nodiscard]] std::vector<Eigen::Vector3f> since(std::uint64_t& seen) const;
 
  private:
-  // A place is written with release and read with acquire: who reads a newer force than expected
-  // also sees a count that tells so.
+  // A place is written with release and read with acquire: a reader that meets a newer force than
+  // expected also sees the newer count.
   using Place = std::array<std::atomic<float>, 3>;
 
   std::array<Place, kSteps> forces_{};
@@ -71,7 +71,7 @@ class Clutch {
     return rest;
   }
 
-  /// From the hand to the tool while the clutch is not held, m.
+  /// Offset from the hand to the tool while the clutch is not held, m.
   [[nodiscard]] const Eigen::Vector3d& shift() const noexcept { return shift_; }
 
  private:

@@ -25,7 +25,7 @@ struct StepTrace {
 
 using StepTraces = Ring<StepTrace>;
 
-/// Shows on a servo that nobody steps what another one did: of recordings. The servo outlives it.
+/// Shows a recorded servo's states on a servo that is not stepped. The servo outlives it.
 class ServoTrace {
  public:
   explicit ServoTrace(Servo& servo) : servo_(&servo) {}

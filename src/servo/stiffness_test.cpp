@@ -51,7 +51,7 @@ constexpr double kStillSpeed = 0.02;  // m/s; slower counts as rest (judgement)
 constexpr double kLift = 2e-3;        // m off the wall that end a lift (judgement)
 constexpr double kLeastPress = 0.3;   // N that count as a press (judgement)
 constexpr double kShakenFor = 0.25;   // s that shaking has to last (judgement)
-constexpr double kMostForce = 4;      // N that a trial may ask for (judgement)
+constexpr double kMostForce = 4;      // N; largest maximum_force of a test (judgement)
 
 void validate(const StiffnessTestOptions& options) {
   const Requirement require{"stiffness test"};

@@ -57,7 +57,7 @@ GuardOptions bare(const WallOptions& wall) {
   return guard;
 }
 
-// Steps until `go_on(time, force)`, told of each force that is written, is false, or the time over.
+// Steps until `go_on(time, force)`, called with each written force, returns false, or for kTime.
 template <class GoOn>
 void run(SimulatedDevice& device, const Wall& wall, const WallOptions& options, GoOn go_on) {
   Guard guard(bare(options));

@@ -20,7 +20,7 @@ constexpr double kLongestNap = 1e-3;
 constexpr std::uint64_t kJitterStream = 0xa0761d6478bd642fu;
 constexpr std::uint64_t kDropStream = 0xe7037ed1a0b428dbu;
 constexpr std::uint64_t kRepeatStream = 0x8ebc6af09c88c6e3u;
-constexpr std::uint64_t kJumpAt = 100;  // frame, if the number of frames is unlimited (judgement)
+constexpr std::uint64_t kJumpAt = 100;  // frame of the jump, if frames have no end (judgement)
 
 // Draws a uniform number in [0, 1) for each frame.
 double draw(std::uint64_t seed, std::uint64_t frame) {

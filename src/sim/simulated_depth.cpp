@@ -100,7 +100,7 @@ void cut_row(const Cut& cut, const Eigen::Isometry3d& T_solid_camera, const RayR
   for (std::size_t i = 0; i < rays.count; ++i) {
     const Vector3d along = turn * Vector3d(rays.x[i], rays.y[i], 1);
     const Stretch inside = cut(from, along);
-    // From within a solid nothing of it is seen.
+    // A camera inside a solid sees nothing of it.
     const bool seen = inside.enter > 0 && inside.enter <= inside.leave;
     const float depth = seen ? static_cast<float>(inside.enter) : rays.depth[i];
     rays.depth[i] = std::min(rays.depth[i], depth);

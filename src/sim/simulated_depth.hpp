@@ -28,8 +28,8 @@ struct Solid {
 
 [[nodiscard]] double distance(const Solid& solid, const Eigen::Vector3d& x);
 
-/// With the gradient, which is the outward unit normal, in the world frame. Where it jumps (edges
-/// seen from inside, the middle of a ball) one of its limits is taken.
+/// Distance and its gradient, the outward unit normal, in the world frame. Where the gradient jumps
+/// (edges seen from inside, the middle of a ball) it is one of its limits.
 [[nodiscard]] Distance distance_and_normal(const Solid& solid, const Eigen::Vector3d& x);
 
 /// Renders solids as a perfect depth camera sees them: rays are cut with them in closed form.

@@ -1,4 +1,4 @@
-// Adds frayed silhouettes and holes to simulated depths.
+// Bends, mixes and frays simulated depths at silhouettes, and punches holes.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

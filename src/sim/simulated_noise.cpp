@@ -1,4 +1,4 @@
-// Adds sensor noise to simulated depths: quantised, patterned and Gaussian.
+// Disturbs exact depths as a sensor does: correlated noise, fixed patterns, faults, rounding.
 #include "sim/simulated_noise.hpp"
 
 #include <fmt/format.h>

@@ -36,7 +36,7 @@ SimulatedSetup table() {
   return setup;
 }
 
-// With a wire across it, 8 mm thick.
+// The table with a wire across it, 8 mm thick.
 SimulatedSetup desk() {
   SimulatedSetup setup = table();
   Isometry3d wire = Isometry3d::Identity();

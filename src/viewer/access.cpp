@@ -1,4 +1,4 @@
-// Decides which requests come from the viewer's own page.
+// Checks the hosts, origins and tokens of requests.
 #include "viewer/access.hpp"
 
 #include <arpa/inet.h>

@@ -1,4 +1,4 @@
-// Handles what pages ask for and who holds which device.
+// Answers pages' messages and keeps track of which page holds which tool.
 #include "viewer/client_sessions.hpp"
 
 #include <fmt/ranges.h>
@@ -150,7 +150,7 @@ void ClientSessions::act(Session& session, const Hand& hand) {
   holders_[hand.device] = &session;
 }
 
-// Releasing a tool that was taken away meanwhile only clears the client's notice of that.
+// If the tool was taken away meanwhile, the release says that the client knows it now.
 void ClientSessions::act(Session& session, const Release& wish) {
   if (wish.device >= holders_.size()) throw Error("unknown tool");
   session.lost.erase(wish.device);

@@ -23,7 +23,7 @@ namespace palpate::viewer {
 
 using SharedBytes = std::shared_ptr<const std::string>;
 
-/// Topic of a message: a newer message replaces an older one of the same topic.
+/// Topic of a message: a newer message replaces an older one of the same topic, except answers.
 struct Topic {
   enum class Kind : std::uint8_t {
     state,
@@ -130,7 +130,7 @@ struct Session {
   std::function<void()> wake = {};     ///< there is something in the outbox, or `closing` is set
 };
 
-/// Permissions of pages.
+/// Who may connect, and what pages may see and do.
 struct ClientSessionsOptions {
   std::string token;
   ViewerOptions::Limits limits = {};
@@ -167,9 +167,9 @@ class ClientSessions {
   void send(const Notice& notice);
   /// Tells the pages that the recording ended by itself.
   void end_record();
-  /// Says of a time line what is shown now, if that is new.
+  /// Sends the time line's present moment if it has changed.
   void send_moment();
-  /// The envelope and the past of a time line.
+  /// Sends the envelope and the past of the time line.
   void send_time_line() { show_time_line(greeted()); }
   /// Sends to one client, unless it was sent these same bytes last.
   static void show(Session& session, Topic topic, const SharedBytes& bytes);

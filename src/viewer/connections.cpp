@@ -29,7 +29,7 @@ constexpr std::string_view kPlain = "text/plain; charset=utf-8";
 constexpr const char* kPolicy =
     "default-src 'self'; connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'";
-// A message goes in pieces, so that one that goes slowly is told from one that does not go.
+// A message goes in pieces, so that one that goes slowly differs from one that is stuck (judgement)
 constexpr std::size_t kPiece = 64 * 1024;
 // The system keeps no more than this for a client that does not take it: what it kept is old.
 constexpr int kSystemBuffer = 256 * 1024;
@@ -156,7 +156,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
         });
   }
 
-  // Beast: a read that posted itself for the control callback and a close wait for each other.
+  // A read with a control callback and a close may wait for each other; so drop it, post the close.
   void close() {
     closing_ = true;
     stream_.control_callback();

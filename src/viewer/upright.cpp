@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 constexpr std::size_t kEnough = 100'000;  // points; more are thinned out (judgement)
-// Points; fewer decide nothing, the foot has about 20 of them (derived)
+// Points; fewer decide nothing: an even spread has only 20 of these in the foot (judgement)
 constexpr std::size_t kFew = 1000;
 // Share of the points at either end that may be strays (judgement)
 constexpr double kStray = 0.005;

@@ -31,7 +31,7 @@ namespace {
 
 using namespace viewer;
 
-constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame
+constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame (judgement)
 constexpr double kReportPeriod = 0.5;      // s (judgement)
 constexpr double kEmptyRadius = 1;         // m, shown while there are no points (judgement)
 

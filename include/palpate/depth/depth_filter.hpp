@@ -74,9 +74,9 @@ struct DepthFilterOptions {
   double farthest = 20;
 };
 
-/// From raw depth to points that are as good as the noise allows: the noise-sized fit, then
-/// the filter over time (docs/method.md 6.3 to 6.6). One thread uses it. Once it
-/// has seen frames of one size, it allocates nothing.
+/// Turns raw depths into points as good as the noise allows: by the noise-sized fit, then the
+/// filter over time (docs/method.md 6.3 to 6.6). One thread uses it. Once it has seen frames of one
+/// size, it allocates nothing.
 class DepthFilter {
  public:
   /// @throws Error when an option is out of range.

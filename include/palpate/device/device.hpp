@@ -29,7 +29,7 @@ struct DeviceInfo {
 
 /// A device at the beginning of a step, in its own frame.
 struct DeviceState {
-  /// State of the connection to the device.
+  /// Condition of the device.
   enum class Status {
     ok,
     silent,    ///< not latched: no data from the hand, so no force may be applied; the position is
@@ -45,8 +45,8 @@ struct DeviceState {
   /// m/s; damping and brake depend on it. Estimate it from positions where it is not measured.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::uint32_t buttons = 0;  ///< bit k: button k is down
-  /// From the tool's axes to the device's, of unit length; the identity while the tool is held
-  /// straight, along the device's axes, and where the device does not measure it.
+  /// Rotation from the tool's axes to the device's, of unit length; the identity while the tool is
+  /// held along the device's axes, and where the device does not measure it.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   double gripper = 0;  ///< opening between its fingers, m; 0 where there is none
 };

@@ -16,8 +16,8 @@ namespace palpate {
 /// b / 1.5 T with its and the device's damping b, half a step of holding and one of delay.
 inline constexpr double kSteadyStiffness = 2000;
 
-/// Fits a device to a scene of any size: its workspace, the stiffness that goes with it, and the
-/// plan of its hand if that explores.
+/// Placement of a device in a scene of any size: its workspace, the stiffness that goes with it,
+/// and the trajectory of its hand if that explores.
 struct Placement {
   Workspace workspace;   ///< magnified so that what is explored fits a hand's reach
   double stiffness = 0;  ///< of the surface, N/m in the world

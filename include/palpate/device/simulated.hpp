@@ -20,7 +20,7 @@ namespace palpate {
 /// advance.
 class TargetSource {
  public:
-  /// A position that the hand pulls towards.
+  /// A position that the hand pulls towards, and what it does there.
   struct Target {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
     std::uint32_t buttons = 0;                           ///< bit k: button k is down

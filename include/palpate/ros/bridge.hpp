@@ -16,13 +16,13 @@
 namespace palpate {
 
 struct RosBridgeOptions {
-  /// Robot that follows a hand's proxy (docs/ros2.md).
+  /// Options of a robot that follows the first hand's proxy (docs/ros2.md).
   struct Robot {
     /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
     std::string preset;
     std::string ns = {};          ///< its namespace; empty: the preset's usual one
     std::string topic = {};       ///< in place of the preset's
-    std::string frame = "world";  ///< frame of reference that targets are told in
+    std::string frame = "world";  ///< frame of reference of the targets
     /// The hand's own position instead of the proxy's: it enters what the camera sees.
     bool hand = false;
     double rate = 250;  ///< targets a second, Hz; 1 to 1000
@@ -30,10 +30,10 @@ struct RosBridgeOptions {
     Eigen::Isometry3d T_robot_world = Eigen::Isometry3d::Identity();
     double scale = 1;
     std::optional<int> dead_man =
-        {};  ///< targets are told only while this button of the hand is down, 0 to 31
+        {};  ///< targets are sent only while this button of the hand is down, 0 to 31
     /// Names of the sources whose cameras say which places are free; empty: all.
     std::vector<std::string> sources = {};
-    /// Speed of retreat when a surface came over it, m/s, 0 to 1; 0: it stands still.
+    /// Speed at which it goes back from a surface that came over it, m/s, 0 to 1; 0: it stays.
     double retreat = 0.05;
   };
 
@@ -45,8 +45,8 @@ struct RosBridgeOptions {
   std::optional<Robot> robot = {};  ///< what the first hand drives
 };
 
-/// Tells ROS 2 what hands do and feel, and takes contact forces from robots, on a thread of its own
-/// that no servo waits for. Topics of each hand are listed in docs/ros2.md.
+/// Publishes hands and their forces to ROS 2, and takes contact forces from robots, on a thread of
+/// its own that no servo waits for. docs/ros2.md lists the topics of each hand.
 ///
 /// In palpate::ros; where the build has no DDS, construction throws Error that says so.
 class RosBridge {
@@ -56,8 +56,8 @@ class RosBridge {
     Servo* servo = nullptr;
   };
 
-  /// Scene and servos outlive it. `streams` tells how cameras fare, on the bridge's thread; may be
-  /// empty.
+  /// Scene and servos outlive it. `streams` returns the cameras' states; it is called on the
+  /// bridge's thread, and may be empty.
   /// @throws Error when an option is out of range, or DDS fails.
   RosBridge(std::vector<Hand> hands, const Scene& scene,
             std::function<std::vector<StreamState>()> streams,
@@ -70,12 +70,12 @@ class RosBridge {
   struct RobotState {
     std::string topic;
     std::uint64_t told = 0;   ///< targets
-    std::uint64_t held = 0;   ///< targets that were due and not told
-    std::string why = {};     ///< why the last that was due was held back; empty: it was told
+    std::uint64_t held = 0;   ///< targets that were due and not sent
+    std::string why = {};     ///< why the last that was due was held back; empty: it was sent
     std::string reason = {};  ///< the same without numbers
-    bool retreats = false;    ///< it is told to go back from where a surface came over it
+    bool retreats = false;    ///< targets lead back from a surface that came over it
     std::map<std::string, double> waits = {};  ///< s of it by reason
-    std::size_t readers = 0;                   ///< controllers that hear it
+    std::size_t readers = 0;                   ///< controllers that read the topic
   };
 
   /// Last problem while it ran, in words; empty if none. Any thread but a servo's.

@@ -77,10 +77,10 @@ struct StreamOptions {
   std::optional<bool> allow_repeats = {};
 };
 
-/// From a camera to a source: one thread reads, another prepares. A frame that comes while the one
-/// before is being prepared waits, and the next takes its place: frames are dropped, never queued,
-/// so that what is felt is never older than it must be. A camera that does not pace itself
-/// (CameraInfo::paces) is read when preparation is ready, and loses nothing.
+/// Brings a camera's frames to a source: one thread reads, another prepares. A frame that comes
+/// while the one before is being prepared waits, and the next takes its place: frames are dropped,
+/// never queued, so that the rendered surface is no older than it must be. A camera that does not
+/// pace itself (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
 /// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
 /// and reported by state(). What stops coming fades as the source's PolicyOptions say; but what the

@@ -118,9 +118,10 @@ class Guard {
     double energy = 0;
   };
 
-  /// Larger numbers than this (N, m, m/s, N/m) are a fault: nothing here makes them.
+  /// Larger numbers than this (N, m, m/s, N/m) are a fault: no working device makes them
+  /// (judgement).
   static constexpr double kLargest = 1e9;
-  /// Share of the newest velocity in the smoothed one, a step.
+  /// Share of the newest velocity in the smoothed one, a step (docs/method.md 8).
   static constexpr double kSmoothing = 0.25;
 
   /// @throws Error when an option is out of its range.

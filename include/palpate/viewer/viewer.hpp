@@ -96,7 +96,7 @@ struct ViewerControls {
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
-  /// Moves a tool to the target of a page's hand, world frame.
+  /// Gives a tool the target of a page's hand, world frame.
   std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
   /// The page let go of the tool, or went away.
   std::function<void(std::size_t device)> release = {};
@@ -146,8 +146,8 @@ struct ViewerOptions {
   std::optional<Eigen::Vector3d> origin = {};
   /// Unit; unset: +z, or +y or -y where the points stand on a flat base along it.
   std::optional<Eigen::Vector3d> up = {};
-  /// From where the scene is seen at first where no stream says where its sensor is, m, world;
-  /// unset: from anywhere.
+  /// Position from which the scene is shown first if no stream has a sensor's pose, m, world;
+  /// unset: any.
   std::optional<Eigen::Vector3d> eye = {};
   /// States of the streams; two threads of the viewer call it about four times a second, perhaps at
   /// the same time.

@@ -10,8 +10,10 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kChunk = 64;
-constexpr int kBentSizes = 4;  // quadratic fits up to 2/3 r_max: cubic terms would bias larger ones
+constexpr int kChunk = 64;  // blocks (judgement)
+// Sizes of quadratic fits, up to 0.57 r_max: cubic terms would bias larger ones
+// (docs/method.md 6.3)
+constexpr int kBentSizes = 4;
 
 enum Kind : int { kNone, kAffine, kQuadratic };
 
@@ -51,10 +53,9 @@ inline void round_sizes(Chunk& c) {
   }
 }
 
-// Largest windows: what noise and wanted error ask for, in blocks foreshortened as the slopes
-// tell.
+// Sets the largest windows: by noise and wanted error, in blocks that the slopes foreshorten.
 inline void size_windows(const FitInput& in, int row, Chunk& c) {
-  constexpr float kSide = .88F;  // a square with the second moments of a disc
+  constexpr float kSide = .88F;  // half side over radius: a disc's moments (docs/method.md 6.3)
   const auto y = static_cast<float>(in.y0 + row * in.step_y);
   const auto step_x = static_cast<float>(in.step_x);
   const auto step_y = static_cast<float>(in.step_y);
@@ -130,11 +131,12 @@ inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
   return fit(in, shape(half_u, half_v), s);
 }
 
-// Four windows beside a block: along the axes, or between them.
+// Four windows beside a block.
 struct Directions {
   int u[kLanes];
   int v[kLanes];
 };
+// Along the axes, and along the diagonals.
 constexpr Directions kDirections[2] = {{{1, 0, -1, 0}, {0, 1, 0, -1}},
                                        {{1, -1, -1, 1}, {1, 1, -1, -1}}};
 
@@ -145,8 +147,8 @@ struct Aside {
   double
       promise;  // best score of windows there, over that of the largest one's mean: if it is flat
 };
-constexpr int kWays = 4;
-constexpr int kAsides = kWays * kSizes;
+constexpr int kWays = 4;                 // half or whole, along axes or diagonals
+constexpr int kAsides = kWays * kSizes;  // each of them in each size
 
 // The most promising first.
 struct Asides {
@@ -175,7 +177,7 @@ struct Search {
   int shift_u, shift_v, half_u, half_v;
 };
 
-// Looks at four windows, takes the best of them that are explained if it wins, and tells which are.
+// Tries four windows, takes the best of the explained ones if it wins, and returns which they are.
 inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search& search) {
   const Directions& to = kDirections[aside.diagonal ? 1 : 0];
   const int half_u = c.half_u[aside.size][search.i];
@@ -234,7 +236,7 @@ inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
                 .half_u = c.best_u[i],
                 .half_v = c.best_v[i]};
   if (c.kind[i] != kNone) search.score = centred_score(in, row, c, search);
-  constexpr int kLast = kSizes - 1;
+  constexpr int kLast = kSizes - 1;  // the largest size
   const double per_n =
       kExtents.of[c.half_u[kLast][i]].per_n * kExtents.of[c.half_v[kLast][i]].per_n;
   const double mean = shared_over(in.shared, 1, per_n) * c.variance[i] * per_n;

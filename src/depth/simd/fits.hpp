@@ -27,14 +27,15 @@ constexpr int kLargestWindow = 40;     // blocks from a window's middle to its b
 constexpr double kBlock = 1 << 20;     // what each block that is no hole adds to the last sum
 constexpr double kRhoUnits = 1 << 20;  // inverse depths are counted in 2^-20 / m
 
-// Windows that are tried, as shares of the largest: equal ratios.
+// Sizes of windows that are tried, and their shares of the largest (docs/method.md 6.3).
 constexpr int kSizes = 6;
+// 4^((k - 5) / 5), k = 0 ... 5: from a quarter on (docs/method.md 6.3)
 constexpr float kRatios[kSizes] = {.25F, .329877F, .435275F, .574349F, .757858F, 1};
 
-// Noise correlated over a length not small beside the window adds little error to slopes and
-// bends: over n blocks the variance of a term of degree 0, 1, 2 is shared / (1 + this (shared - 1)
-// / n) times that of independent blocks. Within a third for Gaussian correlation over up to a fifth
-// of the window's side.
+// Errors shared by a large part of a window hardly change slopes and bends in it: over n blocks the
+// variance of a term of degree 0, 1, 2 is shared / (1 + this (shared - 1) / n) times what it would
+// be if blocks erred alone (docs/method.md 6.2). For Gaussian correlation over up to a fifth of the
+// window's side that is within a third.
 constexpr double kUnseenShare[] = {1.6, 5, 10};
 
 // Blocks in rows with a margin: pointers are to the block (0, 0).
@@ -84,7 +85,7 @@ const FitFunctions& best_fits() noexcept;
 // set. They take plain pointers and numbers only. Each does one row; rows of blocks have at least
 // kPlainLanes empty blocks before and behind them.
 
-constexpr int kPlainLanes = 8;
+constexpr int kPlainLanes = 8;  // floats in 256 bits
 
 // Depths that are believed, and what those of one surface may differ by: width[0] + width[1] z +
 // width[2] z^2.

@@ -1,16 +1,16 @@
 #pragma once
 
-// Which window fits a block best. In an anonymous namespace: see windows.inl.
+// Chooses the window that fits a block best. In an anonymous namespace: see windows.inl.
 
 #include "depth/simd/aside.inl"
 
 namespace palpate::simd {
 namespace {
 
-// How far a window has to reach for slopes that tell the foreshortening; 1: the plain ones do.
+// Reach of a window whose slopes give the foreshortening well enough, blocks; 1: the plain ones do.
 inline int first_reach(const FitInput& in, const Chunk& c, int i) {
-  constexpr double kSlopeError = 0.15;  // of the tangent
-  constexpr int kLargestReach = 8;
+  constexpr double kSlopeError = 0.15;  // of the tangent (judgement)
+  constexpr int kLargestReach = 8;      // blocks (judgement)
   const double step = in.step_x < in.step_y ? in.step_x : in.step_y;
   const double wanted = kSlopeError * c.rho[i] * step;
   int half = 1;
@@ -124,7 +124,7 @@ inline int fit_planes(const FitInput& in, int row, Chunk& c, const FitRow& out, 
   for (int i = 0; i < c.count; ++i) all[i] = i;
   int count = 0;
   by_fours(all, c.count, [&](const int* four, int filled) {
-    constexpr int kLast = kSizes - 1;
+    constexpr int kLast = kSizes - 1;  // the largest size
     const Fits f = fit_four(in, row, c, four, c.half_u[kLast], c.half_v[kLast]);
     const Surface s = affine_at(f, Doubles{}, Doubles{});
     for (int l = 0; l < filled; ++l) {
@@ -177,7 +177,7 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
       if (c.kind[i] != kNone) rest[fitted++] = i;
     }
     finish(in, row, c, rest, fitted, out);
-    constexpr int kLargest = kSizes - 1;
+    constexpr int kLargest = kSizes - 1;  // size
     for (int i = 0; i < c.count; ++i) {
       const int reach_u = c.edge[i] ? c.half_u[kLargest][i] : 0;
       out.reach_u[c.columns[i]] = static_cast<std::uint8_t>(reach_u);

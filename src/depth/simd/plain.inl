@@ -11,7 +11,7 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kLanes = kPlainLanes;
+constexpr int kLanes = kPlainLanes;  // blocks side by side
 typedef float Floats __attribute__((vector_size(kLanes * sizeof(float))));
 typedef std::int32_t Ints __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 typedef std::uint8_t Bytes __attribute__((vector_size(kLanes)));
@@ -196,7 +196,7 @@ struct Sums {
 
 void fit(const float* rho, const std::uint8_t* counts, std::ptrdiff_t stride, int columns,
          const BlockLimits& limits, float per_x, float per_y, const FitRow& out) noexcept {
-  constexpr float kOnOneLine = .3F;
+  constexpr float kOnOneLine = .3F;   // below 1/3, the least determinant off one line (derived)
   constexpr std::uint8_t kPlain = 1;  // FilteredDepth::State::plain
   const float spread = per_x * per_x > per_y * per_y ? per_x * per_x : per_y * per_y;
   for (int column = 0; column < columns; column += kLanes) {

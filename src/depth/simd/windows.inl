@@ -10,7 +10,7 @@
 namespace palpate::simd {
 namespace {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = 4;  // doubles in 256 bits
 typedef double Doubles __attribute__((vector_size(kLanes * sizeof(double))));
 typedef long long Mask __attribute__((vector_size(kLanes * sizeof(double))));
 
@@ -51,7 +51,7 @@ struct Four {
            __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7)}};
 }
 
-// What a window's extent along one axis means: n = 2 half + 1 blocks with mean square mu =
+// Moments of a window along one axis: n = 2 half + 1 blocks with mean square mu =
 // (n^2 - 1) / 12 and spread of squares ku = (n^2 - 1) (n^2 - 4) / 180.
 struct Extent {
   double per_n, per_mu, per_ku, mu;
@@ -69,7 +69,7 @@ struct Extents {
 };
 constexpr Extents kExtents;
 
-// What four windows' extents mean for fits.
+// Moments of four windows, as fits need them.
 struct Shape {
   Doubles per_n, per_mu, per_mv, per_ku, per_kv, mu, mv, area;
 };
@@ -87,7 +87,7 @@ struct Shape {
   return {u.v[0] * v.v[0], u.v[1], v.v[1], u.v[2], v.v[2], u.v[3], v.v[3], area};
 }
 
-// Of four windows of one size.
+// The same for four windows of one size.
 [[gnu::always_inline]] inline Shape shape(int half_u, int half_v) {
   const Extent& u = kExtents.of[half_u];
   const Extent& v = kExtents.of[half_v];
@@ -204,7 +204,7 @@ struct Surface {
           var * f.shape.per_mv};
 }
 
-// What the quadratic terms add to it.
+// The part of the surface that the quadratic terms add.
 [[gnu::always_inline]] inline Surface bend_at(const Fits& f, const Doubles& du, const Doubles& dv) {
   const Doubles& per_n = f.shape.per_n;
   const Doubles var = f.variance * per_n * shared_over(f.shared, 2, per_n);

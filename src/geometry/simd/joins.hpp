@@ -11,7 +11,7 @@ namespace palpate::simd {
 /// sum's rounding depends neither on the number of lanes nor on the instruction set. Plain pointers
 /// alone cross this border: code for newer processors must not leak into what older ones run.
 
-/// Points asked about at a time.
+/// Points asked about at a time (judgement).
 inline constexpr std::size_t kQueries = 8;
 
 /// Points [begin, end).

@@ -13,7 +13,7 @@
 namespace palpate::simd {
 namespace {
 
-// How many floats one instruction takes. Another number would give the same sums.
+// Floats that one instruction takes. Another number would give the same sums.
 constexpr std::size_t kNativeLanes = std::experimental::native_simd<float>::size();
 
 template <std::size_t kLanes>
@@ -78,7 +78,7 @@ struct Joins {
   }
 
   static std::size_t within(const Join& join, const float* squared_radii, Hit* hits) {
-    constexpr std::size_t kGroups = kQueries / kLanes;
+    constexpr std::size_t kGroups = kQueries / kLanes;  // registers that hold all queries
     std::size_t count = 0;
     Floats squared_radius[kGroups];
     Mask bit_of_lane[kGroups];
@@ -138,7 +138,7 @@ struct Joins {
 
   static std::size_t near(const Leaves& leaves, const float* lower, const float* upper,
                           float squared_radius, Run* runs) {
-    constexpr std::uint32_t kNowhere = ~0u;
+    constexpr std::uint32_t kNowhere = ~0u;  // no leaf begins there
     Run open{kNowhere, kNowhere};
     std::size_t count = 0;
     for (std::size_t first = 0; first < leaves.count; first += kLanes) {
