@@ -1,3 +1,5 @@
+// Keeps what is decided of the sheets near the tool from one call to the next.
+
 #include "field/facing.hpp"
 
 #include <algorithm>
@@ -13,14 +15,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// R: a point that is farther has no weight at the proxy. How sheets meet is settled as late as can
-// be, when most is known.
-constexpr float kHolds = 1.5f;
-constexpr float kMeets = 1.1f;
-constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;  // R beyond the nearest point, within which things are seen
+// A part keeps its sign while one of its points is within kHolds, a sheet its label within kMeets.
+// Both are above 1 R, where weights end. Labels are settled later, when more is known.
+constexpr float kHolds = 1.5f;  // R; judgement
+constexpr float kMeets = 1.1f;  // R; judgement
+constexpr float kLift = 0.3f;   // R above the surface that a touching tool looks from; judgement
+constexpr float kView = 1.2f;   // R beyond the nearest point, within which points vote; judgement
 
-constexpr int kPairs = 2048;  // in one call
+constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
 }  // namespace
 

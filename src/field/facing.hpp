@@ -1,3 +1,4 @@
+// Sides and labels: how the sheets near the tool are seen from it (docs/method.md 2.7).
 #pragma once
 
 #include <Eigen/Core>
@@ -65,14 +66,15 @@ class Facing {
   /// time.
   void forget() noexcept;
 
-  /// Takes over another's decisions, if it has any; what is decided then stands in the next call,
-  /// wherever its points are.
+  /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point
+  /// is near.
   void follow(const Facing& other) noexcept;
 
  private:
-  static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are in front
+  static constexpr std::size_t kMost =
+      96;  // sheets near the tool; further ones are in front; judgement
   static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
-  static constexpr std::uint8_t kOpen = 0xff;
+  static constexpr std::uint8_t kOpen = 0xff;  // a label that is not decided; above every Label
 
   /// Whose sheet or part it is. All layers without sheets of their own are of one. Another part is
   /// all that was seen from one side alone, with sheets or without.
@@ -81,7 +83,7 @@ class Facing {
     std::uint32_t number = 0;
     bool operator==(const Key&) const = default;
   };
-  static constexpr Key kOneSided{nullptr, 1};
+  static constexpr Key kOneSided{nullptr, 1};  // the part of all points seen from one side only
   struct Part {
     Key key;
     int sign = 0;         // 0: not decided

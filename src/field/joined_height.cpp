@@ -1,3 +1,5 @@
+// Joins the heights of the labels at edges and creases (docs/method.md 2.6, 2.8).
+
 #include <cmath>
 
 #include "field/facing.hpp"
@@ -25,9 +27,10 @@ Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
 
 namespace {
 
-constexpr double kClosed = 0.2;   // of R; half of it closes a scan's creases, not all of two sheets
-constexpr double kFacing = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
-constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond doubt
+constexpr double kClosed = 0.2;  // of R; half of it closes a scan's creases, not all of two sheets
+constexpr double kFacing = 0.7;  // |Nb|^2 where two equal sheets meet at 114 degrees; judgement
+constexpr double kHollow =
+    0.01;  // h, in R, from which on a surface is concave beyond doubt; judgement
 
 }  // namespace
 
@@ -61,7 +64,8 @@ using Eigen::Vector3d;
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
 
-constexpr double kBackToBack = 0.8;  // cosine from which on two sheets may be sides of one plate
+constexpr double kBackToBack =
+    0.8;  // cosine from which on sheets may be sides of a plate; judgement
 
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
@@ -108,7 +112,7 @@ Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noex
 /// How far a label's height is taken out of the way of another's as its share of the weight of
 /// both runs out: R (0.15 / share - 1)^2.
 Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
-  constexpr double kShare = 0.15;
+  constexpr double kShare = 0.15;  // of the weight of both; judgement (docs/method.md 2.8)
   const double share = own.f / both.f;
   if (share >= kShare) return {};
   const double e = kShare / share - 1;
@@ -174,7 +178,7 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius, double wid
 
 std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
                                    double least) noexcept {
-  constexpr double kInCreases = 0.1;  // of R
+  constexpr double kInCreases = 0.1;  // width of the rounding, R; judgement (docs/method.md 2.8)
   Value height[simd::kLabels];
   Value weight[simd::kLabels];
   bool there[simd::kLabels] = {};

@@ -1,3 +1,5 @@
+// Averages material, presence and velocity, and bounds the weights in a ball (docs/method.md 2.10).
+
 #include <algorithm>
 #include <array>
 #include <cmath>

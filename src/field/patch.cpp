@@ -1,3 +1,5 @@
+// Copies the selected points into columns and moves them along with their layers.
+
 #include "field/patch.hpp"
 
 #include <algorithm>
@@ -8,9 +10,9 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kCacheLine = 64 / sizeof(double);
+constexpr std::size_t kCacheLine = 64 / sizeof(double);  // doubles in 64 bytes, as most CPUs have
 
-// Each run is filled up to whole lanes; the selection reckons with one a source.
+// Doubles (derived): each run is filled up to whole lanes; the selection counts one run a source.
 constexpr std::size_t kFilling = simd::kMaxRuns * simd::kLanes;
 
 bool any(std::span<const ActiveLayer> layers, const auto& property) noexcept {

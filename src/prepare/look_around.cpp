@@ -15,21 +15,22 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kNoneNear = std::numeric_limits<float>::infinity();
+constexpr float kNoneNear = std::numeric_limits<float>::infinity();  // m: no sheet is near
 
-// The next other sheet along a normal.
-constexpr float kGapReach = 1.6f;  // R
-constexpr float kGapTube = 1.3f;   // spacings to the side
-constexpr float kGapSlope = 0.5f;  // of the way to the side, the least height
-constexpr float kGapCosine = 0.8f;
-constexpr float kGapTrust = 0.3f;
-constexpr float kGapResiduals = 3;
-constexpr float kGapSpacings = 0.3f;
+// Which points belong to the next other sheet along a normal; all are judgement.
+constexpr float kGapReach = 1.6f;     // R
+constexpr float kGapTube = 1.3f;      // spacings to the side
+constexpr float kGapSlope = 0.5f;     // least height over the way to the side
+constexpr float kGapCosine = 0.8f;    // of the angle between both normals, at least (37 degrees)
+constexpr float kGapTrust = 0.3f;     // confidence, at least
+constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
+constexpr float kGapSpacings = 0.3f;  // least height, in spacings
 
-// Votes of one sheet on another.
-constexpr float kVoteReach = 1.3f;  // R
-constexpr std::size_t kVoteSheets = 4;
-constexpr int kVotesEach = 3;
+// Votes of one sheet on another; all are judgement.
+constexpr float kVoteReach = 1.3f;      // R
+constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
+constexpr int kVotesEach = 3;           // points of each, the nearest
+
 /// What the points of one block see of other sheets.
 class Outlook {
  public:
@@ -49,7 +50,8 @@ class Outlook {
  private:
   /// Is there but one sheet, and does it not curl up?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    constexpr float kCurled = 0.3f;
+    constexpr float kCurled =
+        0.3f;  // cosine (73 degrees) that normals turn by where a sheet curls; judgement
     const std::uint32_t sheet = sheets_.sheet[first];
     const Vector3f& n = own_.normals[first];
     for (const simd::Run& run : runs) {

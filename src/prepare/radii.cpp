@@ -48,9 +48,9 @@ namespace {
 
 constexpr float kMatters = 0.8f;  // of the point's R: only a smaller limit is applied; judgement
 constexpr std::uint32_t kBlockPoints = 64;  // that share one list of leaves; judgement, for speed
-constexpr float kPlane = 0.5f;              // confidence from which on a point has a plane
-constexpr float kResiduals = 3;             // off the plane, in its residuals: three sigma
-constexpr float kOff = 0.12f;               // off the plane, of the distance (7 degrees); judgement
+constexpr float kPlane = 0.5f;   // confidence from which on a point has a plane; judgement
+constexpr float kResiduals = 3;  // off the plane, in its residuals: three sigma
+constexpr float kOff = 0.12f;    // off the plane, of the distance (7 degrees); judgement
 
 /// The limits of one block after another.
 class Limiter {
@@ -157,9 +157,9 @@ constexpr float kMostFloors = 2.4f;
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
 // 0.04; a right angle 0.2.
 constexpr float kBends = 0.08f;
-constexpr float kEdge = 0.14f;
-constexpr float kShrink = 0.25f;
-constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
+constexpr float kEdge = 0.14f;      // R shrinks no further; judgement
+constexpr float kShrink = 0.25f;    // share of R; measured (docs/preparation.md, Support radius)
+constexpr float kSmoothing = 0.5f;  // R within which radii are averaged; judgement
 
 }  // namespace
 

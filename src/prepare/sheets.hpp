@@ -124,7 +124,7 @@ struct SheetVote {
 [[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own,
                                                  Growths& grown);
 
-inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};
+inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index
 
 /// Whose planes points lie on, in sorted order.
 struct Snapped {
@@ -143,10 +143,10 @@ struct Snapped {
 /// off its plane by k a^2 / sqrt(48) RMS.
 [[nodiscard]] float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i);
 
-// How far normals may turn where both fits are bowed, against the arc; and how far off the chord,
-// against the turn: an arc's is half.
-inline constexpr float kTurnMargin = 1.5f;
-inline constexpr float kChord = 0.6f;
+// How far normals may turn where both fits are bowed, over what their arc turns.
+inline constexpr float kTurnMargin = 1.5f;  // judgement
+// How far a point may be off the other's plane, over distance times turn (rad): an arc has half.
+inline constexpr float kChord = 0.6f;  // half and a margin; judgement
 
 /// The sheets of all points, and the points that lie on two of them.
 struct Sheets {

@@ -1,3 +1,4 @@
+// Fields of exact shapes, for simulated scenes and tests.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -102,7 +103,7 @@ class UnionField final : public Field {
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
-  /// Of the part that is nearest; `source` is its index.
+  /// The surface of the nearest part; `source` is its index.
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   /// The finest resolution, the longest reach, the sum of the revisions.
   [[nodiscard]] Traits traits() const noexcept override;

@@ -1,3 +1,4 @@
+// The interface between a surface and a proxy.
 #pragma once
 
 #include <Eigen/Core>
