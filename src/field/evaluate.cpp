@@ -20,10 +20,10 @@ using Eigen::Vector3d;
 // Weight sums up to this count as 0 (judgement): at the rim of a support ratios of sums mean
 // nothing.
 constexpr double kNoWeight = 1e-12;
-constexpr double kFaintNormals =
-    1e-9;  // share of all weight: normals with less are ignored; judgement
-constexpr double kFaintLabel =
-    1e-6;  // share of all normals' weight: a label with less is ignored; judgement
+// Share of all weight: normals with less are ignored; judgement.
+constexpr double kFaintNormals = 1e-9;
+// Share of all normals' weight: a label with less is ignored; judgement.
+constexpr double kFaintLabel = 1e-6;
 
 // The highest above a plane that a metaball's surface may lie, in support radii (judgement,
 // docs/method.md 2.3): farther out the weights are too flat to find it.

@@ -71,8 +71,8 @@ class Facing {
   void follow(const Facing& other) noexcept;
 
  private:
-  static constexpr std::size_t kMost =
-      96;  // sheets near the tool; further ones are in front; judgement
+  // Sheets near the tool; further ones are in front; judgement.
+  static constexpr std::size_t kMost = 96;
   static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
   static constexpr std::uint8_t kOpen = 0xff;  // a label that is not decided; above every Label
 

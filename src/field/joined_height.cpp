@@ -27,10 +27,11 @@ Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
 
 namespace {
 
-constexpr double kClosed = 0.2;  // of R; half of it closes a scan's creases, not all of two sheets
+// R (docs/method.md 2.6). Half of it closes the creases of a scan, not all between two sheets.
+constexpr double kClosed = 0.2;
 constexpr double kFacing = 0.7;  // |Nb|^2 where two equal sheets meet at 114 degrees; judgement
-constexpr double kHollow =
-    0.01;  // h, in R, from which on a surface is concave beyond doubt; judgement
+// h, in R, from which on a surface is concave beyond doubt; judgement.
+constexpr double kHollow = 0.01;
 
 }  // namespace
 
@@ -59,13 +60,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A convex edge between two sheets is as soft as this, of R: what it takes off the edge is a
-// quarter of it. With 0.35 a box in a depth frame lost contact along its edges twice as often as
+// R: a convex edge between two sheets is rounded over this width, and loses a quarter of it.
+// Measured: with 0.35 a box in a depth frame lost contact along its edges twice as often as
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
 
-constexpr double kBackToBack =
-    0.8;  // cosine from which on sheets may be sides of a plate; judgement
+// Cosine from which on sheets may be sides of a plate; judgement.
+constexpr double kBackToBack = 0.8;
 
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {

@@ -85,10 +85,10 @@ using Eigen::Vector3d;
 constexpr double kFaint = 1e-9;  // share of all weight: a source with less is not there; judgement
 constexpr double kFloor = 0.1;   // of Phi, which divides and must not vanish; judgement
 constexpr double kFine = 4;      // power of 1 / R_s in c_s; judgement (docs/method.md 2.9)
-constexpr double kUniteFrom =
-    0.98;  // |sum lambda n| from which on heights unite: the cosine of 23 / 2 degrees
-constexpr double kUniteFull =
-    0.995;  // and unite fully: the cosine of 11 / 2 degrees; both judgement
+// |sum lambda n| where heights begin to unite and where they do so fully: the cosines of 23 / 2 and
+// 11 / 2 degrees, half the angle between two sources' normals. The angles are judgement.
+constexpr double kUniteFrom = 0.98;
+constexpr double kUniteFull = 0.995;  // docs/method.md 2.9
 
 /// The height of one source and how much it counts.
 struct Own {

@@ -89,7 +89,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kLargestStride = std::uint32_t{1} << 31;  // largest power of 2 in 32 bits
+constexpr std::uint32_t kLargestStride = std::uint32_t{1}
+                                         << 31;  // the largest power of 2 in 32 bits
 
 /// From the origin to the way from a to b.
 double squared_distance(const Vector3d& a, const Vector3d& b) noexcept {

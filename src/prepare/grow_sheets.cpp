@@ -19,8 +19,8 @@ constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one shee
 constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always be
 
 constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
-constexpr float kTrustOfFew =
-    0.1f;  // factor on the confidence of points of smaller sheets; judgement
+// Factor on the confidence of points of smaller sheets; judgement.
+constexpr float kTrustOfFew = 0.1f;
 
 struct Pair {
   std::uint32_t a;

@@ -50,8 +50,8 @@ class Outlook {
  private:
   /// Is there but one sheet, and does it not curl up?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    constexpr float kCurled =
-        0.3f;  // cosine (73 degrees) that normals turn by where a sheet curls; judgement
+    // Cosine (73 degrees) that normals turn by where a sheet curls; judgement.
+    constexpr float kCurled = 0.3f;
     const std::uint32_t sheet = sheets_.sheet[first];
     const Vector3f& n = own_.normals[first];
     for (const simd::Run& run : runs) {

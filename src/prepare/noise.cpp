@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSamples = 1000;  // windows, at least; judgement
+constexpr std::size_t kSamples = 1000;  // windows, about; judgement
 
 /// Windows of two widths, in spacings: of about 28 and 15 points. In the narrower one noise leaves
 /// the same, and shape that a quadric misses, as a thin rod's, 0.4 of it or less.
@@ -36,7 +36,7 @@ constexpr double kVolume = 0.35;     // of the widest reach: more than a layer o
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
-constexpr std::size_t kWideSamples = 400;  // windows, at least; judgement
+constexpr std::size_t kWideSamples = 400;  // windows, about; judgement
 constexpr double kMapReach = 5;            // spacings: that of the map of noise (kWindow)
 constexpr double kMiddleReach = 10;        // spacings; twice that
 constexpr double kWideReach = 20;          // spacings; twice that
@@ -45,9 +45,9 @@ constexpr double kFlattest = 0.25;    // share of the windows that are believed;
 constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: shape; judgement
 constexpr double kFlatNoise = 0.02;   // spacings: less noise is not looked at; judgement
 constexpr double kNoteworthy = 1.2;   // excess that is not ignored; judgement
-constexpr double kMostExcess = 4;     // derived: R grows with its root and at most doubles
-constexpr double kMostRise =
-    5;  // of sigma: more is shape, not neighbours that err together; judgement
+constexpr double kMostExcess = 4;     // judgement: R grows with its root and at most doubles
+// Ratio of sigmas: more is shape, not neighbours that err together; judgement.
+constexpr double kMostRise = 5;
 
 std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
@@ -182,12 +182,12 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
 namespace {
 
 constexpr std::size_t kRawPerSample = 32;  // points for one window of the map; judgement
-constexpr std::size_t kMostSamples =
-    20000;                           // windows of the map, about, to bound its time; judgement
+// Windows of the map, about, to bound its time; judgement.
+constexpr std::size_t kMostSamples = 20000;
 constexpr double kWindow = 5;        // spacings; judgement
 constexpr float kSurroundings = 20;  // spacings; judgement
-constexpr double kFlatter =
-    0.3;  // the quantile that is taken, so that edges are no noise; judgement
+// The quantile that is taken, so that edges are no noise; judgement.
+constexpr double kFlatter = 0.3;
 constexpr std::size_t kFewest = 8;  // samples that a quantile is taken of; judgement
 
 }  // namespace

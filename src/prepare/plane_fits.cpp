@@ -14,8 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kSmoothFit =
-    0.03;                          // of R: a quadric that leaves more may mix two sheets; judgement
+// R: a quadric that leaves more may mix two sheets; judgement (docs/method.md 5.5).
+constexpr double kSmoothFit = 0.03;
 constexpr double kNoisyFit = 1.2;  // of the noise, likewise; judgement
 
 }  // namespace

@@ -21,8 +21,9 @@ struct OwnSheets {
   std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
 };
 
-// Normals come from a little further away than the surface: the balanced field adds their noise.
-inline constexpr float kNormalsReach = 1.15f;  // of R
+// R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
+// judgement (docs/method.md 5.5).
+inline constexpr float kNormalsReach = 1.15f;
 
 /// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
 [[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 // A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
 // (0.2 R) leave 0.05 R where the other has one point in fifteen.
-constexpr double kFlat = 0.05;
+constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
 constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
 // Two groups of heights: their means this many deviations within them apart, at least half a
@@ -34,7 +34,7 @@ constexpr std::size_t kFewestToSplit = 6;  // points, one more than stay; judgem
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
 constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue; judgement
 
-constexpr int kTerms = 6;  // of a quadric's height
+constexpr int kTerms = 6;  // derived: terms of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 // Powers of y, and of x and y together, in each term; those of products number the moments.
@@ -140,7 +140,7 @@ double gap_between_groups(std::span<const double> heights, double spacing) {
 
 // What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
 constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
-constexpr double kNoisySmooth = 1.6;  // measured (docs/preparation.md, Sheets)
+constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
 constexpr double kOnSheet = 0.12;     // judgement
 constexpr double kPlanar = 0.5;       // planarity of a plane, at least; judgement
 

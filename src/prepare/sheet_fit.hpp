@@ -49,8 +49,10 @@ class SheetFitter {
   /// one, m^2: the residuals' own where they are independent, more where neighbours err together.
   [[nodiscard]] double tile_variance(double reach, double tile) const;
 
-  static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
-  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at.
+  /// Points of a quadric, which has six terms, at least; judgement.
+  static constexpr std::size_t kEnough = 10;
+  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at
+  /// (judgement, for time).
   static constexpr std::size_t kMostPoints = 1 << 14;
 
  private:

@@ -21,8 +21,8 @@ constexpr double kAgree = 0.96;      // |sum of signs| over their number: 98 % a
 constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
 constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
-constexpr double kUpright =
-    0.2;  // sine of the lean that gives an open part an upper side; judgement
+// Sine of the lean that gives an open part an upper side; judgement.
+constexpr double kUpright = 0.2;
 
 /// For each sheet the sign that nearly all of its points are known to have, relative to their
 /// normals; 0: not known.

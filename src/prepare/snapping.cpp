@@ -31,8 +31,8 @@ constexpr float kSnapResiduals = 3;   // three sigma
 // three faces (derived), less a margin for jitter (judgement).
 constexpr float kShared = 0.3f;
 
-constexpr float kNearness =
-    0.1f;  // cost of the way over that of the distance from the plane; judgement
+// Cost of the way over that of the distance from the plane; judgement.
+constexpr float kNearness = 0.1f;
 
 // When a point lies on a second plane as well; judgement.
 constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two

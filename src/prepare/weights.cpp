@@ -87,8 +87,9 @@ WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kerne
 }
 
 std::vector<float> density_weights(const WeightSums& sums) {
-  constexpr float kShareOfAround =
-      0.8f;  // of Sbar_i, so that borders do not grow (docs/method.md 2.2)
+  // Share of Sbar_i that a sum counts at least, against large weights at borders; judgement
+  // (docs/method.md 2.2).
+  constexpr float kShareOfAround = 0.8f;
   std::vector<float> weights(sums.own.size());
   for (std::size_t i = 0; i < weights.size(); ++i) {
     weights[i] = 1 / std::max(sums.own[i], kShareOfAround * sums.around[i]);
@@ -98,8 +99,8 @@ std::vector<float> density_weights(const WeightSums& sums) {
 
 void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
                      std::span<const float> radii, std::vector<float>& weights) {
-  constexpr float kLeast =
-      0.2f;                   // factor: a lone point still holds the surface together; judgement
+  // Factor: a lone point still holds the surface together; judgement.
+  constexpr float kLeast = 0.2f;
   constexpr float kMost = 3;  // factor; judgement (docs/preparation.md, Weights)
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       weights.size(), 1024, [&](std::size_t i, auto& near) {
