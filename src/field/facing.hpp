@@ -22,7 +22,7 @@ enum Label : std::uint8_t {
 };
 static_assert(kAcross == simd::kLabels - 1);
 
-/// Where a proxy is, which is a free place or one on the surface.
+/// The position of a proxy, in free space or on the surface, and its contact normal.
 struct Stance {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the contact; zero: it touches nothing
@@ -30,7 +30,7 @@ struct Stance {
   [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
 };
 
-/// How high above its points a surface is felt: the length, m, and so much of a point's R.
+/// The height of the surface above its points: length (m) + share * R of the point.
 struct Rise {
   double length = 0;
   double share = 0;

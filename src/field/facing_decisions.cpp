@@ -94,7 +94,7 @@ bool Facing::is_one_sided(const Point& point) const noexcept {
   return now_.parts[now_.sheets[point.sheet].part].key == kOneSided;
 }
 
-/// How high above a point its surface is felt, m.
+/// The height of the surface above a point, m.
 float Facing::rise_of(const Point& point) const noexcept {
   return static_cast<float>(rise_.length + rise_.share * static_cast<double>(point.radius));
 }
@@ -104,7 +104,7 @@ bool Facing::is_above(const Point& point) const noexcept {
   return height_over(point) >= rise_of(point);
 }
 
-/// What a part's normals are turned by. What was seen from one side alone is never turned.
+/// The factor for a part's normals, 1 or -1; 0: not decided. One-sided parts are never turned.
 int Facing::sign_of(const Part& part) noexcept {
   return is_absent(part) ? 1 : part.sign;
 }
@@ -136,7 +136,7 @@ void Facing::decide_signs(bool continued) noexcept {
     const double w = static_cast<double>(p.confidence) * weight(squared, view_);
     sheet.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);
-    // Who comes from behind is in front only where the surface is below.
+    // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
     now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);

@@ -110,8 +110,8 @@ Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noex
   return height;
 }
 
-/// How far a label's height is taken out of the way of another's as its share of the weight of
-/// both runs out: R (0.15 / share - 1)^2.
+/// The length by which a label's height moves out of the way of another's as its share of the
+/// weight of both runs out, m: R (0.15 / share - 1)^2.
 Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
   constexpr double kShare = 0.15;  // of the weight of both; judgement (docs/method.md 2.8)
   const double share = own.f / both.f;
@@ -153,8 +153,8 @@ Value back_to_back(FieldPlace place) noexcept {
   return result;
 }
 
-/// What is behind, where it is the far side of a plate: no nearer to the front than a soft edge is
-/// wide. Where two sheets run together, the plate would end in a hole before they do.
+/// The height behind. On the far side of a plate it stays away from the front by the width of a
+/// soft edge: otherwise the plate would end in a hole before its two sheets run together.
 Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
   const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
                       behind.grad + front.grad + kOverEdges * place.radius.grad};

@@ -49,7 +49,7 @@ struct Oriented {
 /// to += factor * from.
 void add(Oriented& to, double factor, const Oriented& from) noexcept;
 
-/// Where a field is evaluated and what is known there already.
+/// A position at which a field is evaluated, with the sums and the radius there.
 struct FieldPlace {
   const simd::Functions* functions = nullptr;
   const simd::Columns* columns = nullptr;

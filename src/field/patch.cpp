@@ -124,7 +124,7 @@ bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
   return same && on_the_way && (run.counts || !(now.weight > 0));
 }
 
-/// Which of the layers that were gathered.
+/// The index of the gathered layer that `now` continues.
 std::size_t Patch::followed_by(const ActiveLayer& now) const noexcept {
   for (std::size_t k = 0; k < layers_.size(); ++k) {
     if (follows(now, k)) return k;
@@ -251,7 +251,7 @@ void Patch::fill_velocities(std::size_t k) noexcept {
   }
 }
 
-/// What is told of all radii.
+/// Computes the mean and the smallest radius.
 void Patch::measure() noexcept {
   double sum = 0;
   double largest = 0;

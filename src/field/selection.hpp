@@ -177,7 +177,7 @@ struct SelectOptions {
 /// order. All memory is taken by the constructor.
 class Selection {
  public:
-  /// What was chosen of one layer.
+  /// The points that were chosen from one layer.
   struct Run {
     double from = 0;  ///< progress
     double until = 0;

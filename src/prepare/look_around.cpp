@@ -31,7 +31,7 @@ constexpr float kVoteReach = 1.3f;      // R
 constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
 constexpr int kVotesEach = 3;           // points of each, the nearest
 
-/// What the points of one block see of other sheets.
+/// Looks from the points of one block at other sheets.
 class Outlook {
  public:
   Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
@@ -77,7 +77,7 @@ class Outlook {
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
-  /// What a point sees others with: copies, so that a pair costs few reads of memory.
+  /// Copies of what a point needs to look at others, so that a pair costs few reads of memory.
   struct Eye {
     Vector3f at;
     Vector3f normal;

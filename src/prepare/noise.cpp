@@ -70,7 +70,7 @@ SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen
   return fit.bend > kVolume * reach ? first : fit;
 }
 
-/// What was fitted around one sampled point.
+/// The fits around one sampled point.
 struct Row {
   Eigen::Vector3f at;
   SheetFit narrow;
@@ -118,7 +118,7 @@ double narrow_noise(const CellGrid& grid, double spacing) {
   return noise_in(rows, &Row::narrow, kNarrow);
 }
 
-/// What windows of several widths round one place say.
+/// Residuals of windows of several widths around one position, compared.
 struct Widths {
   float growth = 0;  // of sigma, from the middle to the wide window
   float rise = 0;    // of sigma, from the narrowest to the wide window

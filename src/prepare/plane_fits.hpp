@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// What the sheet of each point is like, in sorted order.
+/// The fit of each point's own sheet, in sorted order.
 struct OwnSheets {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1

@@ -29,7 +29,7 @@ struct SheetFit {
   [[nodiscard]] bool is_sheet(double radius, double noise) const;
 };
 
-/// What a plane may leave where nothing else need be looked for, m.
+/// The residual up to which a plane is enough and no quadric is tried, m.
 [[nodiscard]] double flat_residual(double radius, double noise);
 
 /// Fits one place after another; keeps its memory in between.

@@ -71,7 +71,7 @@ struct SheetInput {
   std::span<const float> noise;     // sigma at each point, m
 };
 
-/// What is known of signs from outside.
+/// Signs of normals that are known from outside: given normals and a viewpoint.
 struct KnownSigns {
   std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
                                            ///< not finite; empty: none
@@ -126,7 +126,7 @@ struct SheetVote {
 
 inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index
 
-/// Whose planes points lie on, in sorted order.
+/// The planes that points lie on, in sorted order.
 struct Snapped {
   std::vector<std::uint8_t> sure;    ///< 1: its own fit is a sheet's; 0: a host's is, or none
   std::vector<std::uint32_t> hosts;  ///< the sure point whose fit each has: itself, or another, or
@@ -158,7 +158,7 @@ struct Sheets {
 [[nodiscard]] Sheets join_sheets(const Sampling& sampling, const Radii& radii,
                                  const Weights& weights, const KnownSigns& known, OwnSheets& fits);
 
-/// What the options let sheets know of signs.
+/// The signs that the options allow sheets to use.
 [[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
                                      const PrepareOptions& options);
 

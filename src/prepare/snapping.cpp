@@ -38,7 +38,7 @@ constexpr float kNearness = 0.1f;
 constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two
 constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 
-/// What becomes of the points that their own fit does not put on a sheet.
+/// Finds a plane for each point that its own fit does not put on a sheet.
 class Snapping {
  public:
   Snapping(const SheetInput& input, OwnSheets& own)
@@ -75,7 +75,7 @@ class Snapping {
     }
   }
 
-  /// What is known of all points then.
+  /// The result for all points, after run().
   [[nodiscard]] Snapped finish() && {
     Snapped snapped{std::move(sure_), std::move(hosts_), {}};
     for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
@@ -157,7 +157,7 @@ class Snapping {
     return shared >= kShared * all;
   }
 
-  /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
+  /// Are half of the points around without a host, too? On a thing so small a plane has to do.
   [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     if (own_.confidences[i] < kPlanarFit) return false;
     near.clear();

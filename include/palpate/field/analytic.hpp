@@ -18,7 +18,7 @@ class AnalyticField : public Field {
     Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();  ///< unit; any one where several are true
   };
 
-  /// What all analytic fields share.
+  /// Options that all analytic fields share.
   struct Options {
     Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame
     double step_length = 0.01;        ///< what Sample::radius says everywhere, m
