@@ -124,7 +124,7 @@ bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
   return same && on_the_way && (run.counts || !(now.weight > 0));
 }
 
-/// The index of the gathered layer that `now` continues.
+/// The index of the gathered layer that `now` continues; kNone: there is none.
 std::size_t Patch::followed_by(const ActiveLayer& now) const noexcept {
   for (std::size_t k = 0; k < layers_.size(); ++k) {
     if (follows(now, k)) return k;
@@ -251,7 +251,7 @@ void Patch::fill_velocities(std::size_t k) noexcept {
   }
 }
 
-/// Computes the mean and the smallest radius.
+/// Computes the mean, the smallest and the common radius (0: radii differ).
 void Patch::measure() noexcept {
   double sum = 0;
   double largest = 0;
