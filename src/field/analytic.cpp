@@ -1,3 +1,5 @@
+// Distances to exact shapes (plane, sphere, box, torus) and their union.
+
 #include "palpate/field/analytic.hpp"
 
 #include <cmath>
@@ -8,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr Requirement kRequire{"analytic field"};
+constexpr Requirement kRequire{"analytic field"};  // the name that errors begin with
 
 void require_positive(const char* name, double value) {
   kRequire.positive(name, value, "give a length above 0, in metres");

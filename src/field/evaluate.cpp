@@ -1,3 +1,5 @@
+// Evaluates a field and its gradient from the points of a patch: support, cap, trust and tool.
+
 #include "field/evaluate.hpp"
 
 #include <algorithm>
@@ -15,13 +17,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Weight sums up to this are none: the rim of a support, where ratios of sums mean nothing.
+// Weight sums up to this count as 0 (judgement): at the rim of a support ratios of sums mean
+// nothing.
 constexpr double kNoWeight = 1e-12;
-constexpr double kFaintNormals = 1e-9;  // of all weight: normals with less say nothing
-constexpr double kFaintLabel = 1e-6;    // of all normals' weight: a label with less says nothing
+// Share of all weight: normals with less are ignored; judgement.
+constexpr double kFaintNormals = 1e-9;
+// Share of all normals' weight: a label with less is ignored; judgement.
+constexpr double kFaintLabel = 1e-6;
 
-// The highest above a plane that a metaball's surface may lie, in support radii: further out
-// weights are too flat for it to be found.
+// The highest above a plane that a metaball's surface may lie, in support radii (judgement,
+// docs/method.md 2.3): farther out the weights are too flat to find it.
 constexpr double kHighest = 0.85;
 
 /// W, R(x) and what is at hand of the sums.
@@ -87,8 +92,8 @@ Value trusted(const simd::Sums& sums, int labels) noexcept {
 
 /// kappa = u^2 (3 - 2u) of u = clamp((chi - 0.25) / 0.3, 0, 1), chi = sum w c / sum w.
 Value trust_of(const Value& v, const Support& support) noexcept {
-  constexpr double kFrom = 0.25;
-  constexpr double kWidth = 0.3;
+  constexpr double kFrom = 0.25;  // share of the weight; judgement (docs/method.md 2.5)
+  constexpr double kWidth = 0.3;  // of the blend, in the same share; judgement
   const double chi = v.f / support.plain;
   const SmoothStep kappa = smooth_step(chi, kFrom, kWidth);
   const Vector3d grad_chi = (v.grad - chi * support.plain_grad) / support.plain;
@@ -119,7 +124,7 @@ Sample nothing_here(const Patch& patch) noexcept {
 /// Cap, tool and blend around the normals' surface (docs/method.md 2.5). `v`: what is trusted.
 Value capped(const ImplicitSurface& surface, const Support& support, const Value& height,
              const Value& v) noexcept {
-  constexpr double kAtRims = 0.1;  // of R
+  constexpr double kAtRims = 0.1;  // width of the rounding, R; judgement (docs/method.md 2.5)
   const FieldOptions& options = surface.options;
   const Value outer{height.f - options.tool_radius, height.grad};
   if (!options.capped) return outer;

@@ -1,3 +1,4 @@
+// The field at one position, evaluated from a patch of points (docs/method.md 2).
 #pragma once
 
 #include <span>
@@ -42,8 +43,8 @@ struct ImplicitSurface {
 /// Weighted means over a patch's points at a place.
 struct PatchSurface {
   double material = 1;
-  /// Of points times that of their sources: min(1, sum_s W_s p_s / max_s W_s), so that what one
-  /// source is sure of stays sure whatever becomes of the others.
+  /// Presence of the points times that of their sources, 0-1: min(1, sum_s W_s p_s / max_s W_s).
+  /// A surface that one source is sure of stays sure when other sources fade.
   double presence = 1;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   int source = -1;                                     ///< that weighs most; -1: no point is near

@@ -1,3 +1,5 @@
+// Keeps what is decided of the sheets near the tool from one call to the next.
+
 #include "field/facing.hpp"
 
 #include <algorithm>
@@ -13,14 +15,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// R: a point that is farther has no weight at the proxy. How sheets meet is settled as late as can
-// be, when most is known.
-constexpr float kHolds = 1.5f;
-constexpr float kMeets = 1.1f;
-constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;  // R beyond the nearest point, within which things are seen
+// A part keeps its sign while one of its points is within kHolds, a sheet its label within kMeets.
+// Both are above 1 R, where weights end. Labels are settled later, when more is known.
+constexpr float kHolds = 1.5f;  // R; judgement
+constexpr float kMeets = 1.1f;  // R; judgement
+constexpr float kLift = 0.3f;   // R above the surface that a touching tool looks from; judgement
+constexpr float kView = 1.2f;   // R beyond the nearest point, within which points vote; judgement
 
-constexpr int kPairs = 2048;  // in one call
+constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
 }  // namespace
 
@@ -116,7 +118,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     Sheet& s = now_.sheets[slot];
     const float distance = point.place.norm();
     Part& part = now_.parts[s.part];
-    // Where all are one part, only free space lets go of its side.
+    // A part that all points share keeps its side until free space.
     part.near |= own.empty() || part.key == kOneSided || distance <= kHolds * point.radius;
     if (own.empty() || distance <= kMeets * point.radius) s.near = true;
     ++s.count;
@@ -137,8 +139,8 @@ void Facing::list(const Points& points, const Stance& stance) noexcept {
   if (!points_.empty()) radius_ = radii / static_cast<float>(points_.size());
 }
 
-/// What has no weight at the proxy any more may be seen from another side next, and what a free
-/// proxy is behind, at any time.
+/// Forgets the sign of a part without weight at the proxy, or that a free proxy is behind, and the
+/// label of a sheet that has moved away.
 void Facing::let_go(const Stance& stance) noexcept {
   for (Part& part : std::span(now_.parts).first(now_.part_count)) {
     if (!part.near || (is_absent(part) && !stance.touches())) part.sign = 0;
@@ -246,7 +248,7 @@ bool Facing::write(const Points& points) const noexcept {
   return changed;
 }
 
-/// Where all points are of one part whose side is known, there is nothing to look at.
+/// Are all points of one part whose side is decided, so that nothing needs a look?
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
   if (now_.sheet_count != 1 || now_.sheets[0].label != kInFront || sees_from_behind()) {
     return false;

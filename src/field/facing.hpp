@@ -1,3 +1,4 @@
+// Sides and labels: how the sheets near the tool are seen from it (docs/method.md 2.7).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +22,7 @@ enum Label : std::uint8_t {
 };
 static_assert(kAcross == simd::kLabels - 1);
 
-/// Where a proxy is, which is a free place or one on the surface.
+/// The position of a proxy, in free space or on the surface, and its contact normal.
 struct Stance {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the contact; zero: it touches nothing
@@ -29,7 +30,7 @@ struct Stance {
   [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
 };
 
-/// How high above its points a surface is felt: the length, m, and so much of a point's R.
+/// The height of the surface above its points: length (m) + share * R of the point.
 struct Rise {
   double length = 0;
   double share = 0;
@@ -65,14 +66,15 @@ class Facing {
   /// time.
   void forget() noexcept;
 
-  /// Takes over another's decisions, if it has any; what is decided then stands in the next call,
-  /// wherever its points are.
+  /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point
+  /// is near.
   void follow(const Facing& other) noexcept;
 
  private:
-  static constexpr std::size_t kMost = 96;  // sheets near the tool; further ones are in front
+  // Sheets near the tool; further ones are in front; judgement.
+  static constexpr std::size_t kMost = 96;
   static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
-  static constexpr std::uint8_t kOpen = 0xff;
+  static constexpr std::uint8_t kOpen = 0xff;  // a label that is not decided; above every Label
 
   /// Whose sheet or part it is. All layers without sheets of their own are of one. Another part is
   /// all that was seen from one side alone, with sheets or without.
@@ -81,7 +83,7 @@ class Facing {
     std::uint32_t number = 0;
     bool operator==(const Key&) const = default;
   };
-  static constexpr Key kOneSided{nullptr, 1};
+  static constexpr Key kOneSided{nullptr, 1};  // the part of all points seen from one side only
   struct Part {
     Key key;
     int sign = 0;         // 0: not decided

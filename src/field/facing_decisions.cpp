@@ -1,3 +1,5 @@
+// Decides the signs of parts that come into view, and the labels of their sheets.
+
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -6,25 +8,28 @@
 #include "field/formulas.hpp"
 #include "palpate/field/field_options.hpp"
 
-// What Facing decides of sheets that come into view: the sides of their parts, and how they meet.
-
 namespace palpate {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kUnsharp = 2;  // residuals that a height has to be above to tell a side
-constexpr double kHiddenVote = -0.5;
+// Signs (docs/method.md 2.7); all are judgement.
+constexpr float kUnsharp = 2;         // residuals that a height has to exceed to tell a side
+constexpr double kHiddenVote = -0.5;  // factor of a hidden point, which speaks for the other side
 constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
-constexpr double kLeastVote = 1e-3;
-constexpr float kMeetReach = 1.3f;  // R within which sheets meet
-constexpr double kLeastMeeting = 1e-3;
-constexpr float kSamePlace = 1e-3f;  // R; between points closer than that, rounding says the way
-constexpr double kSameNormal = 0.7;
-constexpr double kSamePlane = 0.3;
-constexpr float kHiddenView = 2.6f;        // R
-constexpr std::uint32_t kTried = 16;       // points of a sheet that are compared
-constexpr std::uint32_t kReferences = 64;  // points that they are compared with
+constexpr double kLeastVote = 1e-3;   // sum of weights times agreements: less is no vote
+
+// Labels (docs/method.md 2.7); all are judgement.
+constexpr float kMeetReach = 1.3f;      // R within which sheets meet
+constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do not meet
+constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
+constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
+constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one sheet
+constexpr float kHiddenView = 2.6f;     // R from the eye: points within tell if a sheet is hidden
+
+// They bound the pairs that are compared (judgement).
+constexpr std::uint32_t kTried = 16;       // points of a sheet
+constexpr std::uint32_t kReferences = 64;  // decided points
 
 double weight(float squared, float reach) noexcept {
   return wyvill(static_cast<double>(squared / (reach * reach))).w;
@@ -52,7 +57,7 @@ void Facing::each_meeting(const Sheet& sheet, float reach, const Visit& visit) n
   }
 }
 
-/// What decided points around a part's say of its sign.
+/// Sums the votes of decided points around a part on its sign; below 0: turn it.
 double Facing::across(std::uint32_t part) noexcept {
   double sum = 0;
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
@@ -67,12 +72,12 @@ double Facing::across(std::uint32_t part) noexcept {
   return sum;
 }
 
-/// Of the sheet and part of points without sheets of their own.
+/// The key of the one sheet and part that points without sheets of their own belong to.
 Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
   return points.one_sided ? kOneSided : Key{};
 }
 
-/// Is it seen from the side that nobody saw?
+/// Is the part seen from behind, the side that no sensor saw?
 bool Facing::is_absent(const Part& part) noexcept {
   return part.key == kOneSided && part.sign < 0;
 }
@@ -89,7 +94,7 @@ bool Facing::is_one_sided(const Point& point) const noexcept {
   return now_.parts[now_.sheets[point.sheet].part].key == kOneSided;
 }
 
-/// How high above a point its surface is felt, m.
+/// The height of the surface above a point, m.
 float Facing::rise_of(const Point& point) const noexcept {
   return static_cast<float>(rise_.length + rise_.share * static_cast<double>(point.radius));
 }
@@ -99,7 +104,7 @@ bool Facing::is_above(const Point& point) const noexcept {
   return height_over(point) >= rise_of(point);
 }
 
-/// What a part's normals are turned by. What was seen from one side alone is never turned.
+/// The factor for a part's normals, 1 or -1; 0: not decided. One-sided parts are never turned.
 int Facing::sign_of(const Part& part) noexcept {
   return is_absent(part) ? 1 : part.sign;
 }
@@ -114,8 +119,8 @@ float Facing::height_over(const Point& point) const noexcept {
   return bent ? 0.5f * (height + beside_.dot(way)) : height;
 }
 
-/// `continued`: what is decided around a part tells its sign, rather than what is seen of it; but
-/// who is behind a view knows it by what is seen alone.
+/// `continued`: take a part's sign from its decided neighbours, not from visibility, which decides
+/// where they do not. One-sided parts always use visibility.
 void Facing::decide_signs(bool continued) noexcept {
   for (const Point& p : points_) {
     Sheet& sheet = now_.sheets[p.sheet];
@@ -131,7 +136,7 @@ void Facing::decide_signs(bool continued) noexcept {
     const double w = static_cast<double>(p.confidence) * weight(squared, view_);
     sheet.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);
-    // Who comes from behind is in front only where the surface is below.
+    // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
     now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
@@ -149,7 +154,7 @@ void Facing::decide_signs(bool continued) noexcept {
   }
 }
 
-/// By how the sheet lies to those whose label is known.
+/// The label that follows from how the sheet lies to sheets whose labels are known.
 std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double parallel[simd::kLabels] = {};
   double above[simd::kLabels] = {};

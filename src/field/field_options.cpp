@@ -1,3 +1,5 @@
+// Checks field options and computes the level of a plane (docs/method.md 2.1).
+
 #include "palpate/field/field_options.hpp"
 
 #include "base/requirement.hpp"
@@ -6,9 +8,9 @@
 namespace palpate {
 namespace {
 
-// 1 / integral of w(r) r dr over [0, 1].
+// Derived: 1 / integral of w(r) r dr over [0, 1] (docs/method.md 2.1); no unit.
 constexpr double kWyvillNorm = 27. / 4;
-constexpr double kWendlandNorm = 14;
+constexpr double kWendlandNorm = 14;  // the same of the other kernel
 
 }  // namespace
 

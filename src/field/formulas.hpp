@@ -1,3 +1,4 @@
+// The closed formulas that fields share: kernels, the level of a plane, agreement, smooth step.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,3 +1,5 @@
+// Joins the heights of the labels at edges and creases (docs/method.md 2.6, 2.8).
+
 #include <cmath>
 
 #include "field/facing.hpp"
@@ -25,9 +27,11 @@ Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
 
 namespace {
 
-constexpr double kClosed = 0.2;   // of R; half of it closes a scan's creases, not all of two sheets
-constexpr double kFacing = 0.7;   // |Nb|^2 where two equal sheets meet at 114 degrees
-constexpr double kHollow = 0.01;  // h from which on a surface is concave beyond doubt
+// R (docs/method.md 2.6). Half of it closes the creases of a scan, not all between two sheets.
+constexpr double kClosed = 0.2;
+constexpr double kFacing = 0.7;  // |Nb|^2 where two equal sheets meet at 114 degrees; judgement
+// h, in R, from which on a surface is concave beyond doubt; judgement.
+constexpr double kHollow = 0.01;
 
 }  // namespace
 
@@ -56,12 +60,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A convex edge between two sheets is as soft as this, of R: what it takes off the edge is a
-// quarter of it. With 0.35 a box in a depth frame lost contact along its edges twice as often as
+// R: a convex edge between two sheets is rounded over this width, and loses a quarter of it.
+// Measured: with 0.35 a box in a depth frame lost contact along its edges twice as often as
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
 
-constexpr double kBackToBack = 0.8;  // cosine from which on two sheets may be sides of one plate
+// Cosine from which on sheets may be sides of a plate; judgement.
+constexpr double kBackToBack = 0.8;
 
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
@@ -105,10 +110,10 @@ Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noex
   return height;
 }
 
-/// How far a label's height is taken out of the way of another's as its share of the weight of
-/// both runs out: R (0.15 / share - 1)^2.
+/// The length by which a label's height moves out of the way of another's as its share of the
+/// weight of both runs out, m: R (0.15 / share - 1)^2.
 Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
-  constexpr double kShare = 0.15;
+  constexpr double kShare = 0.15;  // of the weight of both; judgement (docs/method.md 2.8)
   const double share = own.f / both.f;
   if (share >= kShare) return {};
   const double e = kShare / share - 1;
@@ -148,8 +153,8 @@ Value back_to_back(FieldPlace place) noexcept {
   return result;
 }
 
-/// What is behind, where it is the far side of a plate: no nearer to the front than a soft edge is
-/// wide. Where two sheets run together, the plate would end in a hole before they do.
+/// The height behind. On the far side of a plate it stays away from the front by the width of a
+/// soft edge: otherwise the plate would end in a hole before its two sheets run together.
 Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
   const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
                       behind.grad + front.grad + kOverEdges * place.radius.grad};
@@ -174,7 +179,7 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius, double wid
 
 std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
                                    double least) noexcept {
-  constexpr double kInCreases = 0.1;  // of R
+  constexpr double kInCreases = 0.1;  // width of the rounding, R; judgement (docs/method.md 2.8)
   Value height[simd::kLabels];
   Value weight[simd::kLabels];
   bool there[simd::kLabels] = {};

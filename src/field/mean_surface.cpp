@@ -1,3 +1,5 @@
+// Averages material, presence and velocity, and bounds the weights in a ball (docs/method.md 2.10).
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -66,8 +68,8 @@ void push_nearest_first(CellStack& stack, const CellTest& test, std::span<const 
   for (std::uint32_t k = 0; k < cell.children; ++k) stack.push(children[k].second);
 }
 
-/// What the points of one layer can add to the weight sum anywhere in the ball. Stops at `enough`
-/// or when `visits` has run out.
+/// The most that points of a layer can add to the weight sum anywhere in the ball. Stops at
+/// `enough` or when `visits` has run out.
 double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, const Ball& ball,
                       double radius, double enough, int& visits) noexcept {
   const SurfacePoints& points = *layer.points;

@@ -1,3 +1,6 @@
+// Heights above surfaces made from normals, for one source and for several
+// (docs/method.md 2.4, 2.9).
+
 #include "field/oriented.hpp"
 
 #include <array>
@@ -79,13 +82,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFaint = 1e-9;      // of all weight: a source with less is not there
-constexpr double kFloor = 0.1;       // of Phi: beyond, what is seen of a surface says too little
-constexpr double kFine = 4;          // power of 1 / R_s in c_s
-constexpr double kUniteFrom = 0.98;  // |sum lambda n| from which on heights are united
-constexpr double kUniteFull = 0.995;
+constexpr double kFaint = 1e-9;  // share of all weight: a source with less is not there; judgement
+constexpr double kFloor = 0.1;   // of Phi, which divides and must not vanish; judgement
+constexpr double kFine = 4;      // power of 1 / R_s in c_s; judgement (docs/method.md 2.9)
+// |sum lambda n| where heights begin to unite and where they do so fully: the cosines of 23 / 2 and
+// 11 / 2 degrees, half the angle between two sources' normals. The angles are judgement.
+constexpr double kUniteFrom = 0.98;
+constexpr double kUniteFull = 0.995;  // docs/method.md 2.9
 
-/// What one source says.
+/// The height of one source and how much it counts.
 struct Own {
   int source = 0;
   double v = 0;
@@ -126,7 +131,8 @@ Own own(const FieldPlace& place, int source) noexcept {
   return o;
 }
 
-/// Those that are there, with their shares; their number, 0 when one has no normal here.
+/// Lists the sources that are there, with their shares. Returns how many; 0 when one has no normal
+/// here.
 int list(const FieldPlace& place, Owns& owns) noexcept {
   int count = 0;
   double covers = 0;

@@ -49,7 +49,7 @@ struct Oriented {
 /// to += factor * from.
 void add(Oriented& to, double factor, const Oriented& from) noexcept;
 
-/// Where a field is evaluated and what is known there already.
+/// A position at which a field is evaluated, with the sums and the radius there.
 struct FieldPlace {
   const simd::Functions* functions = nullptr;
   const simd::Columns* columns = nullptr;
@@ -78,8 +78,8 @@ struct FieldPlace {
   }
 };
 
-/// By what the height over all points moves where sources tell of one surface at different heights,
-/// m, with its gradient; 0 for a single source, and nothing where they agree.
+/// The correction of the height over all points where sources see one surface at different heights,
+/// m, with its gradient. 0 for a single source, and where the sources agree.
 ///
 /// Summed up together, points count by how near they are. Where two sources' surfaces lie more than
 /// 0.7 R apart, the height is that of the one here and of the other there: two sheets with a gap,
@@ -101,7 +101,7 @@ struct FieldPlace {
 /// gradient.
 [[nodiscard]] Value with_edges(const FieldPlace& place, const Value& smooth) noexcept;
 
-/// By what acute creases are closed: a length that is taken off the height as seen from the proxy's
+/// The length that closes acute creases: it is subtracted from the height as seen from the proxy's
 /// side, m, with its gradient. 0 on single surfaces, between sheets that meet at 115 degrees and
 /// more, and wherever the surface is not concave.
 ///

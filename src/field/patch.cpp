@@ -1,3 +1,5 @@
+// Copies the selected points into columns and moves them along with their layers.
+
 #include "field/patch.hpp"
 
 #include <algorithm>
@@ -8,9 +10,9 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kCacheLine = 64 / sizeof(double);
+constexpr std::size_t kCacheLine = 64 / sizeof(double);  // doubles in 64 bytes, as most CPUs have
 
-// Each run is filled up to whole lanes; the selection reckons with one a source.
+// Doubles (derived): each run is filled up to whole lanes; the selection counts one run a source.
 constexpr std::size_t kFilling = simd::kMaxRuns * simd::kLanes;
 
 bool any(std::span<const ActiveLayer> layers, const auto& property) noexcept {
@@ -122,7 +124,7 @@ bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
   return same && on_the_way && (run.counts || !(now.weight > 0));
 }
 
-/// Which of the layers that were gathered.
+/// The index of the gathered layer that `now` continues; kNone: there is none.
 std::size_t Patch::followed_by(const ActiveLayer& now) const noexcept {
   for (std::size_t k = 0; k < layers_.size(); ++k) {
     if (follows(now, k)) return k;
@@ -249,7 +251,7 @@ void Patch::fill_velocities(std::size_t k) noexcept {
   }
 }
 
-/// What is told of all radii.
+/// Computes the mean, the smallest and the common radius (0: radii differ).
 void Patch::measure() noexcept {
   double sum = 0;
   double largest = 0;

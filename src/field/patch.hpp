@@ -1,3 +1,4 @@
+// A patch: the points around the tool, gathered once and summed many times.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 
 namespace palpate {
 
+/// How points are gathered into a patch.
 struct GatherOptions {
   double radius = 0;         ///< R of all points, m; 0: each has its own
   bool raw_weights = false;  ///< leave out the density weights
@@ -45,7 +47,7 @@ class Patch {
 
   /// Turns points to the tool where it is now and sorts them by how their sheets meet.
   void face(const Stance& stance) noexcept;
-  /// What is seen next is seen for the first time.
+  /// Forgets the decided signs and labels: the next face() decides anew.
   void forget_sides() noexcept { facing_.forget(); }
   /// Is the tool behind points that hold it from the other side alone?
   [[nodiscard]] bool behind() const noexcept { return facing_.behind(); }
@@ -85,7 +87,8 @@ class Patch {
   [[nodiscard]] double mean_radius() const noexcept { return mean_radius_; }
   [[nodiscard]] const simd::Columns& columns() const noexcept { return columns_; }
 
-  /// Of the k-th column entry; 1, 1 and 0 where no layer has any.
+  /// Material, presence (0-1) and velocity (m/s) of the k-th column entry; 1, 1 and 0 where no
+  /// layer has any.
   [[nodiscard]] double material(std::uint32_t k) const noexcept {
     return has_materials_ ? column(kMaterial)[k] : 1;
   }

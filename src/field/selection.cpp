@@ -1,3 +1,5 @@
+// Reads points of a moving layer, and walks the index for those that reach into a ball.
+
 #include "field/selection.hpp"
 
 #include <algorithm>
@@ -87,7 +89,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kLargestStride = std::uint32_t{1} << 31;
+constexpr std::uint32_t kLargestStride = std::uint32_t{1}
+                                         << 31;  // the largest power of 2 in 32 bits
 
 /// From the origin to the way from a to b.
 double squared_distance(const Vector3d& a, const Vector3d& b) noexcept {
@@ -182,7 +185,7 @@ bool Selection::walk(const ActiveLayer& layer) noexcept {
   return true;
 }
 
-/// Of a run of points those that reach into the ball, every stride_-th of them.
+/// Takes the points of a run that reach into the ball, every stride_-th of them.
 bool Selection::take_near(const ActiveLayer& start, const ActiveLayer& last, std::uint32_t begin,
                           std::uint32_t end) noexcept {
   const SurfacePoints& points = *start.points;

@@ -1,3 +1,4 @@
+// Chooses the points of a patch: all whose supports reach into a ball.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,7 @@
 
 namespace palpate {
 
-inline constexpr std::size_t kMostLayers = 64;  ///< that a patch is gathered from
+inline constexpr std::size_t kMostLayers = 64;  ///< that a patch is gathered from; judgement
 
 /// One layer of points as it counts at the present moment.
 struct ActiveLayer {
@@ -176,7 +177,7 @@ struct SelectOptions {
 /// order. All memory is taken by the constructor.
 class Selection {
  public:
-  /// What was chosen of one layer.
+  /// The points that were chosen from one layer.
   struct Run {
     double from = 0;  ///< progress
     double until = 0;
@@ -198,7 +199,7 @@ class Selection {
   [[nodiscard]] bool renew(std::span<const ActiveLayer> layers, std::span<const std::size_t> before,
                            int most_visits) noexcept;
 
-  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();  ///< no run
 
   /// One for each layer.
   [[nodiscard]] std::span<const Run> runs() const noexcept { return runs_; }

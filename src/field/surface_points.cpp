@@ -1,3 +1,5 @@
+// Completes and checks surface points.
+
 #include "palpate/field/surface_points.hpp"
 
 #include <fmt/core.h>
@@ -13,7 +15,7 @@
 namespace palpate {
 namespace {
 
-// R_i plus the way to go.
+// How far each point reaches from its start: R_i plus the way to its end, m.
 std::vector<float> reaches(const SurfacePoints& points) {
   std::vector<float> reach = points.radii;
   for (std::size_t i = 0; i < points.end_radii.size(); ++i) {
@@ -107,7 +109,7 @@ Box SurfacePoints::bounds() const {
 
 void check(const SurfacePoints& points) {
   check_lengths(points);
-  constexpr float kLarge = std::numeric_limits<float>::max();
+  constexpr float kLarge = std::numeric_limits<float>::max();  // m or no unit: any finite value
   require_range("radii", points.radii, std::numeric_limits<float>::min(), kLarge);
   require_range("density_weights", points.density_weights, 0, kLarge);
   require_range("end_density_weights", points.end_density_weights, 0, kLarge);

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kTrusted = 0.5f;  // confidence
+constexpr float kTrusted = 0.5f;  // confidence; judgement
 
 /// 0 at the lowest, 1 at the highest intensity.
 std::vector<float> materials_of(std::vector<float> materials) {

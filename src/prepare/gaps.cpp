@@ -54,7 +54,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
 
 WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
                       OwnSheets& fits) {
-  constexpr float kSlope = 1;  // of R over distance, once gaps are closed
+  constexpr float kSlope = 1;  // of R over distance, once gaps are closed; judgement
   WeightSums sums(sampling.grid, radii.values, options.kernel);
   if (options.radius || options.paper || !options.estimate_normals) return sums;
   if (close_gaps(sampling.grid, sums.own, sampling.spacings, radii.values, fits) == 0) return sums;

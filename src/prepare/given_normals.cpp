@@ -11,10 +11,10 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kNormalSamples = 1000;
-constexpr std::size_t kNearbyNormals = 4;
-constexpr float kAlikeCosine = 0.94f;  // 20 degrees
-constexpr double kFewestGiven = 0.25;  // a smaller share is as good as none
+constexpr std::size_t kNormalSamples = 1000;  // points, about; enough for a median; judgement
+constexpr std::size_t kNearbyNormals = 4;     // points, itself among them; judgement
+constexpr float kAlikeCosine = 0.94f;         // 20 degrees; judgement
+constexpr double kFewestGiven = 0.25;         // a smaller share counts as none; judgement
 
 bool is_given(const Eigen::Vector3f& normal) {
   return normal.allFinite() && normal.squaredNorm() > 0;

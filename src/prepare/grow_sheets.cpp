@@ -13,12 +13,13 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Two points continue each other's sheet.
+// When two points continue each other's sheet; judgement (docs/preparation.md, Sheets).
 constexpr float kPairReach = 1.6f;  // spacings
 constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one sheet may turn, or more
 constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always be
 
-constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet
+constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
+// Factor on the confidence of points of smaller sheets; judgement.
 constexpr float kTrustOfFew = 0.1f;
 
 struct Pair {

@@ -16,8 +16,9 @@ namespace palpate {
 
 namespace {
 
-constexpr float kOpposite = -0.5f;      // cosine between two that lie on opposite sides
-constexpr int kLineWidenings = 4;       // likewise: the next line up to 30 points away
+// How lines are told from sheets; all are judgement (docs/preparation.md, Spacing).
+constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
+constexpr int kLineWidenings = 4;  // reaches tried, each twice the last: lines up to 30 points away
 constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
 constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
 constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it

@@ -15,22 +15,23 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kNoneNear = std::numeric_limits<float>::infinity();
+constexpr float kNoneNear = std::numeric_limits<float>::infinity();  // m: no sheet is near
 
-// The next other sheet along a normal.
-constexpr float kGapReach = 1.6f;  // R
-constexpr float kGapTube = 1.3f;   // spacings to the side
-constexpr float kGapSlope = 0.5f;  // of the way to the side, the least height
-constexpr float kGapCosine = 0.8f;
-constexpr float kGapTrust = 0.3f;
-constexpr float kGapResiduals = 3;
-constexpr float kGapSpacings = 0.3f;
+// Which points belong to the next other sheet along a normal; all are judgement.
+constexpr float kGapReach = 1.6f;     // R
+constexpr float kGapTube = 1.3f;      // spacings to the side
+constexpr float kGapSlope = 0.5f;     // least height over the way to the side
+constexpr float kGapCosine = 0.8f;    // of the angle between both normals, at least (37 degrees)
+constexpr float kGapTrust = 0.3f;     // confidence, at least
+constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
+constexpr float kGapSpacings = 0.3f;  // least height, in spacings
 
-// Votes of one sheet on another.
-constexpr float kVoteReach = 1.3f;  // R
-constexpr std::size_t kVoteSheets = 4;
-constexpr int kVotesEach = 3;
-/// What the points of one block see of other sheets.
+// Votes of one sheet on another; all are judgement.
+constexpr float kVoteReach = 1.3f;      // R
+constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
+constexpr int kVotesEach = 3;           // points of each, the nearest
+
+/// Looks from the points of one block at other sheets.
 class Outlook {
  public:
   Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
@@ -49,6 +50,7 @@ class Outlook {
  private:
   /// Is there but one sheet, and does it not curl up?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
+    // Cosine (73 degrees) that normals turn by where a sheet curls; judgement.
     constexpr float kCurled = 0.3f;
     const std::uint32_t sheet = sheets_.sheet[first];
     const Vector3f& n = own_.normals[first];
@@ -75,7 +77,7 @@ class Outlook {
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
-  /// What a point sees others with: copies, so that a pair costs few reads of memory.
+  /// Copies of what a point needs to look at others, so that a pair costs few reads of memory.
   struct Eye {
     Vector3f at;
     Vector3f normal;

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSamples = 1000;
+constexpr std::size_t kSamples = 1000;  // windows, about; judgement
 
 /// Windows of two widths, in spacings: of about 28 and 15 points. In the narrower one noise leaves
 /// the same, and shape that a quadric misses, as a thin rod's, 0.4 of it or less.
@@ -22,30 +22,32 @@ struct Window {
   std::size_t fewest;        // points
   double quarter_to_median;  // of the residuals that noise alone gives
 };
-constexpr Window kNarrow{3, 12, 1.1};
-constexpr Window kNarrowest{2.2, 10, 1.2};
-constexpr double kShape = 0.65;  // of the wider window's noise: the rest is shape
+// Ratios are derived: the median over the lower quartile of the rms of n - 6 normal residuals.
+constexpr Window kNarrow{3, 12, 1.1};       // n = 28
+constexpr Window kNarrowest{2.2, 10, 1.2};  // n = 15
+constexpr double kShape = 0.65;  // of the wider window's noise: the rest is shape; judgement
 
 // A ball full of points has a residual of 0.3 to 0.45 of its reach, and a layer whose sigma is a
 // quarter of the reach 0.23 (computed: uniform and normal heights, less the quadric). Where a
 // residual is larger the window tells and not the noise, so that a window twice as wide is asked.
 constexpr double kFilled = 1 / kSigmasInReach;
-constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's own filter
+constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's filter; judgement
 constexpr double kVolume = 0.35;     // of the widest reach: more than a layer of 0.6 of it leaves
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
-constexpr std::size_t kWideSamples = 400;
-constexpr double kMapReach = 5;
-constexpr double kMiddleReach = 10;
-constexpr double kWideReach = 20;
-constexpr double kTile = 4;
-constexpr double kFlattest = 0.25;    // share of the windows that are believed
-constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: no longer noise alone
-constexpr double kFlatNoise = 0.02;   // spacings: less noise is none that neighbours could share
-constexpr double kNoteworthy = 1.2;
-constexpr double kMostExcess = 4;  // R at most doubles
-constexpr double kMostRise = 5;    // more than neighbours that err together explain
+constexpr std::size_t kWideSamples = 400;  // windows, about; judgement
+constexpr double kMapReach = 5;            // spacings: that of the map of noise (kWindow)
+constexpr double kMiddleReach = 10;        // spacings; twice that
+constexpr double kWideReach = 20;          // spacings; twice that
+constexpr double kTile = 4;           // spacings: sides of tiles, of about 16 points; judgement
+constexpr double kFlattest = 0.25;    // share of the windows that are believed; judgement
+constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: shape; judgement
+constexpr double kFlatNoise = 0.02;   // spacings: less noise is not looked at; judgement
+constexpr double kNoteworthy = 1.2;   // excess that is not ignored; judgement
+constexpr double kMostExcess = 4;     // judgement: R grows with its root and at most doubles
+// Ratio of sigmas: more is shape, not neighbours that err together; judgement.
+constexpr double kMostRise = 5;
 
 std::size_t step_for(const CellGrid& grid, std::size_t samples) {
   return std::max<std::size_t>(1, grid.size() / samples);
@@ -68,7 +70,7 @@ SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen
   return fit.bend > kVolume * reach ? first : fit;
 }
 
-/// What was fitted around one sampled point.
+/// The fits around one sampled point.
 struct Row {
   Eigen::Vector3f at;
   SheetFit narrow;
@@ -116,7 +118,7 @@ double narrow_noise(const CellGrid& grid, double spacing) {
   return noise_in(rows, &Row::narrow, kNarrow);
 }
 
-/// What windows of several widths round one place say.
+/// Residuals of windows of several widths around one position, compared.
 struct Widths {
   float growth = 0;  // of sigma, from the middle to the wide window
   float rise = 0;    // of sigma, from the narrowest to the wide window
@@ -179,12 +181,14 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
 
 namespace {
 
-constexpr std::size_t kRawPerSample = 32;
+constexpr std::size_t kRawPerSample = 32;  // points for one window of the map; judgement
+// Windows of the map, about, to bound its time; judgement.
 constexpr std::size_t kMostSamples = 20000;
-constexpr double kWindow = 5;        // spacings
-constexpr float kSurroundings = 20;  // spacings
-constexpr double kFlatter = 0.3;     // the quantile that is taken
-constexpr std::size_t kFewest = 8;   // samples that a quantile is taken of
+constexpr double kWindow = 5;        // spacings; judgement
+constexpr float kSurroundings = 20;  // spacings; judgement
+// The quantile that is taken, so that edges are no noise; judgement.
+constexpr double kFlatter = 0.3;
+constexpr std::size_t kFewest = 8;  // samples that a quantile is taken of; judgement
 
 }  // namespace
 

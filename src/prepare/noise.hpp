@@ -13,10 +13,10 @@ namespace palpate {
 /// The noise of raw points.
 struct Noise {
   double sigma = 0;  ///< median rms distance from a smooth surface, m
-  double excess =
-      1;  ///< by how much sigma_n delta of narrow windows (NoiseMap) falls short of what
-          ///< averaging has to cope with, because neighbours err together; 1: they do not
-  double shared = 1;  ///< by how much sigma of narrow windows falls short of it for the same reason
+  /// Factor from sigma_n delta of narrow windows (NoiseMap) to what averaging has to cope with, as
+  /// neighbours err together; 1: they do not.
+  double excess = 1;
+  double shared = 1;  ///< the same factor for sigma alone
 };
 
 /// A window shows a layer of noise as a layer, and not as a ball full of points, where its reach is

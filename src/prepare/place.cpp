@@ -14,7 +14,8 @@
 namespace palpate {
 namespace {
 
-constexpr double kRigid = 1e-4;  // of R^T R from the identity: float's digits and then some
+// R^T R off the identity, at most: a pose in floats passes, a scale of 1.001 does not; judgement.
+constexpr double kRigid = 1e-4;
 
 /// Either empty or one for each point.
 void require_column(const char* name, std::size_t length, std::size_t points) {

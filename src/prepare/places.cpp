@@ -6,7 +6,7 @@ namespace palpate {
 
 void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
                     std::vector<CellGrid::Neighbor>& places) {
-  constexpr std::size_t kCopies = 4;  // of each place, on the average
+  constexpr std::size_t kCopies = 4;  // of each place, on the average; judgement
   constexpr float kOnePlace = 0.2f;   // of the way to the farthest: 0.7 and more on a grid
   grid.nearest(grid.points()[i], kCopies * count, places);
   if (places.size() < count) return;

@@ -20,8 +20,8 @@ void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
 /// points tell nothing: none.
 template <class Visit>
 void each_sample(const CellGrid& grid, const Visit& visit) {
-  constexpr std::size_t kSamples = 1000;
-  constexpr std::size_t kFewest = 100;
+  constexpr std::size_t kSamples = 1000;  // points, about; judgement
+  constexpr std::size_t kFewest = 100;    // points of a cloud; judgement
   if (grid.size() < kFewest) return;
   const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
   for (std::size_t i = step / 2; i < grid.size(); i += step) visit(static_cast<std::uint32_t>(i));

@@ -14,8 +14,9 @@
 namespace palpate {
 namespace {
 
-constexpr double kSmoothFit = 0.03;  // of R that a quadric may leave before others are looked for,
-constexpr double kNoisyFit = 1.2;    // of the noise
+// R: a quadric that leaves more may mix two sheets; judgement (docs/method.md 5.5).
+constexpr double kSmoothFit = 0.03;
+constexpr double kNoisyFit = 1.2;  // of the noise, likewise; judgement
 
 }  // namespace
 

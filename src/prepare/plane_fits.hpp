@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// What the sheet of each point is like, in sorted order.
+/// The fit of each point's own sheet, in sorted order.
 struct OwnSheets {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1
@@ -21,8 +21,9 @@ struct OwnSheets {
   std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
 };
 
-// Normals come from a little further away than the surface: the balanced field adds their noise.
-inline constexpr float kNormalsReach = 1.15f;  // of R
+// R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
+// judgement (docs/method.md 5.5).
+inline constexpr float kNormalsReach = 1.15f;
 
 /// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
 [[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,

@@ -20,7 +20,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLooked = 9;  // nearest, itself among them; some may share its position
+// Nearest points, the point itself and copies of its position among them; judgement.
+constexpr std::size_t kLooked = 9;
 
 // Nearest distance in spacings. Measured: random points 0.52; meshes, frames and jittered grids
 // 0.71 and above (docs/preparation.md, Support radius).
@@ -48,9 +49,9 @@ namespace {
 
 constexpr float kMatters = 0.8f;  // of the point's R: only a smaller limit is applied; judgement
 constexpr std::uint32_t kBlockPoints = 64;  // that share one list of leaves; judgement, for speed
-constexpr float kPlane = 0.5f;              // confidence from which on a point has a plane
-constexpr float kResiduals = 3;             // off the plane, in its residuals: three sigma
-constexpr float kOff = 0.12f;               // off the plane, of the distance (7 degrees); judgement
+constexpr float kPlane = 0.5f;   // confidence from which on a point has a plane; judgement
+constexpr float kResiduals = 3;  // off the plane, in its residuals: three sigma
+constexpr float kOff = 0.12f;    // off the plane, of the distance (7 degrees); judgement
 
 /// The limits of one block after another.
 class Limiter {
@@ -151,15 +152,15 @@ namespace {
 constexpr double kNoiseToTilt = 3.2;
 
 // No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
-// noise that needs it is the sensor's to filter.
+// noise that needs it is the sensor's to filter; judgement.
 constexpr float kMostFloors = 2.4f;
 
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
 // 0.04; a right angle 0.2.
-constexpr float kBends = 0.08f;
-constexpr float kEdge = 0.14f;
-constexpr float kShrink = 0.25f;
-constexpr float kSmoothing = 0.5f;  // R within which radii are averaged
+constexpr float kBends = 0.08f;     // R begins to shrink; judgement
+constexpr float kEdge = 0.14f;      // R shrinks no further; judgement
+constexpr float kShrink = 0.25f;    // share of R; measured (docs/preparation.md, Support radius)
+constexpr float kSmoothing = 0.5f;  // R within which radii are averaged; judgement
 
 }  // namespace
 
@@ -199,7 +200,7 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
 
 namespace {
 
-// The paper's multiple m (section V).
+// The paper's multiple m of spacings (section V); docs/method.md 5.3.
 constexpr double kPaperMultiple = 2.5;
 
 // Noise is not smoothed away at the price of shape of this part of the cloud's size; judgement.
@@ -212,7 +213,7 @@ constexpr double kIrregularMultiple = 3;
 // R of strays, in typical spacings: they are not to reach what is sampled finely; judgement.
 constexpr float kStrayRadius = 2.5f;
 
-constexpr float kSlope = 0.5f;  // of R over distance, as it follows from spacings and noise
+constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
 /// The diagonal of the points' box, m; never 0.
 double extent(const CellGrid& grid) {

@@ -21,33 +21,33 @@ using Eigen::Vector3d;
 
 // A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
 // (0.2 R) leave 0.05 R where the other has one point in fifteen.
-constexpr double kFlat = 0.05;
-constexpr double kNoisyFlat = 1.2;
+constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
+constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
 // Two groups of heights: their means this many deviations within them apart, at least half a
 // spacing, with nothing on this share of the way between.
-constexpr double kApart = 4;
-constexpr double kApartSpacings = 0.5;
-constexpr double kEmpty = 0.45;
-constexpr std::size_t kFewestInSheet = 5;
-constexpr std::size_t kFewestToSplit = 6;
+constexpr double kApart = 4;               // judgement (docs/method.md 5.5)
+constexpr double kApartSpacings = 0.5;     // judgement
+constexpr double kEmpty = 0.45;            // judgement
+constexpr std::size_t kFewestInSheet = 5;  // points; with fewer confidence is 0; judgement
+constexpr std::size_t kFewestToSplit = 6;  // points, one more than stay; judgement
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
-constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue
+constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue; judgement
 
-constexpr int kTerms = 6;  // of a quadric's height
+constexpr int kTerms = 6;  // derived: terms of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 
 // Powers of y, and of x and y together, in each term; those of products number the moments.
 constexpr std::array kPowerOfY{0, 0, 1, 0, 1, 2};
-constexpr std::array kPower{0, 1, 1, 2, 2, 2};
+constexpr std::array kPower{0, 1, 1, 2, 2, 2};        // derived: as terms_at() lists them
 using Two __attribute__((vector_size(16))) = double;  // one register, on any x86-64
 
 Terms terms_at(const Vector3d& p) {
   return Terms(1, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
 }
 
-constexpr int kTiles = 16;  // along a window, at most
-constexpr int kEnoughInTile = 6;
+constexpr int kTiles = 16;        // along a window, at most; judgement
+constexpr int kEnoughInTile = 6;  // points; tiles with fewer are left out; judgement
 struct Plane {
   Vector3d mean = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
@@ -93,7 +93,7 @@ double planarity_of(const Plane& plane, std::size_t points) {
 /// May heights fall into two groups? These leave a fifth of the range empty; this asks for a tenth,
 /// in a row, and does not sort.
 bool may_fall_apart(std::span<const double> heights, double spacing) {
-  constexpr double kBins = 31;
+  constexpr double kBins = 31;  // derived: the highest height is in bin 31, the last bit of `empty`
   const auto [lowest, highest] = std::ranges::minmax(heights);
   if (highest - lowest < kApartSpacings * spacing) return false;
   const double scale = kBins / (highest - lowest);
@@ -105,7 +105,7 @@ bool may_fall_apart(std::span<const double> heights, double spacing) {
 /// Where sorted heights fall into two groups (the division of least variance within, Otsu 1979);
 /// NaN: they do not.
 double gap_between_groups(std::span<const double> heights, double spacing) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // m: no gap
   const auto count = static_cast<double>(heights.size());
   const double total = std::accumulate(heights.begin(), heights.end(), 0.0);
   double below = 0;
@@ -139,10 +139,10 @@ double gap_between_groups(std::span<const double> heights, double spacing) {
 }
 
 // What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
-constexpr double kSmooth = 0.03;
-constexpr double kNoisySmooth = 1.6;
-constexpr double kOnSheet = 0.12;
-constexpr double kPlanar = 0.5;
+constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
+constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
+constexpr double kOnSheet = 0.12;     // judgement
+constexpr double kPlanar = 0.5;       // planarity of a plane, at least; judgement
 
 }  // namespace
 

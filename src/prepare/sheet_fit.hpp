@@ -29,7 +29,7 @@ struct SheetFit {
   [[nodiscard]] bool is_sheet(double radius, double noise) const;
 };
 
-/// What a plane may leave where nothing else need be looked for, m.
+/// The residual up to which a plane is enough and no quadric is tried, m.
 [[nodiscard]] double flat_residual(double radius, double noise);
 
 /// Fits one place after another; keeps its memory in between.
@@ -49,8 +49,10 @@ class SheetFitter {
   /// one, m^2: the residuals' own where they are independent, more where neighbours err together.
   [[nodiscard]] double tile_variance(double reach, double tile) const;
 
-  static constexpr std::size_t kEnough = 10;  ///< points of a quadric, which has six terms
-  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at.
+  /// Points of a quadric, which has six terms, at least; judgement.
+  static constexpr std::size_t kEnough = 10;
+  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at
+  /// (judgement, for time).
   static constexpr std::size_t kMostPoints = 1 << 14;
 
  private:

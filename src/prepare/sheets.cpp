@@ -12,16 +12,17 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kCertain = std::numeric_limits<double>::infinity();
+constexpr double kCertain = std::numeric_limits<double>::infinity();  // outweighs all votes
 
-constexpr double kCoherent = 0.5;  // |sum v |v|| over sum v^2
-constexpr double kEnoughVotes = 0.3;
+constexpr double kCoherent = 0.5;     // |sum v |v|| over sum v^2: votes agree; judgement
+constexpr double kEnoughVotes = 0.3;  // sum v^2 of the votes v; less is chance; judgement
 
-constexpr double kAgree = 0.96;      // |sum of signs| over their number: 98 % agree
-constexpr double kMostHidden = 0.5;  // of a sheet's points
+constexpr double kAgree = 0.96;      // |sum of signs| over their number: 98 % agree; judgement
+constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
-constexpr double kOpen = 0.3;     // |sum a n| / sum a above which a part does not close
-constexpr double kUpright = 0.2;  // sine of the lean that makes an open part have an upper side
+constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
+// Sine of the lean that gives an open part an upper side; judgement.
+constexpr double kUpright = 0.2;
 
 /// For each sheet the sign that nearly all of its points are known to have, relative to their
 /// normals; 0: not known.

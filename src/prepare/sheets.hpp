@@ -71,7 +71,7 @@ struct SheetInput {
   std::span<const float> noise;     // sigma at each point, m
 };
 
-/// What is known of signs from outside.
+/// Signs of normals that are known from outside: given normals and a viewpoint.
 struct KnownSigns {
   std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
                                            ///< not finite; empty: none
@@ -124,9 +124,9 @@ struct SheetVote {
 [[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own,
                                                  Growths& grown);
 
-inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};
+inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index
 
-/// Whose planes points lie on, in sorted order.
+/// The planes that points lie on, in sorted order.
 struct Snapped {
   std::vector<std::uint8_t> sure;    ///< 1: its own fit is a sheet's; 0: a host's is, or none
   std::vector<std::uint32_t> hosts;  ///< the sure point whose fit each has: itself, or another, or
@@ -143,10 +143,10 @@ struct Snapped {
 /// off its plane by k a^2 / sqrt(48) RMS.
 [[nodiscard]] float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i);
 
-// How far normals may turn where both fits are bowed, against the arc; and how far off the chord,
-// against the turn: an arc's is half.
-inline constexpr float kTurnMargin = 1.5f;
-inline constexpr float kChord = 0.6f;
+// How far normals may turn where both fits are bowed, over what their arc turns.
+inline constexpr float kTurnMargin = 1.5f;  // judgement
+// How far a point may be off the other's plane, over distance times turn (rad): an arc has half.
+inline constexpr float kChord = 0.6f;  // half and a margin; judgement
 
 /// The sheets of all points, and the points that lie on two of them.
 struct Sheets {
@@ -158,7 +158,7 @@ struct Sheets {
 [[nodiscard]] Sheets join_sheets(const Sampling& sampling, const Radii& radii,
                                  const Weights& weights, const KnownSigns& known, OwnSheets& fits);
 
-/// What the options let sheets know of signs.
+/// The signs that the options allow sheets to use.
 [[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
                                      const PrepareOptions& options);
 

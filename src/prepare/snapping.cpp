@@ -14,30 +14,31 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane
-constexpr float kSmoothBend =
-    0.03f;                          // of R that a quadric may leave: curvature passes, a crease not
-constexpr float kNoisyBend = 1.6f;  // of the noise, as above
+constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane; judgement
+// What a quadric may leave: curvature passes, a crease does not (docs/method.md 5.6).
+constexpr float kSmoothBend = 0.03f;  // R; judgement
+constexpr float kNoisyBend = 1.6f;    // of the noise; judgement
 
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
-constexpr float kSnapReach = 1.6f;  // R; where nothing is sure there:
-constexpr float kFarSnapReach = 4;  // R
-constexpr std::size_t kFewSure = 12;
-constexpr float kSnapSlope = 0.12f;
-constexpr float kSnapResiduals = 3;
+constexpr float kSnapReach = 1.6f;    // R; judgement
+constexpr float kFarSnapReach = 4;    // R, where few are sure within kSnapReach; judgement
+constexpr std::size_t kFewSure = 12;  // points; judgement
+constexpr float kSnapSlope = 0.12f;   // 7 degrees; judgement
+constexpr float kSnapResiduals = 3;   // three sigma
 
-// Of the area within R, what lies on a plane that holds there: at a corner of three faces a third,
-// less for jitter.
+// The share of the area within R that lies on a plane which holds there: a third at a corner of
+// three faces (derived), less a margin for jitter (judgement).
 constexpr float kShared = 0.3f;
 
-constexpr float kNearness = 0.1f;  // of the way, against the distance from the plane
+// Cost of the way over that of the distance from the plane; judgement.
+constexpr float kNearness = 0.1f;
 
-// A point lies on a second plane where that is another one and it is off it by so many spacings.
-constexpr float kOtherPlane = 0.97f;
-constexpr float kOnBoth = 0.2f;
+// When a point lies on a second plane as well; judgement.
+constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two
+constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 
-/// What becomes of the points that their own fit does not put on a sheet.
+/// Finds a plane for each point that its own fit does not put on a sheet.
 class Snapping {
  public:
   Snapping(const SheetInput& input, OwnSheets& own)
@@ -74,7 +75,7 @@ class Snapping {
     }
   }
 
-  /// What is known of all points then.
+  /// The result for all points, after run().
   [[nodiscard]] Snapped finish() && {
     Snapped snapped{std::move(sure_), std::move(hosts_), {}};
     for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
@@ -156,7 +157,7 @@ class Snapping {
     return shared >= kShared * all;
   }
 
-  /// Where a thing is so small that hardly a point of it is sure, a plane has to do.
+  /// Are half of the points around without a host, too? On a thing so small a plane has to do.
   [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     if (own_.confidences[i] < kPlanarFit) return false;
     near.clear();
@@ -166,7 +167,7 @@ class Snapping {
     return 2 * static_cast<std::size_t>(homeless) >= near.size();
   }
 
-  /// Of sure points the one whose plane the point lies on best.
+  /// The sure point on whose plane the point lies best.
   [[nodiscard]] std::uint32_t best_host(std::uint32_t i,
                                         const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();

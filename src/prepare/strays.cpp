@@ -13,14 +13,15 @@ namespace {
 
 // A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
 // beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
-constexpr float kStraySpacings = 1.8f;
-constexpr std::size_t kNeighbors = 9;  // the point itself and the eight around it on a sheet
-constexpr float kSlender = 1.f / 3;    // judgement: of a sheet's width, and of a line's length
+constexpr float kStraySpacings = 1.8f;  // measured (tests/prepare/strays_test.cpp)
+constexpr std::size_t kNeighbors = 9;   // derived: a point of a grid and the eight around it
+constexpr float kSlender = 1.f / 3;     // judgement: of a sheet's width, and of a line's length
 // The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, 0.7 at
 // a line's end, 1 where all are far away; less than half where they lie around.
-constexpr float kBeside = 0.8f;
-constexpr float kAround = 0.5f;
-constexpr std::ptrdiff_t kMostOfNearest = 5;  // the point itself among them
+constexpr float kBeside = 0.8f;  // judgement: between 0.7 and 1
+constexpr float kAround = 0.5f;  // judgement: no corner of a sheet
+// Points, more than half of kNeighbors, the point itself among them; judgement.
+constexpr std::ptrdiff_t kMostOfNearest = 5;
 
 /// How the places nearest to a point lie.
 struct Neighborhood {

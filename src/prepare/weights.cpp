@@ -16,8 +16,8 @@ namespace {
 
 using WeightSum = decltype(simd::JoinFunctions::wyvill_sums);
 
-constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr std::size_t kFewestOthers = 3;
+constexpr float kLargest = std::numeric_limits<float>::max();  // 1/m^2: 1 / R^2 stays finite
+constexpr std::size_t kFewestOthers = 3;  // points; with fewer it is speckle; judgement
 
 void check(const CellGrid& grid, std::span<const float> radii) {
   if (radii.size() != grid.size()) {
@@ -87,6 +87,8 @@ WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kerne
 }
 
 std::vector<float> density_weights(const WeightSums& sums) {
+  // Share of Sbar_i that a sum counts at least, against large weights at borders; judgement
+  // (docs/method.md 2.2).
   constexpr float kShareOfAround = 0.8f;
   std::vector<float> weights(sums.own.size());
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -97,8 +99,9 @@ std::vector<float> density_weights(const WeightSums& sums) {
 
 void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
                      std::span<const float> radii, std::vector<float>& weights) {
-  constexpr float kLeast = 0.2f;  // a lone point still holds the surface together
-  constexpr float kMost = 3;
+  // Factor: a lone point still holds the surface together; judgement.
+  constexpr float kLeast = 0.2f;
+  constexpr float kMost = 3;  // factor; judgement (docs/preparation.md, Weights)
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       weights.size(), 1024, [&](std::size_t i, auto& near) {
         near.clear();
@@ -113,7 +116,7 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
                                        const WeightSums& sums) {
-  constexpr float kShareOfAround = 0.35f;
+  constexpr float kShareOfAround = 0.35f;  // of Sbar_i; judgement (docs/preparation.md, Weights)
   std::vector<std::uint8_t> mask(grid.size());
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       grid.size(), 4096, [&](std::size_t k, auto& near) {

@@ -1,3 +1,4 @@
+// Fields of exact shapes, for simulated scenes and tests.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,7 +18,7 @@ class AnalyticField : public Field {
     Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();  ///< unit; any one where several are true
   };
 
-  /// What all analytic fields share.
+  /// Options that all analytic fields share.
   struct Options {
     Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame
     double step_length = 0.01;        ///< what Sample::radius says everywhere, m
@@ -102,7 +103,7 @@ class UnionField final : public Field {
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
-  /// Of the part that is nearest; `source` is its index.
+  /// The surface of the nearest part; `source` is its index.
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   /// The finest resolution, the longest reach, the sum of the revisions.
   [[nodiscard]] Traits traits() const noexcept override;

@@ -1,3 +1,4 @@
+// The interface between a surface and a proxy.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +16,7 @@ struct Sample {
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
 };
 
-/// What the surface is made of near a place on it.
+/// Properties of the surface near a position on it.
 struct Surface {
   double stiffness_factor = 1;  ///< multiplies the proxy's stiffness, 0-1
   double friction_factor = 1;   ///< multiplies the proxy's friction, 0-1
@@ -47,7 +48,7 @@ class Field {
   /// True only if the ball certainly holds nothing solid.
   [[nodiscard]] virtual bool is_free(const Ball& ball) const noexcept = 0;
 
-  /// What is touched at x.
+  /// The properties of the surface at x.
   [[nodiscard]] virtual Surface surface(const Eigen::Vector3d& x) const noexcept = 0;
 
   [[nodiscard]] virtual Traits traits() const noexcept = 0;

@@ -1,3 +1,4 @@
+// The options that say how points become a surface.
 #pragma once
 
 namespace palpate {

@@ -1,3 +1,4 @@
+// Surface points: the data that a field is evaluated from.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,20 +18,19 @@ namespace palpate {
 /// A point may move in a straight line while a snapshot lasts: `grid` and the columns hold its
 /// start (A), the `end_` columns its end (B), empty when A = B.
 struct SurfacePoints {
-  /// What a point's surface meets at an edge nearby: the plane of the face beyond.
+  /// The plane of the face that lies beyond an edge near the point.
   struct EdgePlane {
     Eigen::Vector3f normal =
         Eigen::Vector3f::Zero();  ///< outward, unit; between two planes, a mean
     float height = 0;             ///< of the point above the plane, m
-    /// 0-1: how sure it is. Below 0, down to -1, in a crease: there free is what is above both
-    /// planes; otherwise solid is what is below both. So an edge that becomes a crease is none
-    /// first.
+    /// Confidence, 0 to 1 for a convex edge (solid below both planes), 0 to -1 for a crease (free
+    /// above both). Crossing 0 removes the edge, so a change of kind has no jump.
     float share = 0;
   };
 
   /// Edges that points lie beside. `end` is as long as `start`, or empty: then it is as `start`.
   struct Edges {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no edge: above every index
 
     std::vector<std::uint32_t> of_point;  ///< which one, or kNone; as long as the grid, or empty
     std::vector<EdgePlane> start;
@@ -40,7 +40,7 @@ struct SurfacePoints {
   /// Smooth pieces of surface, as preparation found them. Columns are in sorted order and all as
   /// long as the grid, or all empty: then the points are one sheet, whose normals' signs agree.
   struct Sheets {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no sheet: above every index
 
     std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
     std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs

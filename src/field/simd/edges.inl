@@ -21,10 +21,11 @@ struct Larger {
   return {0.5 * (h + k + stdx::abs(d)) + 0.25 * inverse * t * t, 0.5 + 0.25 * inverse * past};
 }
 
-// What edges and creases are rounded over, of R_i, so that heights have gradients.
-constexpr double kRoundEdge = 0.005;
-constexpr double kRoundCrease = 0.05;
-constexpr double kNoWidth = 1e-12;  // m: what fills up lanes has no radius
+// The widths that edges and creases are rounded over, R_i, so that heights have gradients.
+constexpr double kRoundEdge = 0.005;   // judgement (docs/method.md 2.8)
+constexpr double kRoundCrease = 0.05;  // judgement (docs/method.md 2.8)
+// m; points that pad lanes have no radius, and 1 / width must be finite.
+constexpr double kNoWidth = 1e-12;
 
 template <bool kWendland>
 void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],

@@ -7,11 +7,11 @@
 
 namespace palpate::simd {
 
-constexpr int kLanes = 4;  // points that are summed side by side, on every level
-constexpr int kMaxSources = 8;
+constexpr int kLanes = 4;       // doubles in 256 bits: points summed side by side on every level
+constexpr int kMaxSources = 8;  // sensors and clouds of one scene; judgement, sets the size of Sums
 
-constexpr int kLabels = 3;  // how a point's sheet is seen from the tool (field/facing.hpp)
-constexpr int kMaxRuns = kLabels * kMaxSources;
+constexpr int kLabels = 3;                       // derived: the Labels of field/facing.hpp
+constexpr int kMaxRuns = kLabels * kMaxSources;  // derived: one run for each label of each source
 
 // A patch in columns, relative to its centre: label by label, and within a label source by source.
 // Each run of one label and source is padded to a multiple of kLanes with points of weight 0.

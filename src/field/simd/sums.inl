@@ -47,15 +47,15 @@ inline Vector offsets(const Columns& c, std::uint32_t i, const double x[3]) {
   return {p.x - x[0], p.y - x[1], p.z - x[2]};
 }
 
-// w and -g up to the factors below, which are multiplied into finished sums.
+// w and -g up to the factors below (derived: docs/method.md 2.1), which multiply finished sums.
 struct Weight {
   Lanes w;
   Lanes steep;
 };
 template <bool kWendland>
-constexpr double kScaleW = kWendland ? 1 : 1. / 9;
+constexpr double kScaleW = kWendland ? 1 : 1. / 9;  // w = s^4 (4 r + 1) or s^2 (5 + 4 s) / 9
 template <bool kWendland>
-constexpr double kScaleSteep = kWendland ? 20 : 4. / 9;
+constexpr double kScaleSteep = kWendland ? 20 : 4. / 9;  // -g = 20 s^3 or 4 / 9 s (5 + 6 s)
 
 // Eqs. (1) and (2) with their slopes (field/field_options.hpp), at q = r^2.
 // Without the attribute it is called and not inlined, which costs more than it computes.
