@@ -1,3 +1,4 @@
+// Rows of closed bodies: hands wander on them, and circle above them and in a fold.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// Draws points of sheets, surfaces and spheres for a scene.
 #include "any_cloud/draft.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The row of a cloud from a file: ways through free air, and presses on the points.
 #include "any_cloud/file_row.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// Rows of wedges, ridges, boxes and corners, where two or three faces meet.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Rows of round bodies: spheres with faulty normals, small spheres, rods, needles and posts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ void push_sphere(Draft& draft, double radius) {
   }
 }
 
-// Of each hundred given normals some are turned, one is zero and one is not a number.
+// Gives normals: some are turned, one in a hundred is zero and one in a hundred is NaN.
 void draw_flip(Draft& draft, double radius, double turned) {
   draft.sphere(radius);
   draft.give_normals = true;

@@ -1,3 +1,4 @@
+// Rows of bodies that were sampled badly: scanned twice, in slices, or with stray points.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Compares what a proxy did on a cloud with the truth and with the ideal proxy.
 #include "any_cloud/score.hpp"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ double largest_step(const HostileScene& scene, const Trace& trace) {
   return largest;
 }
 
-// Of the stroke that gives the hand most.
+// The energy of the stroke that gives the hand most.
 double most_energy(const HostileScene& scene, const Trace& trace) {
   double most = 0;
   double given = 0;

@@ -1,3 +1,4 @@
+// Rows of surfaces that a camera saw from one side.
 #include <algorithm>
 #include <array>
 

@@ -1,3 +1,4 @@
+// Rows of thin plates, their rims, and the gap between two sheets.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Draws a tour: one hand that pokes a closed body from all sides.
 #include "any_cloud/tour.hpp"
 
 #include <algorithm>

@@ -22,7 +22,7 @@ constexpr double kLeave = 0.3;
 
 // A late snapshot catches up within this share of its duration, and more the later it is.
 constexpr double kCatchUp = 0.25;
-constexpr double kCatchUpMore = 0.5;
+constexpr double kCatchUpMore = 0.5;  // judgement, both
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kTries = 8;
+constexpr int kTries = 8;  // reads of one place; bounds the wait (judgement)
 
 }  // namespace
 
@@ -50,8 +50,8 @@ constexpr double kLatency = 0.03;  // s
 // A hand that rests may start with an acceleration that takes it this far in that time; one that
 // moves may double its speed. No hand is faster than the last.
 constexpr double kStartSpeed = 0.5;  // m/s
-constexpr double kSpeedUp = 2;
-constexpr double kFastest = 5;  // m/s
+constexpr double kSpeedUp = 2;       // times its speed (judgement)
+constexpr double kFastest = 5;       // m/s
 
 constexpr double kForget = 0.2;    // s in which a recent speed is forgotten
 constexpr double kLongStep = 0.1;  // s; over a longer gap a speed says nothing

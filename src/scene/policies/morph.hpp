@@ -66,12 +66,12 @@ class Morph {
   void forget();
 
  private:
-  static constexpr std::uint32_t kNone = EdgeFinder::kNone;
+  static constexpr std::uint32_t kNone = EdgeFinder::kNone;  // no point
 
   // A block is much less sure than what is known from this ratio of variances on, and agrees with
   // it within so many deviations of the difference.
   static constexpr float kUnsure = 4;
-  static constexpr float kAgree = 5;
+  static constexpr float kAgree = 5;  // judgement, both
 
   // Share by which a point's radius, confidence and edge follow a frame (docs/method.md 7.3).
   static constexpr float kShare = 0.25f;

@@ -60,7 +60,7 @@ namespace {
 // A typical radius is the median of so many points or more.
 constexpr std::size_t kSample = 1024;
 
-constexpr std::size_t kCellsAtATime = 512;
+constexpr std::size_t kCellsAtATime = 512;  // judgement: shares work among threads
 
 }  // namespace
 
