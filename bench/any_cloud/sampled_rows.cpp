@@ -1,4 +1,4 @@
-// Rows of bodies that were sampled badly: scanned twice, in slices, or with stray points.
+// Rows of badly sampled bodies: scanned twice, in slices, rounded, of uneven density, with strays.
 #include <fmt/format.h>
 
 #include <algorithm>

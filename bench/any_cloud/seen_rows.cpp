@@ -1,4 +1,4 @@
-// Rows of surfaces that a camera saw from one side.
+// Rows of bodies that a camera saw from one side.
 #include <algorithm>
 #include <array>
 

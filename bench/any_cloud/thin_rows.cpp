@@ -52,7 +52,7 @@ void draw_plate(Draft& draft, double thick, double jitter, Known known) {
 // Over the edge, and along the other face.
 void draw_rim(Draft& draft, double thick) {
   make_plate(draft, thick);
-  constexpr double kDeep = 1;
+  constexpr double kDeep = 1;  // spacings
   const double below = -thick - 5;
   for (int i = 0; i < 3; ++i) {
     const double y = draft.between(-20, 20);
