@@ -39,7 +39,7 @@ class BlockSurface {
   /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
   [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
 
-  /// What a fitted point counts for, 0-1: its precision over that of the blocks around it which may
+  /// Trust in a fitted point, 0-1: its precision over that of the blocks around it which may
   /// show the same surface, as in a mean of measurements that are not equally good.
   [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
 

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kApart = 3;               // blocks: a block that an edge crosses is between the two
-constexpr float kTurned = 0.866f;       // cosine of the least angle between two faces
-constexpr float kSame = 0.94f;          // and of the largest one within a face
+constexpr float kTurned = 0.866f;       // cosine of the least angle between two faces: 30 degrees
+constexpr float kSame = 0.94f;          // and of the largest one within a face: 20 degrees
 constexpr float kCertainly = 3;         // deviations
 constexpr float kOfSupport = 0.1f;      // of R, that a face may be bent
 constexpr int kMostAway = 8;            // blocks
