@@ -40,8 +40,9 @@ class FrameIntervalFilter {
   [[nodiscard]] double interval() const { return interval_; }
 
  private:
-  static constexpr int kMemory = 8;  // frames
-  // A gap counts as so many intervals at most, and as so few at least.
+  static constexpr int kMemory = 8;  // frames (judgement; docs/method.md 7.1)
+  // A gap counts as so many intervals at most, and as so few at least
+  // (judgement; docs/method.md 7.1).
   static constexpr double kOutlier = 2;
   static constexpr double kShortest = 1e-3;  // s
   static constexpr double kLongest = 2;      // s (judgement)

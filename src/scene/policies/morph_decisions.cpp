@@ -18,7 +18,7 @@ constexpr float kGone = 1e-4f;
 // Fade times, s. Surfaces seen through: 5 x EnergyTank::kTime, so that the spring can follow.
 // Hidden surfaces: slow, but not forever, as what hides them may carry them off.
 constexpr double kGoes = 0.1;   // derived
-constexpr double kHidden = 60;  // judgement
+constexpr double kHidden = 60;  // judgement (docs/method.md 7.3)
 
 }  // namespace
 
