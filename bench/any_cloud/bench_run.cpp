@@ -1,3 +1,4 @@
+// Moves a proxy along a scene's path, on its cloud as a program would touch it and on the truth.
 #include "any_cloud/bench_run.hpp"
 
 #include "accuracy/path.hpp"

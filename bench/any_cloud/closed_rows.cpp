@@ -1,3 +1,4 @@
+// Rows of closed bodies: hands wander on them, and circle above them and in a fold.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -37,9 +38,9 @@ void make_closed(Draft& draft, const ClosedShape& closed) {
 
 // A hand that wanders about the surface, 40 spacings a second, now in and now out.
 void wander(Draft& draft, double depth) {
-  constexpr int kTicks = 8000;
-  constexpr double kStep = 0.04;
-  constexpr double kAway = 4;
+  constexpr int kTicks = 8000;       // 8 s
+  constexpr double kStep = 0.04;     // spacings a tick
+  constexpr double kAway = 4;        // spacings
   constexpr double kSameFace = 0.7;  // cosine
   Vector3d hand = draft.points.front() + kAway * draft.normals.front();
   Vector3d heading = -draft.normals.front();

@@ -1,3 +1,4 @@
+// Draws points of sheets, surfaces and spheres for a scene.
 #include "any_cloud/draft.hpp"
 
 #include <algorithm>
@@ -11,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kTries = 8;   // in each cell at the surface
-constexpr int kSteps = 30;  // to the surface, where a distance is but a bound
-constexpr double kOnSurface = 1e-3;
+constexpr int kTries = 8;            // in each cell at the surface
+constexpr int kSteps = 30;           // to the surface, where a distance is but a bound
+constexpr double kOnSurface = 1e-3;  // spacings
 
 }  // namespace
 

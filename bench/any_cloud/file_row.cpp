@@ -1,3 +1,4 @@
+// The row of a cloud from a file: ways through free air, and presses on the points.
 #include "any_cloud/file_row.hpp"
 
 #include <Eigen/Geometry>
@@ -46,7 +47,7 @@ class FreeAir {
 // Straight and as long as air is free, 150 ticks at most.
 void add_way(Draft& draft, const FreeAir& air, const Eigen::AlignedBox3d& box) {
   constexpr int kTicks = 150;
-  constexpr double kStep = 1.5;
+  constexpr double kStep = 1.5;  // spacings a tick
   for (int i = 0; i < kFileTries; ++i) {
     Vector3d place = draft.within(box.min(), box.max());
     if (!air.holds(place)) continue;
@@ -61,8 +62,8 @@ void add_way(Draft& draft, const FreeAir& air, const Eigen::AlignedBox3d& box) {
 
 // On a point of the cloud, from a place in free air near it, 3 spacings deep.
 void add_press(Draft& draft, const FreeAir& air) {
-  constexpr double kFirst = 10;
-  constexpr double kDeep = 3;
+  constexpr double kFirst = 10;  // spacings
+  constexpr double kDeep = 3;    // spacings
   for (int i = 0; i < kFileTries; ++i) {
     const Vector3d& point = draft.points[draft.random.bits() % draft.points.size()];
     const Vector3d out = draft.direction();

@@ -1,3 +1,4 @@
+// Rows of wedges, ridges, boxes and corners, where two or three faces meet.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -102,7 +103,7 @@ void draw_corners(Draft& draft, double noise, bool signs) {
 
 // A wall that is one sheet stands on a floor; the hand comes from either side.
 void draw_tee(Draft& draft) {
-  constexpr double kHigh = 25;
+  constexpr double kHigh = 25;  // spacings
   const Vector3d Y = 50 * Vector3d::UnitY();
   draft.sheet({-25, -25, 0}, 50 * Vector3d::UnitX(), Y);
   draft.sheet({0, -25, 1}, Y, (kHigh - 1) * Vector3d::UnitZ());

@@ -1,3 +1,4 @@
+// Draws the path of a hand, tick by tick.
 #include "any_cloud/hand.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Makes a scene of a row and a seed, and brings it into a pose and a unit.
 #include "any_cloud/hostile_scene.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Rows of round bodies: spheres with faulty normals, small spheres, rods, needles and posts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ void push_sphere(Draft& draft, double radius) {
   }
 }
 
-// Of each hundred given normals some are turned, one is zero and one is not a number.
+// Gives normals: some are turned, one in a hundred is zero and one in a hundred is NaN.
 void draw_flip(Draft& draft, double radius, double turned) {
   draft.sphere(radius);
   draft.give_normals = true;
@@ -50,7 +51,7 @@ void draw_small(Draft& draft, double radius, double noise) {
                     Vector3d(std::sin(a) * std::cos(b), std::sin(a) * std::sin(b), std::cos(a)));
   };
   constexpr int kTicks = 4000;
-  constexpr double kDeep = 1.5;
+  constexpr double kDeep = 1.5;  // spacings
   draft.hand.start(at(0, 15)).to(at(0, -kDeep), kPush);
   for (int tick = 1; tick < kTicks; ++tick) draft.hand.tick(at(tick, -kDeep));
   draft.hand.to(at(kTicks - 1, 15), kPush);
@@ -95,7 +96,7 @@ void draw_needle(Draft& draft) {
 
 // A post with a panel that is one sheet.
 void draw_post(Draft& draft) {
-  constexpr double kPost = 4;
+  constexpr double kPost = 4;  // radius, spacings
   const Vector3d end(0, 0, 30);
   draft.truth = rod(-end, end, kPost);
   draft.surface(draft.truth, {-5, -5, -35}, {5, 5, 35});

@@ -1,3 +1,4 @@
+// Lists the rows of all families.
 #include "any_cloud/rows.hpp"
 
 namespace palpate::any_cloud {

@@ -1,3 +1,4 @@
+// Rows of badly sampled bodies: scanned twice, in slices, rounded, of uneven density, with strays.
 #include <fmt/format.h>
 
 #include <algorithm>

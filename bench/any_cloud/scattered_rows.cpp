@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 // Without a truth: only steps, faults and time are told.
 void draw_volume(Draft& draft, bool bush) {
-  constexpr double kFast = 300;
+  constexpr double kFast = 300;  // spacings a second
   for (int i = 0; i < (bush ? 4000 : 8000); ++i) {
     const Vector3d here = bush ? Vector3d{20 * draft.random.normal(), 20 * draft.random.normal(),
                                           20 * draft.random.normal()}

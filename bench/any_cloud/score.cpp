@@ -1,3 +1,4 @@
+// Compares what a proxy did on a cloud with the truth and with the ideal proxy.
 #include "any_cloud/score.hpp"
 
 #include <algorithm>
@@ -12,11 +13,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFelt = 0.05;       // N
-constexpr double kFeltSurely = 0.1;  // N
-constexpr double kAgainst = -0.5;    // cosine
-constexpr double kLostShare = 0.2;
-constexpr int kThroughTicks = 3;
+constexpr double kFelt = 0.05;        // N
+constexpr double kFeltSurely = 0.1;   // N
+constexpr double kAgainst = -0.5;     // cosine
+constexpr double kLostShare = 0.2;    // a smaller share of the force wanted is contact lost
+constexpr int kThroughTicks = 3;      // lost for so long, a hand is through
 constexpr double kIdealError = 0.05;  // s
 
 double mean(double sum, double count) {
@@ -41,7 +42,7 @@ double largest_step(const HostileScene& scene, const Trace& trace) {
   return largest;
 }
 
-// Of the stroke that gives the hand most.
+// The energy of the stroke that gives the hand most.
 double most_energy(const HostileScene& scene, const Trace& trace) {
   double most = 0;
   double given = 0;
@@ -92,11 +93,11 @@ class Pokes {
   }
 
  private:
-  static constexpr double kInside = 1;   // s: what edges round off is no way through
-  static constexpr double kOutside = 8;  // s
-  static constexpr double kAtBody = 4;   // s; a proxy farther out touches strays, not the body
-  static constexpr double kMostOver = 1.3;
-  static constexpr double kRough = 0.5;  // s: what a surface of points may be off its solid
+  static constexpr double kInside = 1;      // s: what edges round off is no way through
+  static constexpr double kOutside = 8;     // s
+  static constexpr double kAtBody = 4;      // s; a proxy farther out touches strays, not the body
+  static constexpr double kMostOver = 1.3;  // times the force wanted
+  static constexpr double kRough = 0.5;     // s: what a surface of points may be off its solid
 
   void end() {
     if (required_) ++asked_;

@@ -1,3 +1,4 @@
+// Rows of bodies that a camera saw from one side.
 #include <algorithm>
 #include <array>
 

@@ -1,3 +1,4 @@
+// Writes the scores as a table and as comma-separated values.
 #include "any_cloud/table.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Rows of thin plates, their rims, and the gap between two sheets.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -51,7 +52,7 @@ void draw_plate(Draft& draft, double thick, double jitter, Known known) {
 // Over the edge, and along the other face.
 void draw_rim(Draft& draft, double thick) {
   make_plate(draft, thick);
-  constexpr double kDeep = 1;
+  constexpr double kDeep = 1;  // spacings
   const double below = -thick - 5;
   for (int i = 0; i < 3; ++i) {
     const double y = draft.between(-20, 20);

@@ -1,3 +1,4 @@
+// Draws a tour: one hand that pokes a closed body from all sides.
 #include "any_cloud/tour.hpp"
 
 #include <algorithm>
@@ -13,12 +14,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPokes = 25;
-constexpr double kAway = 14;      // of the ball that a hand travels on
-constexpr double kNear = 8;       // from here on a poke is slow
-constexpr double kLean = 0.6;     // at most, of a poke to the normal
-constexpr int kTries = 400;       // for a poke that is free as far as the surface
-constexpr double kClearance = 1;  // of a way from anything, but for its last
-constexpr double kLastStretch = 2;
+constexpr double kAway = 14;        // of the ball that a hand travels on
+constexpr double kNear = 8;         // from here on a poke is slow
+constexpr double kLean = 0.6;       // at most, of a poke to the normal
+constexpr int kTries = 400;         // for a poke that is free as far as the surface
+constexpr double kClearance = 1;    // of a way from anything, but for its last
+constexpr double kLastStretch = 2;  // spacings
 
 struct Poke {
   Vector3d outside;  // on the ball

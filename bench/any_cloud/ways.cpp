@@ -1,3 +1,4 @@
+// Draws the strokes of hands that several families share.
 #include "any_cloud/ways.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// Rows of bodies as machines and nature work them: reliefs, threads, combs, lattices.
 #include <fmt/format.h>
 
 #include "any_cloud/bodies.hpp"

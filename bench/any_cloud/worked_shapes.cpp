@@ -1,3 +1,4 @@
+// Distances to bodies as machines and nature work them.
 #include "any_cloud/worked_shapes.hpp"
 
 #include <algorithm>

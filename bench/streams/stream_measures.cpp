@@ -15,10 +15,10 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kTrim = 100;     // ticks at either end that filters need
 constexpr std::size_t kAfterSwap = 4;  // ticks
-constexpr double kLostShare = 0.2;
-constexpr int kPopTicks = 3;
-constexpr double kMillimetres = 1e3;
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kLostShare = 0.2;     // a smaller share of the force wanted is contact lost
+constexpr int kPopTicks = 3;           // lost for so long is a pop
+constexpr double kMillimetres = 1e3;   // in a metre
+constexpr double kDegrees = 180 / std::numbers::pi;  // in a radian
 
 struct Moments {
   double sum = 0;

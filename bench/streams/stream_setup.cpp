@@ -14,11 +14,11 @@ using accuracy::PathBuilder;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPressDepth = 0.003;   // m
-constexpr double kComingDepth = 0.025;  // m
-constexpr double kWarmUp = 0.5;         // s, in which filters over time fill
-constexpr double kSettle = 0.5;         // s
+constexpr double kDegree = std::numbers::pi / 180;  // rad
+constexpr double kPressDepth = 0.003;               // m
+constexpr double kComingDepth = 0.025;              // m
+constexpr double kWarmUp = 0.5;                     // s, in which filters over time fill
+constexpr double kSettle = 0.5;                     // s
 
 SimulatedCameraOptions camera_at(const Isometry3d& pose, const Frames& frames) {
   SimulatedCameraOptions camera;

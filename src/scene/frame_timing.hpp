@@ -14,7 +14,7 @@ struct FrameTiming {
 /// How far what began at `last` has gone at `time`, s, 0-1. Rounding does not keep it from
 /// arriving.
 [[nodiscard]] inline double progress(const FrameTiming& last, double time) {
-  constexpr double kArrived = 1 - 1e-6;
+  constexpr double kArrived = 1 - 1e-6;  // share; the rest is rounding (judgement)
   if (!(last.duration > 0)) return 1;
   const double share = std::clamp((time - last.start) / last.duration, 0.0, 1.0);
   return share > kArrived ? 1 : share;
@@ -40,11 +40,12 @@ class FrameIntervalFilter {
   [[nodiscard]] double interval() const { return interval_; }
 
  private:
-  static constexpr int kMemory = 8;  // frames
-  // A gap counts as so many intervals at most, and as so few at least.
+  static constexpr int kMemory = 8;  // frames (judgement; docs/method.md 7.1)
+  // A gap counts as so many intervals at most, and as so few at least
+  // (judgement; docs/method.md 7.1).
   static constexpr double kOutlier = 2;
   static constexpr double kShortest = 1e-3;  // s
-  static constexpr double kLongest = 2;
+  static constexpr double kLongest = 2;      // s (judgement)
 
   void measure(double stamp) {
     const double gap = stamp - last_stamp_;

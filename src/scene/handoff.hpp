@@ -26,6 +26,7 @@ class Handoff {
   static_assert(std::atomic<const T*>::is_always_lock_free);
 
  public:
+  /// Threads that may read at a time (judgement: more than there are hands and windows).
   static constexpr std::size_t kReaders = 16;
   /// A reader holds at most two values: the current and the next one.
   static constexpr std::size_t kHeld = 2;
@@ -137,8 +138,8 @@ class Handoff {
   }
 
  private:
-  static constexpr int kTries = 4;
-  static constexpr std::size_t kCacheLine = 64;
+  static constexpr int kTries = 4;               // looks; bounds the wait (judgement)
+  static constexpr std::size_t kCacheLine = 64;  // bytes, on x86-64 and most Arm cores
   // What readers hold, the newest and one that is being published; and a reader that changes a slot
   // while it is being looked at may keep two values by it.
   static constexpr std::size_t kMostValues = kReaders * kHeld + kReaders + 2;

@@ -80,7 +80,7 @@ bool PatchCache::near_covers(std::span<const Ball> balls, double extra) noexcept
 const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexcept {
   // Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
   constexpr int kBallsASum = 4;
-  constexpr int kSumsAGather = 20;
+  constexpr int kSumsAGather = 20;  // judgement, both
   const std::uint64_t before = step_.gathers;
   const Patch* const patch = find(ball, margin);
   if (!patch || !step_.running) return patch;

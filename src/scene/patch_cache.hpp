@@ -73,7 +73,7 @@ class PatchCache {
   // Parts of SceneField::kStepVisits (judgement: a walk asks about one ball, a gather takes
   // points).
   static constexpr int kFreeVisits = SceneField::kStepVisits / 5;
-  static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;
+  static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;  // the rest
 
   struct Slot {
     Patch patch{SceneField::kPatchPoints};

@@ -62,10 +62,10 @@ Source::State Scene::state(std::size_t i) const {
 
 namespace {
 
-constexpr std::size_t kTried = 1000;
-constexpr std::size_t kEnough = 30;
-constexpr float kReach = 3;        // radii
-constexpr float kAlike = 0.7071f;  // cosine between normals
+constexpr std::size_t kTried = 1000;  // points to compare, about (judgement)
+constexpr std::size_t kEnough = 30;   // distances; fewer tell no median (judgement)
+constexpr float kReach = 3;           // radii
+constexpr float kAlike = 0.7071f;     // cosine between normals: 45 degrees
 
 const Eigen::Vector3f& end_of(const SurfacePoints& points, std::size_t i) {
   return points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];

@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 // How far a patch reaches beyond what it is gathered for, at rest and where points move, and how
 // much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
-constexpr double kMovingMargin = 0.62;
-constexpr double kReserve = 0.1;
+constexpr double kMovingMargin = 0.62;  // R
+constexpr double kReserve = 0.1;        // R
 constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
 constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps follow (judgement)
 

@@ -13,10 +13,10 @@ namespace palpate {
 namespace {
 
 // A cloud is clipped this far outside the fields' reach, of their radius: supports reach further
-// than points, and normals look around.
+// than points, and normals look around (judgement).
 constexpr double kClipMargin = 0.3;
 
-// A sensor is silent no sooner than after so many intervals.
+// A sensor is silent no sooner than after so many intervals (judgement; docs/method.md 7.4).
 constexpr double kSilentIntervals = 3;
 
 void check(const SourceOptions& source) {

@@ -15,7 +15,8 @@
 namespace palpate {
 namespace {
 
-// How sources disagree changes slowly, and takes milliseconds to tell.
+// How sources disagree changes slowly, and takes milliseconds to measure: frames between
+// two looks (judgement).
 constexpr std::uint64_t kComparedFrames = 32;
 
 void check_factor(const std::string& name, const char* option, double factor) {

@@ -10,19 +10,19 @@
 namespace palpate {
 namespace {
 
-// A snapshot that starts later than this is a mistake of clocks, s.
+// A snapshot that starts later than this is a mistake of clocks, s (judgement).
 constexpr double kPatience = 1;
 
 // A surface that has faded away stays so long without any stiffness: proxies let their springs
-// follow it with a delay (EnergyTank::kTime, a fifth of this). s
+// follow it with a delay (EnergyTank::kTime, a fifth of this). s (derived)
 constexpr double kLinger = 0.1;
 
-// The time in which its weights fade then, s.
+// The time in which its weights fade then, s (judgement).
 constexpr double kLeave = 0.3;
 
 // A late snapshot catches up within this share of its duration, and more the later it is.
 constexpr double kCatchUp = 0.25;
-constexpr double kCatchUpMore = 0.5;
+constexpr double kCatchUpMore = 0.5;  // judgement, both
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kTries = 8;
+constexpr int kTries = 8;  // reads of one place; bounds the wait (judgement)
 
 }  // namespace
 
@@ -43,16 +43,17 @@ void ReachTable::read(std::vector<Reach>& found) const {
 namespace {
 
 // A frame is felt for one interval, and the one before it was prepared; and so long it takes until
-// it can be felt.
+// it can be felt (docs/method.md 7.5).
 constexpr double kFrames = 2;
 constexpr double kLatency = 0.03;  // s
 
 // A hand that rests may start with an acceleration that takes it this far in that time; one that
-// moves may double its speed. No hand is faster than the last.
+// moves may double its speed. No hand is faster than the last (judgement; docs/method.md 7.5).
 constexpr double kStartSpeed = 0.5;  // m/s
-constexpr double kSpeedUp = 2;
-constexpr double kFastest = 5;  // m/s
+constexpr double kSpeedUp = 2;       // times its speed (judgement)
+constexpr double kFastest = 5;       // m/s
 
+// Memory of a speed (judgement).
 constexpr double kForget = 0.2;    // s in which a recent speed is forgotten
 constexpr double kLongStep = 0.1;  // s; over a longer gap a speed says nothing
 

@@ -21,7 +21,7 @@ using Reach = Ball;
 /// locks: a version that is odd while a place is being written tells who reads to look again.
 class ReachTable {
  public:
-  static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;
+  static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;  // one a reader
 
   ReachTable() {
     for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
@@ -38,7 +38,7 @@ class ReachTable {
   void read(std::vector<Reach>& found) const;
 
  private:
-  static constexpr std::size_t kCacheLine = 64;
+  static constexpr std::size_t kCacheLine = 64;  // bytes, on x86-64 and most Arm cores
 
   struct alignas(kCacheLine) Place {
     std::atomic<std::uint32_t> version{0};

@@ -16,7 +16,7 @@ class Seams;
 /// SceneField made of it; sources are added before the first of them.
 class Scene {
  public:
-  static constexpr std::size_t kMaxSources = 8;
+  static constexpr std::size_t kMaxSources = 8;  // judgement: arrays are this long
 
   /// Adds a source that something else will publish to.
   /// @throws Error when the name is taken, the scene is full, or a SceneField looks at it: that

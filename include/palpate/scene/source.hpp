@@ -69,6 +69,7 @@ struct Snapshot {
     double weight_end = 1;
   };
 
+  /// Layers of one snapshot (judgement).
   static constexpr std::size_t kMaxLayers = 8;
 
   double start = 0;           ///< s, on the clock that SceneField::update is given
@@ -152,7 +153,7 @@ class Source {
   [[nodiscard]] const std::string& name() const;
   /// Any thread but a servo's.
   [[nodiscard]] SourceOptions options() const;
-  /// Of the newest cloud that was prepared here. Any thread but a servo's.
+  /// Report on the newest cloud that was prepared here. Any thread but a servo's.
   [[nodiscard]] Prepared::Report report() const;
 
   /// Where the sensor stands: options().T_world_sensor until set_pose(). Any thread but a servo's.

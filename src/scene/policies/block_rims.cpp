@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+// Least weight of a rim beside the mean of its neighbours (docs/method.md 2.2).
 constexpr float kShareOfAround = 0.8f;
 
 Floats weight(Kernel kernel, const Floats& q) {

@@ -10,18 +10,20 @@
 namespace palpate {
 namespace {
 
+// Radii of blocks as surface points (docs/method.md 6.7; judgement).
 constexpr float kSpacings = 2.5f;  // R in spacings
 constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
-constexpr float kNowhere = 1e30f;  // 1 / R^2, 1/m^2
+constexpr float kNowhere = 1e30f;  // 1 / R^2 of no point, 1/m^2
 
-// Of R, the deviation of a place that is sure: three of it are where a point weighs half, 0.47 R.
+// Deviation of a place that is sure, in R: three of it are where a point weighs half, 0.47 R
+// (derived; docs/method.md 6.7).
 constexpr float kSure = 0.157f;
 
 // Density-normalised weights of a surface that goes on on all sides sum to this times R^2 over the
 // area of a point (docs/method.md 6.7).
 float whole_sum(Kernel kernel) {
-  constexpr double kTurn = 2 * std::numbers::pi;
+  constexpr double kTurn = 2 * std::numbers::pi;  // rad
   return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);
 }
 

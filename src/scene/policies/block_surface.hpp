@@ -17,8 +17,8 @@ namespace palpate {
 /// are known without a search.
 class BlockSurface {
  public:
-  /// Of a block, that two frames or neighbours of one surface may differ by: five of the
-  /// difference.
+  /// Two frames or neighbours of one surface differ by at most this many deviations of a block
+  /// (derived: about 5 sqrt(2), five deviations of the difference).
   static constexpr float kDeviations = 7;
 
   /// `minimum_radius`: no R below this, m.
@@ -39,7 +39,7 @@ class BlockSurface {
   /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
   [[nodiscard]] float area(std::size_t block) const { return areas_[block]; }
 
-  /// What a fitted point counts for, 0-1: its precision over that of the blocks around it which may
+  /// Trust in a fitted point, 0-1: its precision over that of the blocks around it which may
   /// show the same surface, as in a mean of measurements that are not equally good.
   [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
 
@@ -60,7 +60,7 @@ class BlockSurface {
 
   template <class Visit>
   static void each_row(const FilteredDepth& depth, const Visit& visit) {
-    constexpr std::size_t kRowsAtATime = 8;
+    constexpr std::size_t kRowsAtATime = 8;  // judgement: shares work among threads
     detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtATime,
                           [&](std::size_t v) { visit(v); });
   }
@@ -111,7 +111,7 @@ class BlockSurface {
 /// so that planes of many blocks take part.
 class EdgeFinder {
  public:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no edge
 
   /// `surface` has measured `depth`. Allocates only to grow.
   void look(const FilteredDepth& depth, const BlockSurface& surface);

@@ -11,15 +11,16 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kApart = 3;           // blocks: a block that an edge crosses is between the two
-constexpr float kTurned = 0.866f;   // cosine of the least angle between two faces
-constexpr float kSame = 0.94f;      // and of the largest one within a face
-constexpr float kCertainly = 3;     // deviations
-constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
-constexpr int kMostAway = 8;        // blocks
-constexpr std::size_t kRowsAtOnce = 8;
-constexpr std::uint8_t kInRow = 1;
-constexpr std::uint8_t kInColumn = 2;
+// Limits of edges and creases (docs/method.md 6.5; judgement).
+constexpr int kApart = 3;               // blocks: a block that an edge crosses is between the two
+constexpr float kTurned = 0.866f;       // cosine of the least angle between two faces: 30 degrees
+constexpr float kSame = 0.94f;          // and of the largest one within a face: 20 degrees
+constexpr float kCertainly = 3;         // deviations
+constexpr float kOfSupport = 0.1f;      // of R, that a face may be bent
+constexpr int kMostAway = 8;            // blocks
+constexpr std::size_t kRowsAtOnce = 8;  // judgement: shares work among threads
+constexpr std::uint8_t kInRow = 1;      // a bit
+constexpr std::uint8_t kInColumn = 2;   // a bit
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// What becomes of an old point of a morphing surface.
+/// The fate of an old point of a morphing surface.
 enum class Fate : std::uint8_t {
   follow,  ///< goes to where its block shows the surface now
   stay,    ///< is confirmed where it was

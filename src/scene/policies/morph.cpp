@@ -14,10 +14,10 @@ namespace {
 
 // Places that are settled together: as many as a processor's cache holds, for so many threads.
 constexpr std::size_t kPlaces = 512;
-constexpr std::size_t kPieces = 16;
-constexpr std::size_t kAhead = 64;
+constexpr std::size_t kPieces = 16;  // judgement, as the next
+constexpr std::size_t kAhead = 64;   // places that are prefetched before they are settled
 
-// What is not seen stands behind all that is, on a curve through space: cells of the index along
+// Unseen points come behind all seen ones, on a curve through space: cells of the index along
 // the image's would be as deep as the scene. Codes of blocks are below it.
 constexpr std::uint32_t kUnseenCode = 1u << 30;
 constexpr float kUnseenSteps = 1023;  // of that curve along an axis

@@ -66,17 +66,18 @@ class Morph {
   void forget();
 
  private:
-  static constexpr std::uint32_t kNone = EdgeFinder::kNone;
+  static constexpr std::uint32_t kNone = EdgeFinder::kNone;  // no point
 
   // A block is much less sure than what is known from this ratio of variances on, and agrees with
   // it within so many deviations of the difference.
   static constexpr float kUnsure = 4;
-  static constexpr float kAgree = 5;
+  static constexpr float kAgree = 5;  // judgement, both (docs/method.md 7.3)
 
   // Share by which a point's radius, confidence and edge follow a frame (docs/method.md 7.3).
   static constexpr float kShare = 0.25f;
 
-  // The least cosine of the angle between the normals of one surface before and after a frame.
+  // The least cosine of the angle between the normals of one surface before and after a frame: 60
+  // degrees (judgement; docs/method.md 7.3).
   static constexpr float kTurns = 0.5f;
 
   /// The point that the frame shows at a place of the curve; R = 0: none.

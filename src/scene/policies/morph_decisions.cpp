@@ -16,9 +16,9 @@ constexpr float kVouch = 0.25f;
 constexpr float kGone = 1e-4f;
 
 // Fade times, s. Surfaces seen through: 5 x EnergyTank::kTime, so that the spring can follow.
-// Hidden surfaces: slow, but not forever, as what hides them may carry them off (judgement).
-constexpr double kGoes = 0.1;
-constexpr double kHidden = 60;
+// Hidden surfaces: slow, but not forever, as what hides them may carry them off.
+constexpr double kGoes = 0.1;   // derived
+constexpr double kHidden = 60;  // judgement (docs/method.md 7.3)
 
 }  // namespace
 
@@ -98,6 +98,7 @@ bool Morph::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const 
 /// what has come along the ray as fast as things move. Tells how it was.
 std::uint32_t Morph::partner_of(const FilteredDepth& depth, std::span<const std::uint32_t> old,
                                 const Point& seen, PointState& before) const {
+  // Squared, since a variance is compared with a squared distance.
   constexpr float kDeviations2 = BlockSurface::kDeviations * BlockSurface::kDeviations;
   const float same2 = std::max(seen.state.radius * seen.state.radius, kDeviations2 * seen.variance);
   std::uint32_t partner = kNone;

@@ -14,10 +14,11 @@ constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from
 
 constexpr float kLeastShare = 0.01f;  // of an edge; with less it is none
 
-// A surface that moves faster than this along its normal is taken for another one, m/s.
+// A surface that moves faster than this along its normal is taken for another one, m/s
+// (judgement; docs/method.md 7.3).
 constexpr float kFastest = 1;
 
-// The least cosine of the angle between a ray and a normal that can be trusted.
+// The least cosine of the angle between a ray and a normal that can be trusted (judgement).
 constexpr float kGrazing = 0.3f;
 
 // A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at 500 N/m.

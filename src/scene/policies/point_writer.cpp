@@ -57,10 +57,10 @@ void BlockEntries::sort(std::span<const Entry> entries, std::size_t blocks) {
 
 namespace {
 
-// A typical radius is the median of so many points or more.
+// A typical radius is the median of so many points or more (judgement).
 constexpr std::size_t kSample = 1024;
 
-constexpr std::size_t kCellsAtATime = 512;
+constexpr std::size_t kCellsAtATime = 512;  // judgement: shares work among threads
 
 }  // namespace
 

@@ -70,7 +70,7 @@ class BlockEntries {
     return std::span(sorted_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
   }
 
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no entry
 
   /// The first of four entries that follow one another, one at each of four places; else kNone.
   [[nodiscard]] std::uint32_t four_at(std::size_t place) const {
