@@ -15,7 +15,7 @@ constexpr int kMostIterations = 1000;  // fifty times the default; more is a mis
 const ProxyOptions& checked(const ProxyOptions& options) {
   const Requirement require{"proxy"};
   // The remedy in errors about numbers.
-constexpr const char* kAtLeastZero = "give a number that is 0 or more";
+  constexpr const char* kAtLeastZero = "give a number that is 0 or more";
   require.not_negative("stiffness (N/m)", options.stiffness, kAtLeastZero);
   const Friction& friction = options.friction;
   require.not_negative("static friction", friction.static_coefficient, kAtLeastZero);
