@@ -25,6 +25,9 @@ void check(const SourceOptions& source) {
     throw Error(fmt::format("invalid support radius of {} m; give a length in metres", radius));
   }
   const PolicyOptions& options = source.policy;
+  const Policy policy = options.policy.value_or(Policy::morph);
+  if (policy > Policy::crossfade && policy != Policy::morph)  // a recording may hold fusion, 3
+    throw Error("policy: unknown or removed; give replace, average, crossfade or morph");
   if (options.history < 1 || options.history > static_cast<int>(Snapshot::kMaxLayers) - 1) {
     throw Error(fmt::format("policy: invalid history of {} clouds; give 1 to {}", options.history,
                             Snapshot::kMaxLayers - 1));

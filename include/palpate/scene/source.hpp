@@ -21,7 +21,7 @@ enum class Policy {
   replace,    ///< the newest cloud, at once (hard swap)
   average,    ///< the newest N clouds, 1/N each (the paper)
   crossfade,  ///< N + 1 clouds; the newest fades in while the oldest fades out
-  morph,      ///< blocks of a depth image, filtered in time and by the noise-sized fit
+  morph = 4,  ///< blocks of a depth image, filtered in time and by the noise-sized fit; 3 is gone
 };
 
 /// What stands for a policy that is not set.
