@@ -1,3 +1,4 @@
+// Rows of planes: noise, thick layers, changing density, holes, points at one place.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

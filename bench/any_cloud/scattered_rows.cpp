@@ -1,3 +1,4 @@
+// Rows of points that lie on no surface: volumes, and strays over a sheet.
 #include <algorithm>
 #include <limits>
 

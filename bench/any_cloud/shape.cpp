@@ -1,3 +1,4 @@
+// Exact shapes and their unions: the truth beside drawn clouds.
 #include "any_cloud/shape.hpp"
 
 #include <algorithm>

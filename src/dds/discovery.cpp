@@ -1,3 +1,4 @@
+// Lists the writers and readers of ROS topics that discovery has found.
 #include "dds/discovery.hpp"
 
 #include <dds/dds.h>

@@ -1,3 +1,4 @@
+// Readers and writers of a topic's bytes: they take, wait for and count messages.
 #include "dds/endpoint.hpp"
 
 #include <dds/dds.h>

@@ -1,3 +1,4 @@
+// The depth filter's frame: the fits of its blocks, then the filter over time, then points.
 #include "palpate/depth/depth_filter.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads profiles of devices from TOML and finds one by its name.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 

@@ -1,3 +1,4 @@
+// The remote device: states come and forces go in datagrams.
 #include "palpate/device/remote.hpp"
 
 #include <fmt/format.h>

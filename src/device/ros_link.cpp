@@ -1,3 +1,4 @@
+// What each known ROS node of a device publishes and takes, and how its axes lie.
 #include "device/ros_link.hpp"
 
 #include <fmt/format.h>

@@ -47,7 +47,7 @@ class Patch {
 
   /// Turns points to the tool where it is now and sorts them by how their sheets meet.
   void face(const Stance& stance) noexcept;
-  /// Forgets the decided signs and labels: the next face() decides anew.
+  /// Forgets the decided signs and labels: the next face() decides from scratch.
   void forget_sides() noexcept { facing_.forget(); }
   /// Is the tool behind points that hold it from the other side alone?
   [[nodiscard]] bool behind() const noexcept { return facing_.behind(); }

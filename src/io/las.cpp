@@ -1,3 +1,4 @@
+// Reads LAS files: the header, then positions, intensities and colours of points.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Loads LASzip at run time and reads the points of LAZ files with it.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads the vertices of PLY files, as text or as bytes of either order.
 #include <fmt/format.h>
 
 #include <algorithm>

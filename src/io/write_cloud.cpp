@@ -1,3 +1,4 @@
+// Writes clouds as PCD, PLY or XYZ.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Reads text clouds: finds which column is what, by names or by the numbers themselves.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@ namespace {
 
 // R: a quadric that leaves more may mix two sheets; judgement (docs/method.md 5.5).
 constexpr double kSmoothFit = 0.03;
-constexpr double kNoisyFit = 1.2;  // of the noise, likewise; judgement
+constexpr double kNoisyFit = 1.2;  // of the noise, for the same use; judgement
 
 }  // namespace
 

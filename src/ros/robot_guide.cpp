@@ -120,7 +120,7 @@ bool RobotGuide::may_go_to(const Vector3d& target, double now) {
   return true;
 }
 
-RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool anew) {
+RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pressed) {
   const double dt = std::clamp(now - std::exchange(looked_, now), 0.0, kLongestStep);
   if (options_.hand) return follow(state.hip);
   if (has(state.field_notes, FieldNote::tool_too_large)) {
@@ -128,24 +128,25 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool an
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
   const Place proxy = judge(state.contact.proxy, now);
-  if (proxy.source == nullptr) return without_view(state, now, anew);
+  if (proxy.source == nullptr) return without_view(state, now, pressed);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = place_ && (follows_ || now - followed_ <= kBlink);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
-  note(free, free && judge(state.hip, now).free(), now, anew);
+  note(free, free && judge(state.hip, now).free(), now, pressed);
   if (!follows_) return wait(proxy, now, dt);
   const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
-  return anew || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
+  return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 
 // Stops following when the proxy is not free. Starts again when proxy and hand have been free for
-// kFreeFor, when the button is pressed anew, or after a loss of sight shorter than kBlink.
-void RobotGuide::note(bool proxy_free, bool both_free, double now, bool anew) {
+// kFreeFor, when the button is pressed again, or after a loss of sight shorter than kBlink.
+void RobotGuide::note(bool proxy_free, bool both_free, double now, bool pressed) {
   free_since_ = both_free ? std::min(free_since_, now) : kNever;
-  const bool may = follows_ || anew || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;
+  const bool may =
+      follows_ || pressed || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;
   follows_ = proxy_free && may;
 }
 
@@ -206,16 +207,16 @@ void RobotGuide::note_held(const Place& held, double now) {
 // Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
 // tool until a surface comes over it or lets it go. It follows again once nothing has held the hand
 // for kFreeFor and the tool is where the robot is.
-RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool anew) {
+RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool pressed) {
   const auto waits = [](Reason reason) {
     return Answer{.reason = reason, .why = std::string(reason)};
   };
   const Reason reason = broken_way(state);
   if (!reason.empty() && !place_) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
-  note(reason.empty(), reason.empty() && !state.contact.touching, now, anew);
+  note(reason.empty(), reason.empty() && !state.contact.touching, now, pressed);
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
-  if (!anew && place_ && (state.contact.proxy - *place_).norm() > kJoin) return waits(kApart);
+  if (!pressed && place_ && (state.contact.proxy - *place_).norm() > kJoin) return waits(kApart);
   // In the step in which a surface moved over it, it may still be a little inside.
   if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
     return waits(kMoved);

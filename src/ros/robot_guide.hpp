@@ -16,7 +16,7 @@ namespace palpate::ros {
 /// Decides where a robot may go: to the proxy, where a camera sees that it is free, or on a surface
 /// from its front. Else it waits at its last target, and goes back towards the camera when what is
 /// seen comes steadily over it. It follows again once hand and proxy have been free for half a
-/// second, or the dead man's button is pressed anew. One thread asks.
+/// second, or the dead man's button is pressed again. One thread asks.
 class RobotGuide {
  public:
   /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
@@ -30,9 +30,9 @@ class RobotGuide {
     std::string why = {};                        ///< the same with what is known of it
   };
 
-  /// Asked some hundred times a second. `now`: s, on the clock of the sources' stamps. `anew`: the
-  /// dead man's button was up before, and what is on the way is the user's to see.
-  [[nodiscard]] Answer look(const ServoState& state, double now, bool anew);
+  /// Asked some hundred times a second. `now`: s, on the clock of the sources' stamps. `pressed`:
+  /// the dead man's button was up before, and what is on the way is the user's to see.
+  [[nodiscard]] Answer look(const ServoState& state, double now, bool pressed);
 
   /// No target is sent now, for other reasons.
   void pause();
@@ -62,11 +62,11 @@ class RobotGuide {
   [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now);
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
   [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now);
-  void note(bool proxy_free, bool both_free, double now, bool anew);
+  void note(bool proxy_free, bool both_free, double now, bool pressed);
   [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double ahead = 0);
   [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
   void note_held(const Place& held, double now);
-  [[nodiscard]] Answer without_view(const ServoState& state, double now, bool anew);
+  [[nodiscard]] Answer without_view(const ServoState& state, double now, bool pressed);
 
   // Surface or obstacle that came over the waiting robot.
   struct Over {

@@ -1,3 +1,4 @@
+// Plays a sequence of depth images or clouds from a folder as a camera.
 #include <fmt/format.h>
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// The threads of a stream: one asks the camera, one prepares the newest frame.
 #include "palpate/sensor/stream.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Counts and judges a stream's frames: rate, latency, drops, and what is wrong with one.
 #include "sensor/stream_statistics.hpp"
 
 #include <fmt/format.h>
@@ -15,8 +16,7 @@
 namespace palpate::sensor {
 namespace {
 
-// A new size is believed when it has come so many times in a row: one frame may be damage.
-constexpr int kLasts = 3;
+constexpr int kLasts = 3;  // frames of a new size in a row that are believed: one may be damage
 
 bool is_camera(const CameraModel& camera) {
   const Pinhole& p = camera.pinhole;

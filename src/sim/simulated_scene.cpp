@@ -1,3 +1,4 @@
+// Scenes of moving solids: poses and velocities at a time, and the table that layouts draw.
 #include "sim/simulated_scene.hpp"
 
 #include <algorithm>

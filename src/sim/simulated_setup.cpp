@@ -1,3 +1,4 @@
+// The scenes and cameras behind the names of simulated cameras.
 #include <fmt/format.h>
 
 #include <array>

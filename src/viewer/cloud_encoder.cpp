@@ -1,3 +1,4 @@
+// Chooses the points of each source that a page draws, and encodes them.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// Meshes a field around a centre: surface nets over cubic cells.
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -1,3 +1,4 @@
+// The thread that encodes clouds, surfaces around tools and reports for the pages.
 #include "viewer/scene_encoder.hpp"
 
 #include <algorithm>

@@ -83,9 +83,11 @@ def lines_of(path):
 
 
 def has_purpose(path):
-    """Its first line that is no include or the like is a comment."""
-    first = next((line for line in lines_of(path) if not AHEAD.match(line)), "//")
-    return first.startswith("//")
+    """A source begins with a comment; a header's first line that is no include or the like is one."""
+    lines = lines_of(path)
+    if path.suffix == ".cpp":
+        return lines[0].startswith("//")
+    return next((line for line in lines if not AHEAD.match(line)), "//").startswith("//")
 
 
 def riddles(path):

@@ -83,7 +83,7 @@ class Rules(unittest.TestCase):
     def test_files_comments_and_constants_speak(self):
         said = "// Adds numbers.\n#include <a>\n"
         self.assertEqual(self.found(rules.purpose, {"src/io/a.cpp": said, "src/io/b.hpp": "#pragma once\n// A sum.\n"}), [])
-        self.assertEqual(len(self.found(rules.purpose, {"src/io/a.cpp": "#include <a>\nint a;\n"})), 1)
+        self.assertEqual(len(self.found(rules.purpose, {"src/io/a.cpp": "#include <a>\n// A sum.\nint a;\n"})), 1)
         self.assertEqual(len(self.found(rules.riddles, {"src/io/a.cpp": "// Of what is no number.\n"})), 1)
         self.assertEqual(self.found(rules.riddles, {"src/io/a.cpp": "// Number\n// Of things.\n"}), [])
         constant = "constexpr int kMost = 3;"

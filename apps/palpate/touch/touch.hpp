@@ -14,7 +14,7 @@
 
 namespace palpate::app {
 
-/// `palpate touch`: runs as planned and reports; then what a page opened, likewise.
+/// `palpate touch`: runs as planned and reports; then does the same with what a page opened.
 /// @throws UsageError, Error.
 void touch(const TouchPlan& plan);
 
