@@ -77,8 +77,9 @@ RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& option
 }
 
 // The highest answer of the sources counts, in the order of Seen::Says. But free gives way to solid
-// where its frame is older than kStays, or than the moment when the solid came.
-RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
+// where its frame is older than kStays, or than the moment when the solid came. Only the tool and
+// the robot stay where they are for long enough to remember that moment for them.
+RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now, Asked asked) {
   const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
   Place place;
   Place solid;
@@ -89,8 +90,9 @@ RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now) {
     if (!seen) continue;
     if (place.source == nullptr || rank(*seen) > rank(place.seen)) place = {witness.source, *seen};
     if (seen->says != Seen::Says::solid) continue;
-    if (seen->came) witness = {witness.source, now - seen->age, x};
-    const double here = (x - witness.where).norm() <= kJoin ? witness.came : -kNever;
+    const double before = (x - witness.where).norm() <= kJoin ? witness.came : -kNever;
+    const double here = seen->came ? now - seen->age : before;
+    if (seen->came && asked == Asked::stays) witness = {witness.source, here, x};
     if (solid.source == nullptr || here > came) solid = {witness.source, *seen};
     came = std::max(came, here);
   }
@@ -115,7 +117,7 @@ bool RobotGuide::may_go_to(const Vector3d& target, double now) {
   if (!place_ || (target - *place_).norm() <= kWayStep) return true;
   const auto steps = static_cast<int>(std::ceil((target - *place_).norm() / kWayStep));
   for (int i = 0; i < steps; ++i) {
-    if (!judge(*place_ + (target - *place_) * i / steps, now).free()) return false;
+    if (!judge(*place_ + (target - *place_) * i / steps, now, Asked::passes).free()) return false;
   }
   return true;
 }
@@ -127,7 +129,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
-  const Place proxy = judge(state.contact.proxy, now);
+  const Place proxy = judge(state.contact.proxy, now, Asked::stays);
   if (proxy.source == nullptr) return without_view(state, now, pressed);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
@@ -135,7 +137,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
-  note(free, free && judge(state.hip, now).free(), now, pressed);
+  note(free, free && judge(state.hip, now, Asked::passes).free(), now, pressed);
   if (!follows_) return wait(proxy, now, dt);
   const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
   return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
@@ -168,7 +170,7 @@ void RobotGuide::pause() {
 
 RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
   ahead_ = 0;
-  const Place held = place_ ? judge(*place_, now) : Place{};
+  const Place held = place_ ? judge(*place_, now, Asked::stays) : Place{};
   note_held(held, now);
   Answer answer;
   if (!over_.what.empty()) {

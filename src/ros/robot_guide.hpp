@@ -59,7 +59,8 @@ class RobotGuide {
 
   [[nodiscard]] static std::vector<Witness> witnesses_of(const Scene& scene,
                                                          const std::vector<std::string>& names);
-  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now);
+  enum class Asked { stays, passes };  // about the tool or the robot; about the hand or the way
+  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Asked asked);
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
   [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now);
   void note(bool proxy_free, bool both_free, double now, bool pressed);

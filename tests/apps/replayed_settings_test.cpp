@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/palpate/record/recorder.hpp"
+#include "apps/palpate/record/recording.hpp"
 #include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/setup_parsed.hpp"
@@ -13,23 +14,15 @@
 namespace palpate::app {
 namespace {
 
-// As stiff as it needs to be, and anywhere.
-class Handle final : public Device {
- public:
-  Handle() {
-    info_.name = "handle";
-    info_.maximum_force = 8;
-    info_.damping = 2;
-    info_.delay = 1e-3;
-  }
-  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] DeviceState read() noexcept override { return {}; }
-  void write(const Eigen::Vector3d& /*force*/) noexcept override {}
-  [[nodiscard]] std::string reason() const override { return {}; }
-
- private:
-  DeviceInfo info_;
-};
+// A device that is as stiff as it needs to be, and anywhere.
+RecordedDevice handle() {
+  DeviceInfo info;
+  info.name = "handle";
+  info.maximum_force = 8;
+  info.damping = 2;
+  info.delay = 1e-3;
+  return RecordedDevice(info);
+}
 
 // 3 mm deep in the plane z = 0 and around a circle, and out of it at times.
 DeviceState hand_at(int step) {
@@ -61,7 +54,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
   LoadedScene loaded = load_sources(plan.sources, {.keep_clouds = true});
   begin_run(loaded, {});
   Recorder recorder(shell.path("run.mcap"));
-  Handle device;
+  RecordedDevice device = handle();
   ServoOptions options;
   options.traces = recorder.add_hand();
   Servo servo(device, loaded.scene, options);
@@ -105,7 +98,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   Recorder recorder(shell.path("run.mcap"));
   const Stream::Sink push = recorder.watching(0, feeding(from, source, thread_cpu_seconds));
   const std::function<void()> end = recorder.watching(0, [&] { source.keep(); });
-  Handle device;
+  RecordedDevice device = handle();
   ServoOptions options;
   options.guard.on = false;
   options.traces = recorder.add_hand();
