@@ -122,19 +122,22 @@ void CellGrid::within(const Eigen::Vector3f& center, float radius,
   std::array<std::uint32_t, kMaxStack> stack;
   std::size_t open = 0;
   stack[open++] = 0;
+  std::size_t count = found.size();
   while (open > 0) {
     const Cell& cell = cells_[stack[--open]];
-    if (detail::squared_distance(cell, center) > squared_radius) continue;
-    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
-    if (cell.children != 0) continue;
-    std::size_t count = found.size();
-    found.resize(count + cell.size());
-    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // without branches: hits are random
-      found[count] = i;
-      count += detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
+    const bool inside = detail::largest_squared_distance(cell, center) <= squared_radius;
+    for (std::uint32_t c = inside ? 0 : cell.children; c-- > 0;) {
+      stack[open] = cell.first_child + c;  // no branch: whether a cell is near cannot be foretold
+      open += detail::squared_distance(cells_[stack[open]], center) <= squared_radius ? 1 : 0;
     }
-    found.resize(count);
+    if (!inside && cell.children != 0) continue;
+    if (count + cell.size() > found.size()) found.resize(2 * (count + cell.size()));
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // no branch: hits are random
+      found[count] = i;
+      count += inside || detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
+    }
   }
+  found.resize(count);
 }
 
 void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
