@@ -23,7 +23,7 @@ struct Candidate {
 };
 
 // No function: heaps call a pointer to one, and inline this.
-constexpr auto nearer = [](const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
+constexpr auto kNearer = [](const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
   return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
                                                   : a.index < b.index;
 };
@@ -33,11 +33,11 @@ void offer(std::vector<CellGrid::Neighbor>& heap, std::size_t k,
            const CellGrid::Neighbor& neighbor) {
   if (heap.size() < k) {
     heap.push_back(neighbor);
-    std::push_heap(heap.begin(), heap.end(), nearer);
-  } else if (nearer(neighbor, heap.front())) {
-    std::pop_heap(heap.begin(), heap.end(), nearer);
+    std::push_heap(heap.begin(), heap.end(), kNearer);
+  } else if (kNearer(neighbor, heap.front())) {
+    std::pop_heap(heap.begin(), heap.end(), kNearer);
     heap.back() = neighbor;
-    std::push_heap(heap.begin(), heap.end(), nearer);
+    std::push_heap(heap.begin(), heap.end(), kNearer);
   }
 }
 
@@ -159,7 +159,7 @@ void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
       offer(found, k, {i, detail::squared_distance(points_[i], center)});
     }
   }
-  std::sort_heap(found.begin(), found.end(), nearer);
+  std::sort_heap(found.begin(), found.end(), kNearer);
 }
 
 }  // namespace palpate
