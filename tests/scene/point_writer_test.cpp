@@ -10,6 +10,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/policies/block_order.hpp"
+#include "scene/policies/block_tracks.hpp"
+
 namespace palpate {
 namespace {
 
