@@ -7,7 +7,6 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <utility>
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/record/options_json.hpp"
