@@ -22,7 +22,7 @@ struct McapSummary {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> index;
   };
 
-  /// Of the file so far; of `index`, its length in bytes.
+  /// Sums over the file so far; `indexed`: lengths of `index`, bytes.
   struct Totals {
     std::uint64_t messages = 0;
     std::uint64_t start = UINT64_MAX;

@@ -24,9 +24,11 @@ Floats weight(Kernel kernel, const Floats& q) {
 
 }  // namespace
 
-// How many blocks of the rectangle from the image's first block to each are empty or lie beside
-// another surface.
+// No block is beside a rim yet; how many blocks of the rectangle from the image's first block to
+// each are empty or lie beside another surface.
 void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of, const BlockGrid& grid) {
+  halves_.assign(depth.size() + kLanes, 0);
+  row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   const std::ptrdiff_t columns = depth.columns;
   const auto width = static_cast<std::size_t>(columns + 1);
   rims_.resize(width * (static_cast<std::size_t>(depth.rows) + 1));
@@ -70,8 +72,6 @@ bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half
 
 void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
                      const BlockGrid& grid, std::span<const Ball> balls, Exact exact) {
-  halves_.assign(depth.size() + kLanes, 0);
-  row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
   mark(depth, radii, grid);
