@@ -26,7 +26,7 @@ class SharedLibrary {
   struct Found {
     void* address;
     template <class Function>
-    operator Function*() const {
+    operator Function*() const {  // NOLINT(google-explicit-constructor)
       return reinterpret_cast<Function*>(address);
     }
   };
