@@ -22,10 +22,11 @@ struct Candidate {
   std::uint32_t cell;
 };
 
-bool nearer(const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
+// No function: heaps call a pointer to one, and inline this.
+constexpr auto nearer = [](const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
   return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
                                                   : a.index < b.index;
-}
+};
 
 // Keeps the k nearest in a heap with the farthest in front.
 void offer(std::vector<CellGrid::Neighbor>& heap, std::size_t k,

@@ -70,7 +70,7 @@ class Growth {
             std::vector<Pair>& across) {
     if (i == j || hosts_[i] == kNoHost || hosts_[j] == kNoHost) return;
     const bool inside = j >= block.begin && j < block.end;
-    if (inside && j < i && sets_.find(i).first == sets_.find(j).first) return;
+    if (inside && sets_.find(i).first == sets_.find(j).first) return;
     const std::uint32_t a = hosts_[i];
     const std::uint32_t b = hosts_[j];
     const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
