@@ -1,6 +1,7 @@
 // Says what a source's raw frames show, and for how long.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "depth/input.hpp"
 #include "scene/sight.hpp"
@@ -25,8 +26,8 @@ void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_wo
 
 /// The age up to which a frame can say what is free, s.
 double Source::Inside::lasts() const {
+  if (stays) return std::numeric_limits<double>::infinity();
   const std::lock_guard lock(mutex);
-  if (std::isinf(state.silent_from)) return state.silent_from;
   const double silence = options.policy.silence;
   const double missed = kMissedFrames * state.interval;
   return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);

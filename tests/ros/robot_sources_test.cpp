@@ -38,6 +38,18 @@ TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
   EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
 }
 
+TEST_F(ARobot, WaitsWhereACameraHasEnded) {
+  Source& source = camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, 0.1});
+  ASSERT_TRUE(runs(1).target);
+  cameras_.back().on = false;
+  source.keep();
+  const RobotGuide::Answer answer = runs(0.5);
+  EXPECT_FALSE(answer.target);
+  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (camera)"));
+}
+
 TEST_F(ARobot, AsksOnlyTheCamerasThatItIsToldToAsk) {
   camera("one", at_rest);
   camera("two", at_rest);

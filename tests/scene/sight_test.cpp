@@ -195,12 +195,27 @@ TEST(Seen, IsThereFromTheFirstQuestionOn) {
   EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old);  // after its way here and 2.5 frames
 }
 
+TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  for (const double stamp : {0., 0.03}) {
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp; }));
+  }
+  source.keep();
+  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old) << "what is felt stays";
+}
+
 TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
   Scene scene;
   Source& source = scene.add("image");
   source.set(frame_of(small_camera(), 0, wall(0.5)));
   EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
   EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->says, Says::solid);
+  source.keep();
+  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
 }
 
 TEST(Seen, IsNothingOfClouds) {
