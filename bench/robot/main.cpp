@@ -10,6 +10,7 @@ constexpr palpate::bench::Column<Score> kColumns[] = {{"told", &Score::told},
                                                       {"in sight %", &Score::needless, 1, 100},
                                                       {"deepest mm", &Score::deepest},
                                                       {"unexcused", &Score::unexcused},
+                                                      {"beyond", &Score::beyond},
                                                       {"late", &Score::late},
                                                       {"way back", &Score::back_depth},
                                                       {"jump", &Score::hand_moves}};

@@ -23,16 +23,20 @@ constexpr double kLate = 0.1;       // s; judgement: three frames at 30 Hz
 constexpr double kNearby = 0.02;    // m; judgement: what is as near to the tool does not hide it
 constexpr double kStiffness = 500;  // N/m; judgement: as in the other benches
 
-// When the newest frame that had arrived at some time was taken.
+// When the frames of a camera that had arrived at some time were taken, s; 0: there were none.
 class Arrivals {
  public:
+  struct Stamps {
+    double newest = 0;
+    double before = 0;
+  };
   void arrived(double now, double stamp) { frames_.push_back({now, stamp}); }
-  [[nodiscard]] double newest(double by) const {
-    double stamp = 0;
+  [[nodiscard]] Stamps stamps(double by) const {
+    Stamps found;
     for (const auto& [at, taken] : frames_) {
-      if (at <= by) stamp = std::max(stamp, taken);
+      if (at <= by && taken > found.newest) found = {taken, found.newest};
     }
-    return stamp;
+    return found;
   }
 
  private:
@@ -53,16 +57,15 @@ ros::RobotGuide::Answer old_answer(const ServoState& state) {
 
 class Judge {
  public:
-  explicit Judge(const Trial& trial) : trial_(trial) {}
+  explicit Judge(const Trial& trial) : arrivals(trial.cameras.size()), trial_(trial) {}
 
-  Arrivals arrivals;
+  std::vector<Arrivals> arrivals;  // of the cameras
 
   void take(const ros::RobotGuide::Answer& answer, const ServoState& state, double now) {
     ++looks_;
     if (answer.reason.empty()) {
       excused_ = false;
-    } else if (excused_ =
-                   excused_ || arrivals.newest(now) == 0 || !is_seen(state.contact.proxy, now);
+    } else if (excused_ = excused_ || newest(now) == 0 || !is_seen(state.contact.proxy, now);
                !excused_) {
       needless_ += kTicksALook * kTick;
     }
@@ -76,14 +79,15 @@ class Judge {
     back_.reset();
     ++score_.told;
     const double depth = depth_at(*answer.target, now);
-    const double shown = std::min(depth, depth_at(*answer.target, arrivals.newest(now)));
+    const double shown = std::min(depth, depth_at(*answer.target, newest(now)));
     score_.deepest = std::max(score_.deepest, depth);
     if (shown > score_.unexcused) {
       score_.unexcused = shown;
       score_.sigma = 1e3 * sigma_at(*answer.target);
     }
-    score_.late = std::max(score_.late,
-                           std::min(shown, depth_at(*answer.target, arrivals.newest(now - kLate))));
+    score_.beyond = std::max(score_.beyond, beyond(*answer.target, shown, now));
+    score_.late =
+        std::max(score_.late, std::min(shown, depth_at(*answer.target, newest(now - kLate))));
     if (last_)
       score_.hand_moves = std::max(
           score_.hand_moves, 1e3 * ((*answer.target - *last_).norm() - (state.hip - hip_).norm()));
@@ -108,6 +112,21 @@ class Judge {
   // mm; the ball of the tool counts.
   [[nodiscard]] double depth_at(const Vector3d& x, double t) const {
     return 1e3 * std::max(trial_.tool_radius - distance_and_normal(trial_.scene, x, t).value, 0.0);
+  }
+  [[nodiscard]] double newest(double by) const {
+    double stamp = 0;
+    for (const Arrivals& of : arrivals) stamp = std::max(stamp, of.stamps(by).newest);
+    return stamp;
+  }
+  // How deep a target is, mm, beyond noise (three deviations) and what moved within one frame: it
+  // was as deep in the frame before the newest, too, of every camera. `shown`: in the newest.
+  [[nodiscard]] double beyond(const Vector3d& x, double shown, double now) const {
+    double depth = shown;
+    for (const Arrivals& of : arrivals) {
+      if (depth <= 0) return 0;
+      depth = std::min(depth, depth_at(x, of.stamps(now).before));
+    }
+    return std::max(depth - 3e3 * sigma_at(x), 0.0);
   }
   [[nodiscard]] double sigma_at(const Vector3d& x) const {
     double most = 0;
@@ -170,9 +189,9 @@ Score play(const Trial& trial, Rule rule) {
     feed.camera = std::make_unique<SimulatedCamera>(trial.scene, watcher.options);
     feed.stream = std::make_unique<SimulatedStream>(
         *feed.camera, source.name(),
-        [&](DepthFrame frame, const Source::StartTime& start) {
+        [&, of = feeds.size() - 1](DepthFrame frame, const Source::StartTime& start) {
           if (watcher.fault && !watcher.fault(frame)) return;
-          judge.arrivals.arrived(now, frame.stamp);
+          judge.arrivals[of].arrived(now, frame.stamp);
           source.push(frame, start);
         },
         SimulatedStreamOptions{.latency = watcher.delay + 0.01, .lead = 0.01});

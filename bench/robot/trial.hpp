@@ -60,6 +60,7 @@ struct Score {
   double needless = 0;   ///< share of it in waits that began with the tool in plain sight
   double deepest = 0;    ///< of targets
   double unexcused = 0;  ///< and deep in the newest frame that had arrived, too: nothing excuses it
+  double beyond = 0;     ///< and in the frame before, too, of every camera, less noise
   double late = 0;       ///< and deep in one that had arrived 0.1 s before
   double sigma = 0;      ///< of a pixel there, mm
   double back_depth = 0;  ///< deepest place that it was told on its way back
