@@ -148,16 +148,25 @@ class NearPairs {
   template <class ReachOf, class Visit>
   void each(const CellGrid& grid, std::uint32_t first, std::uint32_t count,
             std::span<const simd::Run> runs, const ReachOf& reach_of, const Visit& visit) {
-    std::size_t candidates = 1;
-    for (const simd::Run& run : runs) candidates += run.end - run.begin;
-    if (hits_.size() < candidates) hits_.resize(2 * candidates);
     simd::Row squared = {};
     for (std::uint32_t q = 0; q < count; ++q) {
       const float reach = reach_of(first + q);
       squared[q] = reach * reach;
     }
-    const std::size_t found =
-        simd::best_joins().within(make_join(grid, first, count, runs), squared, hits_.data());
+    each_hit(make_join(grid, first, count, runs), simd::best_joins().within, squared, visit);
+  }
+
+  /// The same where find(join, wanted, hits) tells what is near.
+  template <class Find, class Wanted, class Visit>
+  void each_hit(const simd::Join& join, const Find& find, const Wanted& wanted,
+                const Visit& visit) {
+    std::size_t candidates = 1;
+    for (std::size_t r = 0; r < join.run_count; ++r) {
+      candidates += join.runs[r].end - join.runs[r].begin;
+    }
+    if (hits_.size() < candidates) hits_.resize(2 * candidates);
+    const auto first = static_cast<std::uint32_t>(join.query);
+    const std::size_t found = find(join, wanted, hits_.data());
     for (std::size_t h = 0; h < found; ++h) {
       for (std::uint32_t bits = hits_[h].queries; bits != 0; bits &= bits - 1) {
         visit(first + static_cast<std::uint32_t>(std::countr_zero(bits)), hits_[h].candidate);

@@ -26,6 +26,9 @@ constexpr float kGapTrust = 0.3f;     // confidence, at least
 constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
 constexpr float kGapSpacings = 0.3f;  // least height, in spacings
 
+// Of the squared slope, where points are picked for a closer look: more than rounding takes.
+constexpr float kSafe = 0.999f;  // derived
+
 // Votes of one sheet on another; all are judgement.
 constexpr float kVoteReach = 1.3f;      // R
 constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
@@ -64,16 +67,22 @@ class Outlook {
 
   void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
                  std::vector<SheetVote>& votes) {
+    simd::Eyes eyes = {};
+    eyes.squared_slope = kSafe * kGapSlope * kGapSlope;
+    eyes.sheets = sheets_.sheet.data();
     for (std::uint32_t q = 0; q < count; ++q) {
       others_[q].clear();
       eyes_[q] = eye_at(first + q);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) eyes.normal[axis][q] = eyes_[q].normal[axis];
+      const float reach = own_.confidences[first + q] > 0 ? kGapReach * input_.radii[first + q] : 0;
+      eyes.squared_reach[q] = reach * reach;
+      eyes.least[q] = eyes_[q].least;
+      eyes.squared_tube[q] = eyes_[q].tube * eyes_[q].tube;
+      eyes.squared_vote[q] = eyes_[q].voting;
+      eyes.sheet[q] = eyes_[q].sheet;
     }
-    pairs_.each(
-        input_.grid, first, count, runs,
-        [this](std::uint32_t i) {
-          return own_.confidences[i] > 0 ? kGapReach * input_.radii[i] : 0;
-        },
-        [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
+    pairs_.each_hit(detail::make_join(input_.grid, first, count, runs), simd::best_joins().apart,
+                    eyes, [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 

@@ -1,4 +1,4 @@
-// Fits a plane and a quadric to the points of one sheet, and finds where heights fall into two.
+// Fits a plane and a quadric to the points of one sheet.
 
 #include "prepare/sheet_fit.hpp"
 
@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
+#include "prepare/height_groups.hpp"
 
 namespace palpate {
 namespace {
@@ -24,11 +23,6 @@ using Eigen::Vector3d;
 constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
 constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
-// Two groups of heights: their means this many deviations within them apart, at least half a
-// spacing, with nothing on this share of the way between.
-constexpr double kApart = 4;               // judgement (docs/method.md 5.5)
-constexpr double kApartSpacings = 0.5;     // judgement
-constexpr double kEmpty = 0.45;            // judgement
 constexpr std::size_t kFewestInSheet = 5;  // points; with fewer confidence is 0; judgement
 constexpr std::size_t kFewestToSplit = 6;  // points, one more than stay; judgement
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
@@ -90,54 +84,6 @@ double planarity_of(const Plane& plane, std::size_t points) {
   return ramp(v[1] / v[2], 0.03, 0.07) * (1 - ramp(v[0] / v[1], 0.4, 0.6));
 }
 
-/// May heights fall into two groups? These leave a fifth of the range empty; this asks for a tenth,
-/// in a row, and does not sort.
-bool may_fall_apart(std::span<const double> heights, double spacing) {
-  constexpr double kBins = 31;  // derived: the highest height is in bin 31, the last bit of `empty`
-  const auto [lowest, highest] = std::ranges::minmax(heights);
-  if (highest - lowest < kApartSpacings * spacing) return false;
-  const double scale = kBins / (highest - lowest);
-  std::uint32_t empty = ~0u;
-  for (const double h : heights) empty &= ~(1u << static_cast<int>(scale * (h - lowest)));
-  return (empty & (empty >> 1) & (empty >> 2)) != 0;
-}
-
-/// Where sorted heights fall into two groups (the division of least variance within, Otsu 1979);
-/// NaN: they do not.
-double gap_between_groups(std::span<const double> heights, double spacing) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // m: no gap
-  const auto count = static_cast<double>(heights.size());
-  const double total = std::accumulate(heights.begin(), heights.end(), 0.0);
-  double below = 0;
-  double best = -1;
-  std::size_t cut = 0;
-  for (std::size_t k = 1; k < heights.size(); ++k) {
-    below += heights[k - 1];
-    const auto n = static_cast<double>(k);
-    const double apart = (total - below) / (count - n) - below / n;
-    if (const double between = n * (count - n) * apart * apart; between > best) {
-      best = between;
-      cut = k;
-    }
-  }
-  const auto mean = [](std::span<const double> some) {
-    return std::accumulate(some.begin(), some.end(), 0.0) / static_cast<double>(some.size());
-  };
-  const auto squares = [](std::span<const double> some, double m) {
-    return std::accumulate(some.begin(), some.end(), 0.0,
-                           [m](double sum, double h) { return sum + (h - m) * (h - m); });
-  };
-  const auto lower = heights.first(cut);
-  const auto upper = heights.subspan(cut);
-  const double low = mean(lower);
-  const double high = mean(upper);
-  const double within = std::sqrt((squares(lower, low) + squares(upper, high)) / count);
-  const double empty = upper.front() - lower.back();
-  const bool two = high - low > kApart * within && empty > kEmpty * (high - low) &&
-                   high - low >= kApartSpacings * spacing;
-  return two ? 0.5 * (upper.front() + lower.back()) : kNone;
-}
-
 // What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
 constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
 constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
@@ -160,9 +106,7 @@ bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
   if (offsets_.size() < kFewestToSplit || axis.isZero()) return false;
   heights_.clear();
   for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
-  if (!may_fall_apart(heights_, spacing)) return false;
-  std::sort(heights_.begin(), heights_.end());
-  const double gap = gap_between_groups(heights_, spacing);
+  const double gap = gap_in(heights_, spacing);
   if (std::isnan(gap)) return false;
   some_.clear();
   for (const Vector3d& offset : offsets_) {

@@ -23,7 +23,9 @@ using test::Clouds;
 
 struct Results {
   std::array<simd::Hit, 3001> hits{};
+  std::array<simd::Hit, 3001> apart{};
   std::size_t hit_count = 0;
+  std::size_t apart_count = 0;
   simd::Row moments[simd::kMoments];
   simd::Row nearest4[4];
   simd::Row nearest8[8];
@@ -34,9 +36,34 @@ struct Results {
   simd::Planes planes;
 };
 
+// Looks within 0.5 for points at least 0.1 above or below the plane, 0.3 aside, or of odd numbers.
+simd::Eyes eyes_at(const CellGrid& grid, const simd::Join& join,
+                   const std::vector<std::uint32_t>& sheets) {
+  simd::Eyes eyes = {};
+  eyes.squared_slope = 0.25f;
+  eyes.sheets = sheets.data();
+  for (std::size_t q = 0; q < join.count; ++q) {
+    const Vector3f normal = grid.points()[join.query + q].normalized();
+    for (Eigen::Index axis = 0; axis < 3; ++axis) eyes.normal[axis][q] = normal[axis];
+    eyes.squared_reach[q] = 0.25f;
+    eyes.least[q] = 0.1f;
+    eyes.squared_tube[q] = 0.09f;
+    eyes.squared_vote[q] = q % 2 == 0 ? 0.01f : -1.f;
+    eyes.sheet[q] = sheets[join.query + q];
+  }
+  return eyes;
+}
+
+std::vector<std::uint32_t> two_sheets(std::size_t count) {
+  std::vector<std::uint32_t> sheets(count);
+  for (std::uint32_t i = 0; i < count; ++i) sheets[i] = i % 3 == 0 ? 1 : 0;
+  return sheets;
+}
+
 Results run(const simd::JoinFunctions& joins, const simd::Join& join, const std::vector<float>& a,
-            const std::vector<float>& b) {
+            const std::vector<float>& b, const simd::Eyes& eyes) {
   Results results;
+  results.apart_count = joins.apart(join, eyes, results.apart.data());
   results.hit_count = joins.within(join, a.data() + join.query, results.hits.data());
   joins.moments(join, a.data() + join.query, results.moments);
   joins.nearest4(join, results.nearest4);
@@ -57,12 +84,14 @@ TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
   std::vector<float> b = a;
   for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
   for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
+  const std::vector<std::uint32_t> sheets = two_sheets(grid.size());
   detail::for_each_neighborhood(
       grid, {.of_points = a, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         const simd::Join join = detail::make_join(grid, first, count, runs);
-        const Results old = run(simd::kJoinsBaseline, join, a, b);
-        const Results now = run(simd::kJoinsV3, join, a, b);
+        const simd::Eyes eyes = eyes_at(grid, join, sheets);
+        const Results old = run(simd::kJoinsBaseline, join, a, b, eyes);
+        const Results now = run(simd::kJoinsV3, join, a, b, eyes);
         EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
       });
 }
@@ -94,6 +123,37 @@ TEST(Joins, FindAllHitsInRisingOrder) {
           grid.within(grid.points()[i], radii[i], near);
         }
         EXPECT_EQ(pairs, near.size());
+      });
+}
+
+TEST(Joins, FindWhatIsOffAPlaneOrOnAnotherSheet) {
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(1003, 0.5));
+  const std::vector<std::uint32_t> sheets = two_sheets(grid.size());
+  const std::vector<float> reach(grid.size(), 0.5f);
+  detail::for_each_neighborhood(
+      grid, {.of_points = reach, .times = 1, .of_cells = {}},
+      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+        const simd::Join join = detail::make_join(grid, first, count, runs);
+        const simd::Eyes eyes = eyes_at(grid, join, sheets);
+        std::vector<simd::Hit> hits(grid.size() + 1);
+        std::vector<std::uint32_t> found(grid.size());
+        const std::size_t n = simd::best_joins().apart(join, eyes, hits.data());
+        for (std::size_t h = 0; h < n; ++h) found[hits[h].candidate] = hits[h].queries;
+        for (std::uint32_t j = 0; j < grid.size(); ++j) {
+          for (std::uint32_t q = 0; q < count; ++q) {
+            const Vector3f& p = grid.points()[first + q];
+            const Vector3f way = grid.points()[j] - p;
+            const float height = p.normalized().dot(way);
+            const float aside = way.squaredNorm() - height * height;
+            const bool off =
+                std::abs(height) > 0.1f && aside <= 0.09f && height * height >= 0.25f * aside;
+            const bool other =
+                q % 2 == 0 && way.squaredNorm() <= 0.01f && sheets[j] != sheets[first + q];
+            const bool near = detail::squared_distance(grid.points()[j], p) <= 0.25f;
+            EXPECT_EQ((found[j] >> q & 1) != 0, near && (off || other));
+          }
+        }
       });
 }
 

@@ -63,6 +63,18 @@ struct Hit {
   std::uint32_t queries;
 };
 
+/// What each point that is asked about looks for: points beside its sheet.
+struct Eyes {
+  Row normal[3];        ///< x, y, z, unit
+  Row squared_reach;    ///< of all that is looked for, m^2
+  Row least;            ///< a point off the plane: its height is above this, m, ...
+  Row squared_tube;     ///< ... its way to the side at most the root of this, m^2, ...
+  float squared_slope;  ///< ... and its height over that way at least the root of this
+  Row squared_vote;     ///< of points of other sheets, m^2; below 0: none is looked for
+  std::uint32_t sheet[kQueries];
+  const std::uint32_t* sheets;  ///< of all points
+};
+
 struct JoinFunctions {
   /// Finds the leaves whose box is within their own reach, or root of squared_radius, of the box
   /// [lower, upper], and joins their points to runs. Leaves are in rising order. `runs` has room
@@ -73,6 +85,9 @@ struct JoinFunctions {
   /// The candidates within squared_radii[l], m^2, of the point query + l, in rising order. `hits`
   /// has room for all candidates and one more; returns how many there are.
   std::size_t (*within)(const Join& join, const float* squared_radii, Hit* hits);
+
+  /// The same for candidates off a point's plane or on other sheets than it.
+  std::size_t (*apart)(const Join& join, const Eyes& eyes, Hit* hits);
 
   /// The moments of all candidates within squared_radii[l], m^2, of the point query + l.
   void (*moments)(const Join& join, const float* squared_radii, Row* rows);

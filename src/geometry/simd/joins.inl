@@ -77,16 +77,16 @@ struct Joins {
     return static_cast<std::uint32_t>(all | all >> 32);
   }
 
-  static std::size_t within(const Join& join, const float* squared_radii, Hit* hits) {
+  // The candidates for which near(q, offset, candidate) is true of a lane of [q, q + kLanes).
+  template <class Near>
+  static inline std::size_t find_hits(const Join& join, Hit* hits, const Near& near) {
     constexpr std::size_t kGroups = kQueries / kLanes;  // registers that hold all queries
     std::size_t count = 0;
-    Floats squared_radius[kGroups];
     Mask bit_of_lane[kGroups];
     for (std::size_t g = 0; g < kGroups; ++g) {
       std::int32_t bits_of_group[kLanes];
       for (std::size_t l = 0; l < kLanes; ++l) bits_of_group[l] = 1 << (g * kLanes + l);
       std::memcpy(&bit_of_lane[g], bits_of_group, sizeof bits_of_group);
-      squared_radius[g] = load(squared_radii + g * kLanes);
     }
     const auto queries = [&]<std::size_t... kGroup>(std::index_sequence<kGroup...>) {
       return std::array<Queries, kGroups>{Queries(join, join.query + kGroup * kLanes)...};
@@ -96,13 +96,37 @@ struct Joins {
     each_candidate(join, [&](std::size_t c) {
       std::uint32_t lanes = 0;
       for (std::size_t g = 0; g < kGroups; ++g) {
-        const Floats squared = queries[g].to(join.points + 3 * c).squared();
-        lanes |= bits(squared <= squared_radius[g], bit_of_lane[g]);
+        const Offset offset = queries[g].to(join.points + 3 * c);
+        lanes |= bits(near(g * kLanes, offset, c), bit_of_lane[g]);
       }
       hits[count] = {static_cast<std::uint32_t>(c), lanes & asked};
       count += (lanes & asked) != 0;
     });
     return count;
+  }
+
+  static std::size_t within(const Join& join, const float* squared_radii, Hit* hits) {
+    return find_hits(join, hits, [squared_radii](std::size_t q, const Offset& d, std::size_t) {
+      return d.squared() <= load(squared_radii + q);
+    });
+  }
+
+  static std::size_t apart(const Join& join, const Eyes& eyes, Hit* hits) {
+    return find_hits(join, hits, [&eyes](std::size_t q, const Offset& d, std::size_t c) {
+      const Floats height = load(eyes.normal[0] + q) * d.x +
+                            (load(eyes.normal[1] + q) * d.y + load(eyes.normal[2] + q) * d.z);
+      const Floats squared = d.x * d.x + (d.y * d.y + d.z * d.z);
+      const Floats level = height * height;
+      const Floats aside = squared - level;
+      const Mask off = ((height < 0.f ? -height : height) > load(eyes.least + q)) &
+                       (aside <= load(eyes.squared_tube + q)) &
+                       (level >= eyes.squared_slope * aside);
+      Mask sheet;
+      std::memcpy(&sheet, eyes.sheet + q, sizeof sheet);
+      const Mask other = (squared <= load(eyes.squared_vote + q)) &
+                         (sheet != same(static_cast<std::int32_t>(eyes.sheets[c])));
+      return (d.squared() <= load(eyes.squared_reach + q)) & (off | other);
+    });
   }
 
   static void moments(const Join& join, const float* squared_radii, Row* rows) {
@@ -241,6 +265,7 @@ struct Joins {
   static constexpr JoinFunctions functions() {
     return {&near,
             &within,
+            &apart,
             &moments,
             &PlaneFits<kLanes / 2>::fit,
             &nearest<4, false>,
