@@ -10,6 +10,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/stream.hpp"
+#include "robot/allowance.hpp"
 #include "robot/trial.hpp"
 #include "ros/robot_guide.hpp"
 
@@ -20,23 +21,19 @@ using Eigen::Vector3d;
 
 constexpr int kTicksALook = 4;      // derived: 250 Hz, a usual robot controller
 constexpr double kLate = 0.1;       // s; judgement: three frames at 30 Hz
-constexpr double kNearby = 0.02;    // m; judgement: what is as near to the tool does not hide it
 constexpr double kStiffness = 500;  // N/m; judgement: as in the other benches
 
-// When the frames of a camera that had arrived at some time were taken, s; 0: there were none.
+// When the frames of a camera arrived and were taken, s.
 class Arrivals {
  public:
-  struct Stamps {
-    double newest = 0;
-    double before = 0;
-  };
   void arrived(double now, double stamp) { frames_.push_back({now, stamp}); }
-  [[nodiscard]] Stamps stamps(double by) const {
-    Stamps found;
+  // Of those that had arrived by then; 0: there were none.
+  [[nodiscard]] double newest(double by) const {
+    double stamp = 0;
     for (const auto& [at, taken] : frames_) {
-      if (at <= by && taken > found.newest) found = {taken, found.newest};
+      if (at <= by) stamp = std::max(stamp, taken);
     }
-    return found;
+    return stamp;
   }
 
  private:
@@ -85,7 +82,7 @@ class Judge {
       score_.unexcused = shown;
       score_.sigma = 1e3 * sigma_at(*answer.target);
     }
-    score_.beyond = std::max(score_.beyond, beyond(*answer.target, shown, now));
+    note_beyond(*answer.target, depth, now);
     score_.late =
         std::max(score_.late, std::min(shown, depth_at(*answer.target, newest(now - kLate))));
     if (last_)
@@ -109,24 +106,23 @@ class Judge {
   }
 
  private:
-  // mm; the ball of the tool counts.
   [[nodiscard]] double depth_at(const Vector3d& x, double t) const {
-    return 1e3 * std::max(trial_.tool_radius - distance_and_normal(trial_.scene, x, t).value, 0.0);
+    return robot::depth_at(trial_, x, t);
   }
   [[nodiscard]] double newest(double by) const {
     double stamp = 0;
-    for (const Arrivals& of : arrivals) stamp = std::max(stamp, of.stamps(by).newest);
+    for (const Arrivals& of : arrivals) stamp = std::max(stamp, of.newest(by));
     return stamp;
   }
-  // How deep a target is, mm, beyond noise (three deviations) and what moved within one frame: it
-  // was as deep in the frame before the newest, too, of every camera. `shown`: in the newest.
-  [[nodiscard]] double beyond(const Vector3d& x, double shown, double now) const {
-    double depth = shown;
-    for (const Arrivals& of : arrivals) {
-      if (depth <= 0) return 0;
-      depth = std::min(depth, depth_at(x, of.stamps(now).before));
-    }
-    return std::max(depth - 3e3 * sigma_at(x), 0.0);
+  void note_beyond(const Vector3d& x, double depth, double now) {
+    const Allowance allowed = allowance(trial_, x, now);
+    if (depth - allowed.mm <= score_.beyond) return;
+    score_.beyond = depth - allowed.mm;
+    score_.where =
+        fmt::format("beyond at {:.3f} s: {:.1f} mm deep, noise {:.1f}, moved {:.1f} in {:.3f} s",
+                    now, depth, allowed.noise, allowed.mm - allowed.noise, allowed.window);
+    for (const Arrivals& of : arrivals)
+      score_.where += fmt::format(", a frame {:.3f} s old", now - of.newest(now));
   }
   [[nodiscard]] double sigma_at(const Vector3d& x) const {
     double most = 0;
@@ -136,24 +132,9 @@ class Judge {
     }
     return most;
   }
-  // Is a place in the middle of some camera's picture, and nothing stands before it?
   [[nodiscard]] bool is_seen(const Vector3d& x, double now) const {
     return std::ranges::any_of(trial_.cameras, [&](const Watcher& watcher) {
-      const Eigen::Isometry3d pose =
-          moved(watcher.options.T_world_camera, watcher.options.motion, now);
-      const Vector3d seen = pose.inverse() * x;
-      const CameraModel& camera = watcher.options.camera;
-      const Pinhole& p = camera.pinhole;
-      constexpr double kRim = 5;  // pixels; judgement: windows there are cut
-      const double u = p.cx + p.fx * seen.x() / seen.z();
-      const double v = p.cy + p.fy * seen.y() / seen.z();
-      if (u < kRim || v < kRim || u > camera.width - kRim || v > camera.height - kRim) return false;
-      const Vector3d way = pose.translation() - x;
-      for (double s = kNearby; s < way.norm(); s += kNearby / 2) {
-        if (distance_and_normal(trial_.scene, x + s * way.normalized(), now).value < kNearby / 4)
-          return false;
-      }
-      return true;
+      return robot::is_seen(trial_, watcher, x, now);
     });
   }
   void went_back(const Vector3d& x, double now) {
