@@ -27,7 +27,7 @@ constexpr double kStiffness = 500;  // N/m; judgement: as in the other benches
 class Arrivals {
  public:
   void arrived(double now, double stamp) { frames_.push_back({now, stamp}); }
-  // Of those that had arrived by then; 0: there were none.
+  // When the newest was taken that had arrived by then; 0: there was none.
   [[nodiscard]] double newest(double by) const {
     double stamp = 0;
     for (const auto& [at, taken] : frames_) {
