@@ -26,7 +26,7 @@ constexpr float kGapTrust = 0.3f;     // confidence, at least
 constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
 constexpr float kGapSpacings = 0.3f;  // least height, in spacings
 
-// Of the squared slope, where points are picked for a closer look: more than rounding takes.
+// Share of the squared slope from which a point is looked at closely: rounding takes less away.
 constexpr float kSafe = 0.999f;  // derived
 
 // Votes of one sheet on another; all are judgement.
