@@ -10,6 +10,7 @@ constexpr palpate::bench::Column<Score> kColumns[] = {{"told", &Score::told},
                                                       {"in sight %", &Score::needless, 1, 100},
                                                       {"deepest mm", &Score::deepest},
                                                       {"unexcused", &Score::unexcused},
+                                                      {"beyond", &Score::beyond},
                                                       {"late", &Score::late},
                                                       {"way back", &Score::back_depth},
                                                       {"jump", &Score::hand_moves}};
@@ -36,8 +37,9 @@ int main(int argc, char** argv) {
           return bench::table_line(name, scores, Columns(kColumns));
         },
         [](const Score& score) {
-          return fmt::format("  sigma {:.1f} mm, back {:.2f} m/s; {}\n", score.sigma,
-                             score.back_speed, score.reasons);
+          return fmt::format("  sigma {:.1f} mm, back {:.2f} m/s; {}\n{}{}", score.sigma,
+                             score.back_speed, score.reasons, score.where,
+                             score.where.empty() ? "" : "\n");
         });
     return 0;
   });

@@ -10,6 +10,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/stream.hpp"
+#include "robot/allowance.hpp"
 #include "robot/trial.hpp"
 #include "ros/robot_guide.hpp"
 
@@ -20,13 +21,13 @@ using Eigen::Vector3d;
 
 constexpr int kTicksALook = 4;      // derived: 250 Hz, a usual robot controller
 constexpr double kLate = 0.1;       // s; judgement: three frames at 30 Hz
-constexpr double kNearby = 0.02;    // m; judgement: what is as near to the tool does not hide it
 constexpr double kStiffness = 500;  // N/m; judgement: as in the other benches
 
-// When the newest frame that had arrived at some time was taken.
+// When the frames of a camera arrived and were taken, s.
 class Arrivals {
  public:
   void arrived(double now, double stamp) { frames_.push_back({now, stamp}); }
+  // When the newest was taken that had arrived by then; 0: there was none.
   [[nodiscard]] double newest(double by) const {
     double stamp = 0;
     for (const auto& [at, taken] : frames_) {
@@ -53,16 +54,15 @@ ros::RobotGuide::Answer old_answer(const ServoState& state) {
 
 class Judge {
  public:
-  explicit Judge(const Trial& trial) : trial_(trial) {}
+  explicit Judge(const Trial& trial) : arrivals(trial.cameras.size()), trial_(trial) {}
 
-  Arrivals arrivals;
+  std::vector<Arrivals> arrivals;  // of the cameras
 
   void take(const ros::RobotGuide::Answer& answer, const ServoState& state, double now) {
     ++looks_;
     if (answer.reason.empty()) {
       excused_ = false;
-    } else if (excused_ =
-                   excused_ || arrivals.newest(now) == 0 || !is_seen(state.contact.proxy, now);
+    } else if (excused_ = excused_ || newest(now) == 0 || !is_seen(state.contact.proxy, now);
                !excused_) {
       needless_ += kTicksALook * kTick;
     }
@@ -76,14 +76,15 @@ class Judge {
     back_.reset();
     ++score_.told;
     const double depth = depth_at(*answer.target, now);
-    const double shown = std::min(depth, depth_at(*answer.target, arrivals.newest(now)));
+    const double shown = std::min(depth, depth_at(*answer.target, newest(now)));
     score_.deepest = std::max(score_.deepest, depth);
     if (shown > score_.unexcused) {
       score_.unexcused = shown;
       score_.sigma = 1e3 * sigma_at(*answer.target);
     }
-    score_.late = std::max(score_.late,
-                           std::min(shown, depth_at(*answer.target, arrivals.newest(now - kLate))));
+    note_beyond(*answer.target, depth, now);
+    score_.late =
+        std::max(score_.late, std::min(shown, depth_at(*answer.target, newest(now - kLate))));
     if (last_)
       score_.hand_moves = std::max(
           score_.hand_moves, 1e3 * ((*answer.target - *last_).norm() - (state.hip - hip_).norm()));
@@ -105,9 +106,23 @@ class Judge {
   }
 
  private:
-  // mm; the ball of the tool counts.
   [[nodiscard]] double depth_at(const Vector3d& x, double t) const {
-    return 1e3 * std::max(trial_.tool_radius - distance_and_normal(trial_.scene, x, t).value, 0.0);
+    return robot::depth_at(trial_, x, t);
+  }
+  [[nodiscard]] double newest(double by) const {
+    double stamp = 0;
+    for (const Arrivals& of : arrivals) stamp = std::max(stamp, of.newest(by));
+    return stamp;
+  }
+  void note_beyond(const Vector3d& x, double depth, double now) {
+    const Allowance allowed = allowance(trial_, x, now);
+    if (depth - allowed.mm <= score_.beyond) return;
+    score_.beyond = depth - allowed.mm;
+    score_.where =
+        fmt::format("beyond at {:.3f} s: {:.1f} mm deep, noise {:.1f}, moved {:.1f} in {:.3f} s",
+                    now, depth, allowed.noise, allowed.mm - allowed.noise, allowed.window);
+    for (const Arrivals& of : arrivals)
+      score_.where += fmt::format(", a frame {:.3f} s old", now - of.newest(now));
   }
   [[nodiscard]] double sigma_at(const Vector3d& x) const {
     double most = 0;
@@ -117,24 +132,9 @@ class Judge {
     }
     return most;
   }
-  // Is a place in the middle of some camera's picture, and nothing stands before it?
   [[nodiscard]] bool is_seen(const Vector3d& x, double now) const {
     return std::ranges::any_of(trial_.cameras, [&](const Watcher& watcher) {
-      const Eigen::Isometry3d pose =
-          moved(watcher.options.T_world_camera, watcher.options.motion, now);
-      const Vector3d seen = pose.inverse() * x;
-      const CameraModel& camera = watcher.options.camera;
-      const Pinhole& p = camera.pinhole;
-      constexpr double kRim = 5;  // pixels; judgement: windows there are cut
-      const double u = p.cx + p.fx * seen.x() / seen.z();
-      const double v = p.cy + p.fy * seen.y() / seen.z();
-      if (u < kRim || v < kRim || u > camera.width - kRim || v > camera.height - kRim) return false;
-      const Vector3d way = pose.translation() - x;
-      for (double s = kNearby; s < way.norm(); s += kNearby / 2) {
-        if (distance_and_normal(trial_.scene, x + s * way.normalized(), now).value < kNearby / 4)
-          return false;
-      }
-      return true;
+      return robot::is_seen(trial_, watcher, x, now);
     });
   }
   void went_back(const Vector3d& x, double now) {
@@ -170,9 +170,9 @@ Score play(const Trial& trial, Rule rule) {
     feed.camera = std::make_unique<SimulatedCamera>(trial.scene, watcher.options);
     feed.stream = std::make_unique<SimulatedStream>(
         *feed.camera, source.name(),
-        [&](DepthFrame frame, const Source::StartTime& start) {
+        [&, of = feeds.size() - 1](DepthFrame frame, const Source::StartTime& start) {
           if (watcher.fault && !watcher.fault(frame)) return;
-          judge.arrivals.arrived(now, frame.stamp);
+          judge.arrivals[of].arrived(now, frame.stamp);
           source.push(frame, start);
         },
         SimulatedStreamOptions{.latency = watcher.delay + 0.01, .lead = 0.01});

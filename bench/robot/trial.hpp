@@ -60,12 +60,14 @@ struct Score {
   double needless = 0;   ///< share of it in waits that began with the tool in plain sight
   double deepest = 0;    ///< of targets
   double unexcused = 0;  ///< and deep in the newest frame that had arrived, too: nothing excuses it
+  double beyond = 0;     ///< deepest beyond noise and one frame's motion (allowance.hpp)
   double late = 0;       ///< and deep in one that had arrived 0.1 s before
   double sigma = 0;      ///< of a pixel there, mm
   double back_depth = 0;  ///< deepest place that it was told on its way back
   double back_speed = 0;  ///< m/s
   double hand_moves = 0;  ///< longest jump of a target beyond the hand's own way in that time
   std::string reasons;    ///< s of waiting each
+  std::string where;      ///< the target that was deepest beyond; empty: none was
 };
 
 enum class Rule { seen_free, proxy };  ///< `proxy`: as before places were looked at

@@ -47,7 +47,7 @@ McapWriter::McapWriter(std::string path, const Options& options)
   Bytes data(kMagic.begin(), kMagic.end());
   Record(data, Op::header).text(options_.profile).text("palpate");
   try {
-    commit(data, totals_);
+    commit(data, summary_.totals);
   } catch (const Error&) {
     ::close(file_);
     throw;
@@ -64,53 +64,30 @@ McapWriter::~McapWriter() {
 }
 
 std::uint16_t McapWriter::add_channel(const Channel& channel) {
-  if (channels_.size() >= kMostChannels) {
+  if (summary_.channels.size() >= kMostChannels) {
     throw Error(fmt::format("{}: there are more than {} channels; record fewer topics", path_,
                             kMostChannels));
   }
-  channels_.push_back({.channel = channel, .schema = schema_number(channel.schema), .index = {}});
-  totals_.counts.push_back(0);
-  return static_cast<std::uint16_t>(channels_.size());
-}
-
-// 0: none.
-std::uint16_t McapWriter::schema_number(const Schema& schema) {
-  if (schema == Schema{}) return 0;
-  auto found = std::ranges::find(schemas_, schema);
-  if (found == schemas_.end()) found = schemas_.insert(found, schema);
-  return static_cast<std::uint16_t>(found - schemas_.begin() + 1);
+  return summary_.add(channel);
 }
 
 void McapWriter::write(std::uint16_t channel, const Stamp& stamp, View data) {
   check_open();
-  if (channel == 0 || channel > channels_.size() || data.size() > kLargestMessage) {
+  if (channel == 0 || channel > summary_.channels.size() || data.size() > kLargestMessage) {
     throw Error(
         fmt::format("{}: a message of {} bytes for channel {} is refused; there are {} "
                     "channels, and {} bytes are the most",
-                    path_, data.size(), channel, channels_.size(), kLargestMessage));
+                    path_, data.size(), channel, summary_.channels.size(), kLargestMessage));
   }
   advance(stamp.log);
-  State& state = channels_[channel - 1u];
+  McapSummary::ChannelState& state = summary_.channels[channel - 1u];
   if (chunk_.empty()) chunk_began_ = stamp.log;
-  describe(state, channel);
+  summary_.describe(chunk_, channel);
   state.index.emplace_back(stamp.log, chunk_.size());
   Record(chunk_, Op::message)
       .numbers(channel, state.sequence++, stamp.log, stamp.publish)
       .bytes(data);
   if (chunk_.size() >= options_.chunk_size) write_chunk();
-}
-
-// Writes what a reader has to know of a channel before its first message.
-void McapWriter::describe(State& state, std::uint16_t number) {
-  if (state.since != UINT64_MAX) return;
-  state.since = totals_.chunks;
-  const auto has = [&](const State& other) {
-    return &other != &state && other.schema == state.schema && other.since != UINT64_MAX;
-  };
-  if (state.schema != 0 && std::ranges::none_of(channels_, has)) {
-    append_schema(chunk_, state.schema);
-  }
-  append_channel(chunk_, number);
 }
 
 void McapWriter::advance(std::uint64_t now) {
@@ -125,18 +102,18 @@ void McapWriter::advance(std::uint64_t now) {
 
 void McapWriter::write_chunk() {
   if (chunk_.empty()) return;
-  Totals after = totals_;
+  McapSummary::Totals after = summary_.totals;
   std::uint64_t start = UINT64_MAX;
   std::uint64_t end = 0;
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
+  for (std::size_t i = 0; i < summary_.channels.size(); ++i) {
     // Sorts by time, then by offset.
-    std::ranges::sort(channels_[i].index);
-    for (const auto& [time, offset] : channels_[i].index) {
+    std::ranges::sort(summary_.channels[i].index);
+    for (const auto& [time, offset] : summary_.channels[i].index) {
       start = std::min(start, time);
       end = std::max(end, time);
     }
-    after.counts[i] += channels_[i].index.size();
-    after.messages += channels_[i].index.size();
+    after.counts[i] += summary_.channels[i].index.size();
+    after.messages += summary_.channels[i].index.size();
   }
   after.start = std::min(after.start, start);
   after.end = std::max(after.end, end);
@@ -145,7 +122,7 @@ void McapWriter::write_chunk() {
   append_chunk(data, start, end);
   commit(data, std::move(after));
   chunk_.clear();
-  for (State& state : channels_) state.index.clear();
+  for (McapSummary::ChannelState& state : summary_.channels) state.index.clear();
 }
 
 // The chunk and the places of its messages; and where both are, for the file's end.
@@ -158,16 +135,16 @@ void McapWriter::append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end
       .numbers(std::uint64_t{bytes.size()})
       .bytes(bytes);
   const std::uint64_t length = out.size();
-  Record place(index_[0], Op::chunk_index);
+  Record place(summary_.index[0], Op::chunk_index);
   place.numbers(start, end, end_, length);
   place.list([&] {
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      if (channels_[i].index.empty()) continue;
+    for (std::size_t i = 0; i < summary_.channels.size(); ++i) {
+      if (summary_.channels[i].index.empty()) continue;
       const auto number = static_cast<std::uint16_t>(i + 1);
       place.numbers(number, end_ + out.size());
       Record index(out, Op::message_index);
       index.numbers(number).list([&] {
-        for (const auto& [time, offset] : channels_[i].index) index.numbers(time, offset);
+        for (const auto& [time, offset] : summary_.channels[i].index) index.numbers(time, offset);
       });
     }
   });
@@ -192,12 +169,12 @@ void McapWriter::attach(const Attachment& attachment) {
       .numbers(std::uint64_t{attachment.data.size()})
       .bytes(attachment.data)
       .crc();
-  Record(index_[1], Op::attachment_index)
+  Record(summary_.index[1], Op::attachment_index)
       .numbers(end_, std::uint64_t{data.size()}, attachment.log_time, attachment.create_time,
                std::uint64_t{attachment.data.size()})
       .text(attachment.name)
       .text(attachment.media_type);
-  Totals after = totals_;
+  McapSummary::Totals after = summary_.totals;
   ++after.attachments;
   commit(data, std::move(after));
 }
@@ -207,26 +184,27 @@ void McapWriter::add(const Metadata& metadata) {
   write_chunk();
   Bytes data;
   Record(data, Op::metadata).text(metadata.name).words(metadata.words);
-  Record(index_[2], Op::metadata_index)
+  Record(summary_.index[2], Op::metadata_index)
       .numbers(end_, std::uint64_t{data.size()})
       .text(metadata.name);
-  Totals after = totals_;
+  McapSummary::Totals after = summary_.totals;
   ++after.metadata;
   commit(data, std::move(after));
 }
 
 // Puts `data` behind the data of the file and, mostly, closes it again.
-void McapWriter::commit(Bytes& data, Totals after) {
+void McapWriter::commit(Bytes& data, McapSummary::Totals after) {
   const std::uint64_t end = end_ + data.size();
-  for (std::size_t i = 0; i < index_.size(); ++i) after.indexed[i] = index_[i].size();
+  for (std::size_t i = 0; i < summary_.index.size(); ++i)
+    after.indexed[i] = summary_.index[i].size();
   const bool ends = after.indexed[0] < kSmallEnding;
   if (ends) {
-    const Bytes tail = ending(after, end);
+    const Bytes tail = summary_.ending(after, end);
     data.insert(data.end(), tail.begin(), tail.end());
   }
   if (::ftruncate(file_, static_cast<off_t>(end_)) != 0 || !put(end_, data)) give_up(errno);
   end_ = end;
-  totals_ = std::move(after);
+  summary_.totals = std::move(after);
   ended_ = ends;
 }
 
@@ -241,7 +219,7 @@ void McapWriter::close() {
 
 // Writes the ending and flushes the file to disk.
 void McapWriter::sync() {
-  if (!ended_ && !put(end_, ending(totals_, end_))) give_up(errno);
+  if (!ended_ && !put(end_, summary_.ending(summary_.totals, end_))) give_up(errno);
   ended_ = true;
   if (::fdatasync(file_) != 0 && errno != EINVAL) give_up(errno);  // EINVAL: a pipe, /dev/null
 }
@@ -267,12 +245,12 @@ void McapWriter::check_open() const {
 void McapWriter::give_up(int reason) {
   failed_ = true;
   const bool as_it_was = file_ >= 0 && ::ftruncate(file_, static_cast<off_t>(end_)) == 0 &&
-                         put(end_, ending(totals_, end_));
-  throw Error(
-      fmt::format("{}: cannot be written: {}; {}. Free some space and record to another file",
-                  path_, std::strerror(reason),
-                  as_it_was ? fmt::format("it can be read and holds {} messages", totals_.messages)
-                            : "'palpate bag recover' reads what it holds"));
+                         put(end_, summary_.ending(summary_.totals, end_));
+  throw Error(fmt::format(
+      "{}: cannot be written: {}; {}. Free some space and record to another file", path_,
+      std::strerror(reason),
+      as_it_was ? fmt::format("it can be read and holds {} messages", summary_.totals.messages)
+                : "'palpate bag recover' reads what it holds"));
 }
 
 }  // namespace palpate::bag

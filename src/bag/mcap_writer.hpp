@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "bag/mcap_format.hpp"
+#include "bag/mcap_summary.hpp"
 #include "message/schema.hpp"
 
 namespace palpate::bag {
@@ -75,37 +74,9 @@ class McapWriter {
   void close();
 
  private:
-  struct State {
-    Channel channel;
-    std::uint16_t schema = 0;
-    std::uint64_t since = UINT64_MAX;  // the chunk that holds it
-    std::uint32_t sequence = 0;
-    // Log times and offsets of messages in the growing chunk.
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;
-  };
-
-  // Totals of the file so far; of index_, its length in bytes.
-  struct Totals {
-    std::uint64_t messages = 0;
-    std::uint64_t start = UINT64_MAX;
-    std::uint64_t end = 0;
-    std::uint32_t chunks = 0;
-    std::uint32_t attachments = 0;
-    std::uint32_t metadata = 0;
-    std::vector<std::uint64_t> counts;  // of each channel
-    std::array<std::size_t, 3> indexed{};
-  };
-
-  std::uint16_t schema_number(const Schema& schema);
-  void describe(State& state, std::uint16_t number);
   void write_chunk();
   void append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end);
-  void commit(Bytes& data, Totals after);
-  // The end of a file whose data end at byte `at`.
-  [[nodiscard]] Bytes ending(const Totals& totals, std::uint64_t at) const;
-  void append_schema(Bytes& out, std::uint16_t number) const;
-  void append_channel(Bytes& out, std::uint16_t number) const;
-  void append_statistics(Bytes& out, const Totals& totals) const;
+  void commit(Bytes& data, McapSummary::Totals after);
   [[nodiscard]] bool put(std::uint64_t at, const Bytes& data) const;
   void sync();
   void check_open() const;
@@ -115,14 +86,11 @@ class McapWriter {
   Options options_;
   int file_ = -1;
   bool failed_ = false;
-  bool ended_ = false;           // the file is closed as it is
-  std::uint64_t end_ = 0;        // of its data
-  std::uint64_t synced_ = 0;     // when
-  bool began_ = false;           // there is a time
-  std::vector<Schema> schemas_;  // the first is number 1
-  std::vector<State> channels_;  // as well
-  Totals totals_;
-  std::array<Bytes, 3> index_;  // records of chunks, attachments, metadata
+  bool ended_ = false;        // the file is closed as it is
+  std::uint64_t end_ = 0;     // of its data
+  std::uint64_t synced_ = 0;  // when
+  bool began_ = false;        // there is a time
+  McapSummary summary_;
 
   Bytes chunk_;  // that grows
   std::uint64_t chunk_began_ = 0;

@@ -38,8 +38,8 @@ SharedLibrary::SharedLibrary(const std::vector<std::string>& names, std::string 
   throw Error(fmt::format("the library {} cannot be loaded ({}). {}", name_, reason, remedy_));
 }
 
-void* SharedLibrary::address(const char* function) const {
-  if (void* const found = ::dlsym(handle_.get(), function)) return found;
+SharedLibrary::Found SharedLibrary::operator[](const char* function) const {
+  if (void* const found = ::dlsym(handle_.get(), function)) return {found};
   throw Error(
       fmt::format("the library {} has no function {}: it is too old or a different library. {}",
                   name_, function, remedy_));

@@ -22,16 +22,18 @@ class SharedLibrary {
   /// but broken.
   SharedLibrary(const std::vector<std::string>& names, std::string remedy, Unload unload);
 
-  /// Sets `pointer` to a function of the library.
+  /// A function of the library, for the pointer that it initialises.
+  struct Found {
+    void* address;
+    template <class Function>
+    operator Function*() const {  // NOLINT(google-explicit-constructor)
+      return reinterpret_cast<Function*>(address);
+    }
+  };
   /// @throws Error when it has none of that name.
-  template <class Function>
-  void find(const char* function, Function*& pointer) const {
-    pointer = reinterpret_cast<Function*>(address(function));
-  }
+  [[nodiscard]] Found operator[](const char* function) const;
 
  private:
-  [[nodiscard]] void* address(const char* function) const;
-
   std::string name_;
   std::string remedy_;
   std::shared_ptr<void> handle_;

@@ -4,9 +4,6 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "dds/payload.hpp"
 #include "palpate/base/error.hpp"
 

@@ -2,7 +2,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "depth/window_fits.hpp"
 #include "geometry/parallel.hpp"

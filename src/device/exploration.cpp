@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <span>
 #include <vector>
 
 #include "base/requirement.hpp"

@@ -42,26 +42,7 @@ struct ForceDimensionLibrary {
       : library({file},
                 "It is part of Force Dimension's SDK 3 for Linux (forcedimension.com): copy it to "
                 "/usr/local/lib and run ldconfig; 'palpate doctor' shows what is missing",
-                SharedLibrary::Unload::never) {
-    library.find("dhdGetDeviceCount", count);
-    library.find("dhdOpenID", open);
-    library.find("dhdClose", close);
-    library.find("dhdGetSystemName", title);
-    library.find("dhdGetStatus", status);
-    library.find("dhdEnableForce", enable_force);
-    library.find("dhdEnableExpertMode", enable_expert_mode);
-    library.find("dhdDisableExpertMode", disable_expert_mode);
-    library.find("dhdSetWatchdog", set_watchdog);
-    library.find("dhdGetPosition", position);
-    library.find("dhdGetLinearVelocity", velocity);
-    library.find("dhdGetButtonMask", buttons);
-    library.find("dhdHasWrist", has_wrist);
-    library.find("dhdHasGripper", has_gripper);
-    library.find("dhdGetOrientationFrame", orientation);
-    library.find("dhdGetGripperGap", gripper);
-    library.find("dhdSetForceAndTorqueAndGripperForce", set_force);
-    library.find("dhdErrorGetLastStr", last_error);
-  }
+                SharedLibrary::Unload::never) {}
 
   // The last error in this thread.
   [[nodiscard]] std::string error_text() const {
@@ -70,25 +51,26 @@ struct ForceDimensionLibrary {
   }
 
   SharedLibrary library;
-  int (*count)() = nullptr;  // of devices, those in use too
-  int (*open)(char index) = nullptr;
-  int (*close)(char id) = nullptr;
-  const char* (*title)(char id) = nullptr;
-  int (*status)(int* flags, char id) = nullptr;
-  int (*enable_force)(unsigned char on, char id) = nullptr;
-  int (*enable_expert_mode)() = nullptr;
-  int (*disable_expert_mode)() = nullptr;
-  int (*set_watchdog)(unsigned char duration, char id) = nullptr;  // in 125 us
-  int (*position)(double* x, double* y, double* z, char id) = nullptr;
-  int (*velocity)(double* x, double* y, double* z, char id) = nullptr;
-  unsigned (*buttons)(char id) = nullptr;
-  bool (*has_wrist)(char id) = nullptr;
-  bool (*has_gripper)(char id) = nullptr;
-  int (*orientation)(double rows[3][3], char id) = nullptr;  // from the tool's axes to the base's
-  int (*gripper)(double* gap, char id) = nullptr;
+  int (*count)() = library["dhdGetDeviceCount"];  // of devices, those in use too
+  int (*open)(char index) = library["dhdOpenID"];
+  int (*close)(char id) = library["dhdClose"];
+  const char* (*title)(char id) = library["dhdGetSystemName"];
+  int (*status)(int* flags, char id) = library["dhdGetStatus"];
+  int (*enable_force)(unsigned char on, char id) = library["dhdEnableForce"];
+  int (*enable_expert_mode)() = library["dhdEnableExpertMode"];
+  int (*disable_expert_mode)() = library["dhdDisableExpertMode"];
+  int (*set_watchdog)(unsigned char duration, char id) = library["dhdSetWatchdog"];  // in 125 us
+  int (*position)(double* x, double* y, double* z, char id) = library["dhdGetPosition"];
+  int (*velocity)(double* x, double* y, double* z, char id) = library["dhdGetLinearVelocity"];
+  unsigned (*buttons)(char id) = library["dhdGetButtonMask"];
+  bool (*has_wrist)(char id) = library["dhdHasWrist"];
+  bool (*has_gripper)(char id) = library["dhdHasGripper"];
+  // From the tool's axes to the base's.
+  int (*orientation)(double rows[3][3], char id) = library["dhdGetOrientationFrame"];
+  int (*gripper)(double* gap, char id) = library["dhdGetGripperGap"];
   int (*set_force)(double x, double y, double z, double around_x, double around_y, double around_z,
-                   double gripper, char id) = nullptr;
-  const char* (*last_error)() = nullptr;
+                   double gripper, char id) = library["dhdSetForceAndTorqueAndGripperForce"];
+  const char* (*last_error)() = library["dhdErrorGetLastStr"];
 };
 
 // The maker's x is towards the operator, y to the right, z up.

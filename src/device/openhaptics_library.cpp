@@ -32,27 +32,7 @@ std::string text_or_empty(const char* text) {
 }  // namespace
 
 OpenHapticsLibrary::OpenHapticsLibrary(const std::string& file)
-    : library(names_of(file), kBroughtBy, SharedLibrary::Unload::never) {
-  library.find("hdInitDevice", init_device);
-  library.find("hdDisableDevice", disable_device);
-  library.find("hdMakeCurrentDevice", make_current);
-  library.find("hdEnable", enable);
-  library.find("hdDisable", disable);
-  library.find("hdGetError", get_error);
-  library.find("hdGetErrorString", error_name);
-  library.find("hdBeginFrame", begin_frame);
-  library.find("hdEndFrame", end_frame);
-  library.find("hdGetDoublev", get_numbers);
-  library.find("hdGetIntegerv", get_integers);
-  library.find("hdGetString", get_name);
-  library.find("hdSetDoublev", set_numbers);
-  library.find("hdCheckCalibration", check_calibration);
-  library.find("hdUpdateCalibration", update_calibration);
-  library.find("hdStartScheduler", start_scheduler);
-  library.find("hdStopScheduler", stop_scheduler);
-  library.find("hdScheduleAsynchronous", schedule);
-  library.find("hdUnschedule", unschedule);
-}
+    : library(names_of(file), kBroughtBy, SharedLibrary::Unload::never) {}
 
 unsigned OpenHapticsLibrary::take_errors() const noexcept {
   const unsigned newest = get_error().code;

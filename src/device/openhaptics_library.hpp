@@ -96,27 +96,28 @@ struct OpenHapticsLibrary {
   [[nodiscard]] std::string describe(unsigned code) const;
 
   SharedLibrary library;
-  Device (*init_device)(Name configuration) = nullptr;
-  void (*disable_device)(Device device) = nullptr;
-  void (*make_current)(Device device) = nullptr;
-  void (*enable)(unsigned capability) = nullptr;
-  void (*disable)(unsigned capability) = nullptr;
-  Failure (*get_error)() = nullptr;  // the newest, and removes it
-  Name (*error_name)(unsigned code) = nullptr;
+  Device (*init_device)(Name configuration) = library["hdInitDevice"];
+  void (*disable_device)(Device device) = library["hdDisableDevice"];
+  void (*make_current)(Device device) = library["hdMakeCurrentDevice"];
+  void (*enable)(unsigned capability) = library["hdEnable"];
+  void (*disable)(unsigned capability) = library["hdDisable"];
+  Failure (*get_error)() = library["hdGetError"];  // the newest, and removes it
+  Name (*error_name)(unsigned code) = library["hdGetErrorString"];
 
-  void (*begin_frame)(Device device) = nullptr;
-  void (*end_frame)(Device device) = nullptr;
-  void (*get_numbers)(unsigned what, double* numbers) = nullptr;
-  void (*get_integers)(unsigned what, int* numbers) = nullptr;
-  Name (*get_name)(unsigned what) = nullptr;
-  void (*set_numbers)(unsigned what, const double* numbers) = nullptr;
-  unsigned (*check_calibration)() = nullptr;
-  void (*update_calibration)(unsigned style) = nullptr;
+  void (*begin_frame)(Device device) = library["hdBeginFrame"];
+  void (*end_frame)(Device device) = library["hdEndFrame"];
+  void (*get_numbers)(unsigned what, double* numbers) = library["hdGetDoublev"];
+  void (*get_integers)(unsigned what, int* numbers) = library["hdGetIntegerv"];
+  Name (*get_name)(unsigned what) = library["hdGetString"];
+  void (*set_numbers)(unsigned what, const double* numbers) = library["hdSetDoublev"];
+  unsigned (*check_calibration)() = library["hdCheckCalibration"];
+  void (*update_calibration)(unsigned style) = library["hdUpdateCalibration"];
 
-  void (*start_scheduler)() = nullptr;
-  void (*stop_scheduler)() = nullptr;
-  Handle (*schedule)(Callback* callback, void* data, unsigned short priority) = nullptr;
-  void (*unschedule)(Handle handle) = nullptr;
+  void (*start_scheduler)() = library["hdStartScheduler"];
+  void (*stop_scheduler)() = library["hdStopScheduler"];
+  Handle (*schedule)(Callback* callback, void* data,
+                     unsigned short priority) = library["hdScheduleAsynchronous"];
+  void (*unschedule)(Handle handle) = library["hdUnschedule"];
 };
 
 /// Sorts the library's one list of errors by device, so that each device fails for its own errors

@@ -22,6 +22,10 @@ enum Label : std::uint8_t {
 };
 static_assert(kAcross == simd::kLabels - 1);
 
+/// Sheets whose normals face away from each other by this cosine or more may be the sides of a
+/// plate, which is kept from cutting itself off (docs/method.md 2.8); judgement.
+inline constexpr double kBackToBack = 0.8;
+
 /// The position of a proxy, in free space or on the surface, and its contact normal.
 struct Stance {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world

@@ -15,7 +15,6 @@ using Eigen::Vector3f;
 
 // Signs (docs/method.md 2.7); all are judgement.
 constexpr float kUnsharp = 2;         // residuals that a height has to exceed to tell a side
-constexpr double kHiddenVote = -0.5;  // factor of a hidden point, which speaks for the other side
 constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
 constexpr double kLeastVote = 1e-3;   // sum of weights times agreements: less is no vote
 
@@ -25,6 +24,7 @@ constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do n
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one sheet
+constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
 constexpr float kHiddenView = 2.6f;     // R from the eye: points within tell if a sheet is hidden
 
 // They bound the pairs that are compared (judgement).
@@ -139,7 +139,7 @@ void Facing::decide_signs(bool continued) noexcept {
     // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1) * (hidden ? kHiddenVote : 1.0);
+    if (!hidden) now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1);
   }
   int beside = 0;  // of parts whose normals point outward, as they are seen
   for (const Part& part : std::span(now_.parts).first(now_.part_count)) {
@@ -161,6 +161,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double all[simd::kLabels] = {};
   const auto sign = static_cast<float>(sign_of(now_.parts[sheet.part]));
   double planes[simd::kLabels] = {};
+  double beyond[simd::kLabels] = {};
   each_meeting(
       sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
         const float length = way.norm();
@@ -169,6 +170,8 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
         planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
         above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
         all[q.label] += w;
+        const float unsharp = kUnsharp * std::max(p.residual, q.residual);
+        if (-sign * p.normal.dot(way) > kBeyond * p.radius + unsharp) beyond[q.label] += w;
       });
   int same = -1;
   for (int k = 0; k < simd::kLabels; ++k) {
@@ -184,6 +187,9 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
                     : all[kBehind] > all[kAcross] ? kBehind
                                                   : kAcross;
   const bool concave = above[other] >= 0;
+  // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
+  const bool plate = parallel[other] < -kBackToBack * all[other];
+  if (other == kInFront && !plate && beyond[other] > kLeastMeeting) return kAcross;
   if (other == kBehind && concave) return kInFront;
   if (other == kAcross && !concave) return kInFront;
   return concave ? kAcross : kBehind;

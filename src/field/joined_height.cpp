@@ -65,9 +65,6 @@ using Eigen::Vector3d;
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
 
-// Cosine from which on sheets may be sides of a plate; judgement.
-constexpr double kBackToBack = 0.8;
-
 /// Can the surface of these normals be told here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
   if (!(sums.v > least)) return false;

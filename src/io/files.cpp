@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <new>
-#include <utility>
 
 #include "io/cloud_builder.hpp"
 #include "io/depth_image.hpp"

@@ -28,24 +28,16 @@ struct LaszipLibrary {
 
   // Throws Error when `name` cannot be loaded or lacks a function.
   explicit LaszipLibrary(const std::string& name)
-      : library({name}, "", SharedLibrary::Unload::with_the_last_copy) {
-    library.find("laszip_create", create);
-    library.find("laszip_destroy", destroy);
-    library.find("laszip_open_reader", open_reader);
-    library.find("laszip_close_reader", close_reader);
-    library.find("laszip_get_point_pointer", get_point_pointer);
-    library.find("laszip_read_point", read_point);
-    library.find("laszip_get_error", get_error);
-  }
+      : library({name}, "", SharedLibrary::Unload::with_the_last_copy) {}
 
   SharedLibrary library;
-  int (*create)(Handle*) = nullptr;
-  int (*destroy)(Handle) = nullptr;
-  int (*open_reader)(Handle, const char* file, int* is_compressed) = nullptr;
-  int (*close_reader)(Handle) = nullptr;
-  int (*get_point_pointer)(Handle, std::byte** point) = nullptr;
-  int (*read_point)(Handle) = nullptr;
-  int (*get_error)(Handle, char** message) = nullptr;
+  int (*create)(Handle*) = library["laszip_create"];
+  int (*destroy)(Handle) = library["laszip_destroy"];
+  int (*open_reader)(Handle, const char* file, int* is_compressed) = library["laszip_open_reader"];
+  int (*close_reader)(Handle) = library["laszip_close_reader"];
+  int (*get_point_pointer)(Handle, std::byte** point) = library["laszip_get_point_pointer"];
+  int (*read_point)(Handle) = library["laszip_read_point"];
+  int (*get_error)(Handle, char** message) = library["laszip_get_error"];
 };
 
 std::optional<LaszipLibrary> load_laszip(std::span<const std::string> names) {

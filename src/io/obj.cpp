@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <utility>
 
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"

@@ -5,7 +5,6 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 

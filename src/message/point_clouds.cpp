@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstring>
 #include <optional>
-#include <string_view>
 
 #include "io/cloud_builder.hpp"
 #include "io/text_scanner.hpp"

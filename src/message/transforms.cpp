@@ -11,7 +11,7 @@ namespace palpate::message {
 namespace {
 
 constexpr double kKept = 10;            // s of moving frames (judgement)
-constexpr double kGap = 0.25;           // s; motion is known over twice as much (judgement)
+constexpr double kWidestGap = 0.5;      // s; no pose is interpolated over more (judgement)
 constexpr std::size_t kFrames = 4096;   // frames of a robot (judgement)
 constexpr std::size_t kPoses = 20'000;  // of one frame: kKept at 2 kHz (derived)
 constexpr double kNanoseconds = 1e9;
@@ -117,7 +117,7 @@ std::optional<Eigen::Isometry3d> Transforms::at(const Link& link, double stamp) 
   if (after->stamp == stamp) return after->pose;
   if (after == link.poses.begin()) return {};
   const Known& before = *(after - 1);
-  if (after->stamp - before.stamp > 2 * kGap) return {};
+  if (after->stamp - before.stamp > kWidestGap) return {};
   return between(before.pose, after->pose, (stamp - before.stamp) / (after->stamp - before.stamp));
 }
 

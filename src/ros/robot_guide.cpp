@@ -51,52 +51,51 @@ Reason broken_way(const ServoState& state) {
   return {};
 }
 
-}  // namespace
-
-std::vector<RobotGuide::Witness> RobotGuide::witnesses_of(const Scene& scene,
-                                                          const std::vector<std::string>& names) {
-  std::vector<Witness> found;
+std::vector<const Source*> sources_of(const Scene& scene, const std::vector<std::string>& names) {
+  std::vector<const Source*> found;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const Source& source = scene.source(i);
-    if (names.empty() || std::ranges::count(names, source.name()) > 0) found.push_back({&source});
+    if (names.empty() || std::ranges::count(names, source.name()) > 0) found.push_back(&source);
   }
   for (const std::string& name : names) {
-    const auto is_it = [&](const Witness& witness) { return witness.source->name() == name; };
+    const auto is_it = [&](const Source* source) { return source->name() == name; };
     if (std::ranges::none_of(found, is_it))
       throw Error(fmt::format("robot: no source is called '{}'; name one of the run's", name));
   }
   return found;
 }
 
+}  // namespace
+
 RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options,
                        double tool_radius)
-    : options_(options),
-      tool_radius_(tool_radius),
-      witnesses_(witnesses_of(scene, options.sources)) {
-  for (const Witness& witness : witnesses_) (void)witness.source->seen({}, 0);  // asks for frames
+    : options_(options), tool_radius_(tool_radius), sources_(sources_of(scene, options.sources)) {
+  for (const Source* source : sources_) (void)source->seen({}, 0);  // asks for frames
 }
 
 // The highest answer of the sources counts, in the order of Seen::Says. But free gives way to solid
-// where its frame is older than kStays, or than the moment when the solid came. Only the tool and
-// the robot stay where they are for long enough to remember that moment for them.
-RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now, Asked asked) {
+// where its frame is older than kStays, or than the moment when the solid came. `memory`: of that
+// moment, of the tool or the robot, which stay where they are for long enough; it is renewed. The
+// hand and the way bring copies.
+RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now, Memory& memory) const {
   const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
   Place place;
   Place solid;
-  double came = -kNever;
-  for (Witness& witness : witnesses_) {
-    std::optional<Seen> seen = witness.source->seen({x, tool_radius_}, now);
-    if (!seen && !witness.source->points()) seen = {.says = Seen::Says::old};  // nothing came yet
+  Memory known = (x - memory.where).norm() <= kJoin ? memory : Memory{};
+  for (const Source* source : sources_) {
+    std::optional<Seen> seen = source->seen({x, tool_radius_}, now);
+    if (!seen && !source->points()) seen = {.says = Seen::Says::old};  // nothing came yet
     if (!seen) continue;
-    if (place.source == nullptr || rank(*seen) > rank(place.seen)) place = {witness.source, *seen};
+    if (place.source == nullptr || rank(*seen) > rank(place.seen)) place = {source, *seen};
     if (seen->says != Seen::Says::solid) continue;
-    const double before = (x - witness.where).norm() <= kJoin ? witness.came : -kNever;
-    const double here = seen->came ? now - seen->age : before;
-    if (seen->came && asked == Asked::stays) witness = {witness.source, here, x};
-    if (solid.source == nullptr || here > came) solid = {witness.source, *seen};
-    came = std::max(came, here);
+    const double stamp = now - seen->age;
+    if (seen->came) {
+      known = stamp > known.came ? Memory{source, stamp, x} : Memory{known.source, known.came, x};
+      memory = known;
+    }
+    if (solid.source == nullptr || known.source == source) solid = {source, *seen};
   }
-  const bool outdated = now - place.seen.age < came || place.seen.age > kStays;
+  const bool outdated = now - place.seen.age < known.came || place.seen.age > kStays;
   return place.free() && solid.source != nullptr && outdated ? solid : place;
 }
 
@@ -113,11 +112,14 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
 }
 
 // Is the straight way from the robot to the target seen to be free?
-bool RobotGuide::may_go_to(const Vector3d& target, double now) {
-  if (!place_ || (target - *place_).norm() <= kWayStep) return true;
-  const auto steps = static_cast<int>(std::ceil((target - *place_).norm() / kWayStep));
+bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
+  if (!robot_.place) return true;
+  const Vector3d& from = *robot_.place;
+  if ((target - from).norm() <= kWayStep) return true;
+  const auto steps = static_cast<int>(std::ceil((target - from).norm() / kWayStep));
+  Memory way = robot_.memory;
   for (int i = 0; i < steps; ++i) {
-    if (!judge(*place_ + (target - *place_) * i / steps, now, Asked::passes).free()) return false;
+    if (!judge(from + (target - from) * i / steps, now, way).free()) return false;
   }
   return true;
 }
@@ -129,15 +131,16 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
-  const Place proxy = judge(state.contact.proxy, now, Asked::stays);
+  const Place proxy = judge(state.contact.proxy, now, tool_);
   if (proxy.source == nullptr) return without_view(state, now, pressed);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
-  const bool lags = place_ && (follows_ || now - followed_ <= kBlink);
+  const bool lags = robot_.place && (follows_ || now - followed_ <= kBlink);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
-  note(free, free && judge(state.hip, now, Asked::passes).free(), now, pressed);
+  Memory hand = tool_;
+  note(free, free && judge(state.hip, now, hand).free(), now, pressed);
   if (!follows_) return wait(proxy, now, dt);
   const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
   return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
@@ -153,16 +156,14 @@ void RobotGuide::note(bool proxy_free, bool both_free, double now, bool pressed)
 }
 
 RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
-  place_ = target;
+  robot_ = {.place = target, .memory = tool_};  // it is where the tool is
   ahead_ = ahead;
   followed_ = looked_;
-  held_ = 0;
-  over_ = {};
   return {.target = target};
 }
 
 void RobotGuide::pause() {
-  held_ = -kNever;  // not seen meanwhile
+  robot_.held = -kNever;  // not seen meanwhile
   free_since_ = kNever;
   followed_ = -kNever;
   ahead_ = 0;
@@ -170,12 +171,12 @@ void RobotGuide::pause() {
 
 RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
   ahead_ = 0;
-  const Place held = place_ ? judge(*place_, now, Asked::stays) : Place{};
+  const Place held = robot_.place ? judge(*robot_.place, now, robot_.memory) : Place{};
   note_held(held, now);
   Answer answer;
-  if (!over_.what.empty()) {
-    answer.reason = over_.what;
-    answer.why = fmt::format("{} {:.1f} s ago", over_.what, now - over_.since);
+  if (!robot_.over.what.empty()) {
+    answer.reason = robot_.over.what;
+    answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
   } else if (!proxy.free()) {
     answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
     answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
@@ -183,10 +184,10 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
     answer.reason = follows_ ? kWay : kNotYet;
     answer.why = answer.reason;
   }
-  if (over_.what != kPassed || !(options_.retreat > 0)) return answer;
+  if (robot_.over.what != kPassed || !(options_.retreat > 0)) return answer;
   const double step = std::min(options_.retreat * dt, held.seen.behind);
-  place_ = *place_ + step * held.seen.towards;
-  answer.target = place_;
+  robot_.place = *robot_.place + step * held.seen.towards;
+  answer.target = robot_.place;
   answer.retreats = true;
   return answer;
 }
@@ -195,15 +196,15 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
 // unseen, stands between it and the camera: the way back would lead into it.
 void RobotGuide::note_held(const Place& held, double now) {
   const double known = held.free() ? 0 : -kNever;
-  const double before = std::exchange(held_, held.solid() ? held.seen.behind : known);
+  const double before = std::exchange(robot_.held, held.solid() ? held.seen.behind : known);
   if (!held.solid()) {
-    over_ = {};
+    robot_.over = {};
     return;
   }
   followed_ = -kNever;
-  if (over_.what.empty()) over_.since = now;
-  if (over_.what == kCame) return;
-  over_.what = held_ - before <= kJump ? kPassed : kCame;
+  if (robot_.over.what.empty()) robot_.over.since = now;
+  if (robot_.over.what == kCame) return;
+  robot_.over.what = robot_.held - before <= kJump ? kPassed : kCame;
 }
 
 // Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
@@ -214,11 +215,12 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now,
     return Answer{.reason = reason, .why = std::string(reason)};
   };
   const Reason reason = broken_way(state);
-  if (!reason.empty() && !place_) return waits(reason);
+  if (!reason.empty() && !robot_.place) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
   note(reason.empty(), reason.empty() && !state.contact.touching, now, pressed);
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
-  if (!pressed && place_ && (state.contact.proxy - *place_).norm() > kJoin) return waits(kApart);
+  if (!pressed && robot_.place && (state.contact.proxy - *robot_.place).norm() > kJoin)
+    return waits(kApart);
   // In the step in which a surface moved over it, it may still be a little inside.
   if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
     return waits(kMoved);

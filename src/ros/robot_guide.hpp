@@ -38,13 +38,13 @@ class RobotGuide {
   void pause();
 
   /// The robot is there, whatever target was answered last.
-  void is_at(const std::optional<Eigen::Vector3d>& place) { place_ = place; }
+  void is_at(const std::optional<Eigen::Vector3d>& place) { robot_.place = place; }
 
  private:
-  // A source that counts.
-  struct Witness {
-    const Source* source = nullptr;
-    double came = -std::numeric_limits<double>::infinity();  // when it saw something come, s
+  // What came last over the tool, or over the robot.
+  struct Memory {
+    const Source* source = nullptr;                          // that saw it come; null: none did
+    double came = -std::numeric_limits<double>::infinity();  // when, s
     Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this place, m
   };
 
@@ -57,12 +57,9 @@ class RobotGuide {
     [[nodiscard]] bool solid() const { return seen.says == Seen::Says::solid; }
   };
 
-  [[nodiscard]] static std::vector<Witness> witnesses_of(const Scene& scene,
-                                                         const std::vector<std::string>& names);
-  enum class Asked { stays, passes };  // about the tool or the robot; about the hand or the way
-  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Asked asked);
+  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
-  [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now);
+  [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now) const;
   void note(bool proxy_free, bool both_free, double now, bool pressed);
   [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double ahead = 0);
   [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
@@ -75,18 +72,24 @@ class RobotGuide {
     double since = 0;            // s
   };
 
+  struct Robot {
+    std::optional<Eigen::Vector3d> place = {};  // where it is, m, world
+    Memory memory = {};
+    double held = 0;  // how far it was behind what was seen last, m; -infinite: not seen
+    Over over = {};
+  };
+
   const RosBridgeOptions::Robot options_;
   const double tool_radius_;
-  std::vector<Witness> witnesses_;
-  std::optional<Eigen::Vector3d> place_ = {};  // where the robot is, m, world
+  const std::vector<const Source*> sources_;  // that count
+  Robot robot_;
+  Memory tool_;
   bool follows_ = true;
   double speed_ = 0;  // highest of the touched surface towards the camera of late, m/s
   double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
   double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
   double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
   double looked_ = 0;    // when it was asked last, s
-  double held_ = 0;      // how far the robot was behind what was seen then, m; -infinite: not seen
-  Over over_;
 };
 
 }  // namespace palpate::ros

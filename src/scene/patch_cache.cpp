@@ -81,12 +81,12 @@ const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexce
   // Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
   constexpr int kBallsASum = 4;
   constexpr int kSumsAGather = 20;  // judgement, both
-  const std::uint64_t before = step_.gathers;
+  const std::uint64_t before = step_.work.gathers;
   const Patch* const patch = find(ball, margin);
   if (!patch || !step_.running) return patch;
   const auto points = static_cast<int>(patch->points());
-  step_.summed += ball.radius > 0 ? points / kBallsASum : points;
-  if (step_.gathers != before) step_.summed += kSumsAGather * points;
+  step_.work.summed += ball.radius > 0 ? points / kBallsASum : points;
+  if (step_.work.gathers != before) step_.work.summed += kSumsAGather * points;
   return patch;
 }
 
@@ -112,8 +112,8 @@ bool PatchCache::walk_is_free(const Ball& ball) const noexcept {
   const int before = left;
   const bool free = is_free_space(*surface_, layers_, sources_, ball, radius_, left);
   if (step_.running) step_.free_visits = left;
-  if (left <= 0) step_.notes = step_.notes | FieldNote::work_spent;
-  step_.visits += static_cast<std::uint64_t>(before - left);
+  if (left <= 0) step_.work.notes = step_.work.notes | FieldNote::work_spent;
+  step_.work.visits += static_cast<std::uint64_t>(before - left);
   return free;
 }
 
@@ -134,22 +134,22 @@ bool PatchCache::gather(Patch& patch, const Vector3d& center, double extra,
 /// The work of a gather.
 void PatchCache::count(const Patch& patch, bool whole, int& left) const noexcept {
   left -= patch.visits();
-  if (patch.thinned()) step_.notes = step_.notes | FieldNote::thinned;
-  if (!whole) step_.notes = step_.notes | FieldNote::work_spent;
-  step_.visits += static_cast<std::uint64_t>(patch.visits());
-  ++step_.gathers;
+  if (patch.thinned()) step_.work.notes = step_.work.notes | FieldNote::thinned;
+  if (!whole) step_.work.notes = step_.work.notes | FieldNote::work_spent;
+  step_.work.visits += static_cast<std::uint64_t>(patch.visits());
+  ++step_.work.gathers;
 }
 
 void PatchCache::begin_update() noexcept {
   update_visits_ = kGatherVisits;
-  step_.notes = FieldNote::none;
+  step_.work.notes = FieldNote::none;
 }
 
 void PatchCache::begin_step() const noexcept {
   step_.running = true;
   step_.gather_visits = kGatherVisits;
   step_.free_visits = kFreeVisits;
-  step_.summed = 0;
+  step_.work.summed = 0;
 }
 
 void PatchCache::end_step(const Stance& tool) const noexcept {

@@ -16,6 +16,14 @@ namespace palpate {
 /// and in an update and in a proxy's step of all of them together. Real-time but for construction.
 class PatchCache {
  public:
+  /// What was done.
+  struct Work {
+    FieldNote notes = FieldNote::none;  ///< thinned and work_spent, since begin_update()
+    int summed = 0;  ///< points in the last step, and as many as gathers take the time of
+    std::uint64_t gathers = 0;
+    std::uint64_t visits = 0;
+  };
+
   explicit PatchCache(const ImplicitSurface& surface) : surface_(&surface) {}
 
   /// Sets the layers as they are now; the caller keeps them. `same`: they are those of the last
@@ -62,12 +70,7 @@ class PatchCache {
   /// `tool`: where the proxy is then.
   void end_step(const Stance& tool) const noexcept;
 
-  /// thinned and work_spent, since begin_update().
-  [[nodiscard]] FieldNote notes() const noexcept { return step_.notes; }
-  /// Points summed in the last step, and as many as gathers take the time of.
-  [[nodiscard]] int points_summed() const noexcept { return step_.summed; }
-  [[nodiscard]] std::uint64_t gathers() const noexcept { return step_.gathers; }
-  [[nodiscard]] std::uint64_t visits() const noexcept { return step_.visits; }
+  [[nodiscard]] const Work& work() const noexcept { return step_.work; }
 
  private:
   // Parts of SceneField::kStepVisits (judgement: a walk asks about one ball, a gather takes
@@ -88,10 +91,7 @@ class PatchCache {
     bool running = false;
     int gather_visits = kGatherVisits;  // left
     int free_visits = kFreeVisits;      // left
-    int summed = 0;
-    FieldNote notes = FieldNote::none;
-    std::uint64_t gathers = 0;
-    std::uint64_t visits = 0;
+    Work work;
   };
 
   [[nodiscard]] const Patch* find(const Ball& ball, double margin) const noexcept;

@@ -244,7 +244,7 @@ void SceneField::begin_step() const noexcept {
   state_->patches.begin_step();
 }
 int SceneField::points_summed() const noexcept {
-  return state_->patches.points_summed();
+  return state_->patches.work().summed;
 }
 void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const noexcept {
   state_->patches.end_step({proxy, normal});
@@ -284,16 +284,16 @@ SceneField::Found SceneField::found() const noexcept {
   return found;
 }
 FieldNote SceneField::notes() const noexcept {
-  return state_->notes | state_->patches.notes();
+  return state_->notes | state_->patches.work().notes;
 }
 std::size_t SceneField::patch_points() const noexcept {
   return state_->patches.near().points();
 }
 std::uint64_t SceneField::gathers() const noexcept {
-  return state_->patches.gathers();
+  return state_->patches.work().gathers;
 }
 std::uint64_t SceneField::visits() const noexcept {
-  return state_->patches.visits();
+  return state_->patches.work().visits;
 }
 
 }  // namespace palpate

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "depth/input.hpp"
-#include "scene/source_inside.hpp"
 
 namespace palpate {
 namespace {
@@ -22,9 +21,6 @@ constexpr int kHalf = 2;        // pixels: a window of 5 x 5 averages most noise
 constexpr double kSure = 3;     // deviations: noise feigns more once in 700 frames, and by little
 constexpr double kNoPlane = 2;  // sigma of residual: two surfaces are in the window (judgement)
 constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
-// Frames that may be missing until a camera is silent. As many periods of its device stop a servo
-// (guard_for()).
-constexpr double kMissedFrames = 2.5;
 constexpr int kStride = 2;  // pixels between windows that look at a ball: what is as wide is seen
 constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
 constexpr double kSpan = 0.1;  // s between frames that tell a speed: noise over less says little
@@ -232,14 +228,20 @@ Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball,
 
 }  // namespace
 
+// One frame from before the newest is late: it tells of a past that a newer one has told more of.
+// After two in a row the camera's clock was set back: nothing before them can be compared.
 void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
                 const NoiseModel& noise) {
+  const bool back = frames_ > 0 && frame.stamp < newest_.frame.stamp;
+  late_ = back && !late_;
+  if (late_) return;
   spare_.frame.camera = frame.camera;
   spare_.frame.stamp = frame.stamp;
   spare_.frame.depth = frame.depth;
   spare_.T_world_sensor = T_world_sensor;
   spare_.noise = noise;
   const std::lock_guard lock(mutex_);
+  if (back) frames_ = 0;
   if (frames_ < 3 || newest_.frame.stamp - base_.frame.stamp >= kSpan) std::swap(base_, before_);
   std::swap(before_, newest_);
   std::swap(newest_, spare_);
@@ -269,30 +271,6 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const 
              now - before_.frame.stamp <= lasts) {
     seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
   }
-  return seen;
-}
-
-/// Lets the frame say which places are free.
-void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
-  depth::check(frame);
-  if (!std::isfinite(frame.stamp)) return;
-  const NoiseModel& noise = builder->noise();
-  sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
-}
-
-/// The age up to which a frame can say what is free, s.
-double Source::Inside::lasts() const {
-  const std::lock_guard lock(mutex);
-  if (std::isinf(state.silent_from)) return state.silent_from;
-  const double silence = options.policy.silence;
-  const double missed = kMissedFrames * state.interval;
-  return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);
-}
-
-std::optional<Seen> Source::seen(const Ball& ball, double now) const {
-  inside_->watched = true;
-  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->lasts());
-  if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
   return seen;
 }
 

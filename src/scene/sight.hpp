@@ -21,7 +21,8 @@ struct PosedFrame {
 class Sight {
  public:
   /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
-  /// frames of one size have come, it takes no memory.
+  /// frames of one size have come, it takes no memory. Passes over a frame that is older than
+  /// the one before, and begins anew with the next where that is older, too.
   void see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
            const NoiseModel& noise);
 
@@ -37,8 +38,10 @@ class Sight {
   PosedFrame newest_;
   PosedFrame before_;  // the one before
   PosedFrame base_;    // an earlier one, that tells speeds where frames come quickly
-  PosedFrame spare_;   // the thread's that shows frames
   int frames_ = 0;     // of the first three that have come
+
+  PosedFrame spare_;   // the thread's that shows frames
+  bool late_ = false;  // the same thread's: was the last frame older than the newest?
 };
 
 }  // namespace palpate

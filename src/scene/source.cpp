@@ -175,10 +175,12 @@ void Source::set(const DepthFrame& frame) {
   snapshot->publication = ++inside_->publications;
   publish(std::move(snapshot));
   inside_->sight.see(frame, stand, noise);
+  inside_->stays = true;
 }
 
 bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
   inside_->take_change();
+  inside_->stays = false;
   const Eigen::Isometry3d pose_now = frame.T_world_sensor.value_or(pose());
   named(inside_->name, [&] {
     if (frame.T_world_sensor) check_pose(pose_now);

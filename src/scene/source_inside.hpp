@@ -154,6 +154,7 @@ struct Source::Inside {
   ReachTable reaches;
   Sight sight;
   std::atomic<bool> watched{false};  // does anybody ask what is seen?
+  std::atomic<bool> stays{false};    // is that an image of set(), and no stream's frame?
   std::shared_ptr<Seams> seams;      // of the scene
   std::size_t place = 0;             // in it
   Handoff<Snapshot> handoff;

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
+#include "sensor/bag_images.hpp"
 #include "sensor/bag_topics.hpp"
 #include "sensor/live_camera.hpp"
 #include "sensor/played_camera.hpp"
@@ -22,15 +22,11 @@ using Status = DepthCamera::Status;
 
 // ns that an image waits for its transform (judgement)
 constexpr std::uint64_t kLateTransform = 100'000'000;
-constexpr std::size_t kMostWaiting = 64;      // images that wait (judgement)
-constexpr std::size_t kMostHeld = 256 << 20;  // bytes of them (judgement)
-constexpr int kMeasured = 30;                 // images that give the rate (judgement)
-constexpr double kSlowestBag = 0.1;           // Hz (judgement)
-constexpr double kFastestBag = 1000;          // Hz (judgement)
+constexpr int kMeasured = 30;         // images that give the rate (judgement)
+constexpr double kSlowestBag = 0.1;   // Hz (judgement)
+constexpr double kFastestBag = 1000;  // Hz (judgement)
 constexpr int kInfos = 10;            // camera infos tried until one can be used (judgement)
 constexpr int kStatics = 1000;        // messages of static transforms that are read (judgement)
-constexpr double kStampJump = 1;      // s that stamps may run ahead of the recording (judgement)
-constexpr double kNanosecond = 1e-9;  // s
 
 // Decodes a message of type T and makes a frame of it.
 template <class T>
@@ -40,6 +36,12 @@ void fill_from(const RosFrames& frames, bag::View data, DepthFrame& frame) {
   frames.fill(message, frame);
 }
 
+// What the first images tell of the others.
+struct BagRate {
+  double rate = 30;  // Hz
+  bool one_image = false;
+};
+
 // The images or clouds of one topic, as open_bag() says. An image whose transform is not there yet
 // waits until the file is read 0.1 s further; no more than that is held.
 class BagRecording final : public Recording {
@@ -47,20 +49,12 @@ class BagRecording final : public Recording {
   explicit BagRecording(const BagName& name);
 
   [[nodiscard]] const std::string& topic() const { return frames_.topic(); }
-  [[nodiscard]] double rate() const { return rate_; }
-  [[nodiscard]] bool is_one_image() const { return one_image_; }
+  [[nodiscard]] const BagRate& rate() const { return rate_; }
 
   void rewind() override;
   [[nodiscard]] Status next(DepthFrame& frame, double& time, std::string& why) override;
 
  private:
-  struct Image {
-    void (*fill)(const RosFrames&, bag::View, DepthFrame&) = nullptr;
-    Header header;
-    std::uint64_t log = 0;  // ns
-    bag::Bytes data;
-  };
-
   [[nodiscard]] bool is_image(const Channel& channel) const {
     return channel.topic == frames_.topic() && may_be_felt(channel);
   }
@@ -73,27 +67,21 @@ class BagRecording final : public Recording {
   void read_ahead();
   void take(const bag::Message& message);
   void keep(const Channel& channel, const bag::Message& message);
-  [[nodiscard]] bool is_ready(const Image& image) const;
-  [[nodiscard]] double step_to(const Image& image);
-  [[nodiscard]] Status show(const Image& image, DepthFrame& frame, std::string& why) const;
+  [[nodiscard]] bool is_ready(const BagImage& image) const;
+  [[nodiscard]] Status show(const BagImage& image, DepthFrame& frame, std::string& why) const;
 
   std::string file_;
   bag::McapReader reader_;
   RosFrames frames_;
   std::string frame_;
-  double rate_ = 30;
-  bool one_image_ = false;
+  BagRate rate_;
   message::Transforms still_;  // wherever in the file it is told
   message::Transforms transforms_;
-  std::deque<Image> waiting_;
-  std::size_t held_ = 0;   // bytes of those
+  WaitingImages waiting_;
+  ImageTimes times_;
   std::uint64_t log_ = 0;  // how far the file was read, ns
   bool read_ = false;      // to its end
   std::size_t told_ = 0;   // losses
-  double time_ = 0;        // of the last image
-  bool any_ = false;       // there was one, and when it was taken and recorded:
-  double stamp_ = 0;
-  std::uint64_t recorded_ = 0;
 };
 
 BagRecording::BagRecording(const BagName& name)
@@ -115,10 +103,10 @@ void BagRecording::measure() {
     if (count == 0) first = last;
   }
   if (count == 0) throw Error(fmt::format("{}: no message is left on {}", file_, topic()));
-  one_image_ = count == 1;
+  rate_.one_image = count == 1;
   if (last == first) return;
-  rate_ = std::clamp((count - 1) / (kNanosecond * static_cast<double>(last - first)), kSlowestBag,
-                     kFastestBag);
+  rate_.rate = std::clamp((count - 1) / (kNanosecond * static_cast<double>(last - first)),
+                          kSlowestBag, kFastestBag);
 }
 
 // So that the first images have a camera, which is often told a little later.
@@ -158,16 +146,14 @@ void BagRecording::rewind() {
     return is_image(channel) || is_info(channel) || (!frame_.empty() && holds<TFMessage>(channel));
   });
   transforms_ = still_;
-  waiting_.clear();
-  held_ = 0;
+  waiting_ = {};
+  times_ = {};
   log_ = 0;
   read_ = false;
-  time_ = 0;
-  any_ = false;
 }
 
 Status BagRecording::next(DepthFrame& frame, double& time, std::string& why) {
-  time = time_;
+  time = times_.last();
   try {
     read_ahead();
   } catch (const Error& error) {
@@ -180,10 +166,8 @@ Status BagRecording::next(DepthFrame& frame, double& time, std::string& why) {
     return Status::damaged;
   }
   if (waiting_.empty()) return Status::ended;
-  const Image image = std::move(waiting_.front());
-  waiting_.pop_front();
-  held_ -= image.data.size();
-  time = time_ += step_to(image);
+  const BagImage image = waiting_.pop();
+  time = times_.next(to_seconds(image.header.stamp), image.log);
   return show(image, frame, why);
 }
 
@@ -195,9 +179,9 @@ void BagRecording::read_ahead() {
   }
 }
 
-bool BagRecording::is_ready(const Image& image) const {
+bool BagRecording::is_ready(const BagImage& image) const {
   if (frame_.empty() || log_ - image.log > kLateTransform) return true;
-  if (waiting_.size() >= kMostWaiting || held_ >= kMostHeld) return true;
+  if (waiting_.full()) return true;
   return transforms_.find(frame_, image.header.frame_id, to_seconds(image.header.stamp))
       .has_value();
 }
@@ -222,7 +206,7 @@ void BagRecording::take(const bag::Message& message) {
 }
 
 void BagRecording::keep(const Channel& channel, const bag::Message& message) {
-  Image image;
+  BagImage image;
   image.fill = fill_from<message::Image>;
   image.log = message.stamp.log;
   image.data.assign(message.data.begin(), message.data.end());
@@ -233,23 +217,10 @@ void BagRecording::keep(const Channel& channel, const bag::Message& message) {
   } catch (const Error&) {
     image.header = {};  // what is damaged is said when its turn comes
   }
-  held_ += image.data.size();
-  waiting_.push_back(std::move(image));
+  waiting_.push(std::move(image));
 }
 
-// s from the image before it: as their stamps say, or, where those stand still or jump, as they
-// were recorded.
-double BagRecording::step_to(const Image& image) {
-  const double stamp = to_seconds(image.header.stamp);
-  const double recorded = kNanosecond * static_cast<double>(image.log - recorded_);
-  const double told = stamp - stamp_;
-  stamp_ = stamp;
-  recorded_ = image.log;
-  if (!std::exchange(any_, true)) return 0;
-  return told > 0 && told < recorded + kStampJump ? told : recorded;
-}
-
-Status BagRecording::show(const Image& image, DepthFrame& frame, std::string& why) const {
+Status BagRecording::show(const BagImage& image, DepthFrame& frame, std::string& why) const {
   try {
     image.fill(frames_, image.data, frame);
   } catch (const Error& error) {
@@ -275,8 +246,8 @@ DriverInfo bag_driver() {
 std::unique_ptr<DepthCamera> open_bag(const std::string& name, const CameraOptions& options) {
   auto recording = std::make_unique<BagRecording>(parse_bag_name(name));
   CameraInfo info{.name = "bag:" + name,
-                  .rate = recording->rate(),
-                  .repeats = options.loop && recording->is_one_image()};
+                  .rate = recording->rate().rate,
+                  .repeats = options.loop && recording->rate().one_image};
   return std::make_unique<PlayedCamera>(std::move(info), std::move(recording), options);
 }
 

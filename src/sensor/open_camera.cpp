@@ -1,8 +1,6 @@
 // Lists camera drivers and opens a camera by name.
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "sensor/live_camera.hpp"

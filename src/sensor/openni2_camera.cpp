@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -125,6 +126,29 @@ class DepthStream {
   OniStreamHandle stream_ = nullptr;
 };
 
+// Knows when a recording that is played once has been shown: its player begins again.
+class PlayedOnce {
+ public:
+  // `frames`: how many it has; not above 0: it does not tell.
+  explicit PlayedOnce(int frames)
+      : frames_(frames > 0 ? frames : std::numeric_limits<int>::max()) {}
+
+  // Takes the number of the next frame. False: that is one of the beginning.
+  [[nodiscard]] bool take(int number) {
+    if (number <= last_) over_ = true;
+    if (over_) return false;
+    last_ = number;
+    over_ = last_ >= frames_;
+    return true;
+  }
+  [[nodiscard]] bool is_over() const { return over_; }
+
+ private:
+  int frames_;
+  int last_ = 0;
+  bool over_ = false;
+};
+
 class OpenNi2Connection final : public Connection {
  public:
   OpenNi2Connection(const Library& library, std::string name, const std::string& device,
@@ -137,9 +161,7 @@ class OpenNi2Connection final : public Connection {
     check(stream_.create(), "has no depth stream");
     if (stream_.is_file()) {
       stream_.play(options.clock == nullptr);
-      once_ = !options.loop;
-      const int frames = get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, 0);
-      if (frames > 0) frames_ = frames;
+      if (!options.loop) once_.emplace(get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, 0));
     } else {
       stream_.choose_mode();
     }
@@ -152,7 +174,7 @@ class OpenNi2Connection final : public Connection {
 
   [[nodiscard]] DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
                                           double timeout) override {
-    if (at_end_) return DepthCamera::Status::ended;
+    if (once_ && once_->is_over()) return DepthCamera::Status::ended;
     OniStreamHandle stream = stream_.get();
     int ready = 0;
     const int milliseconds = static_cast<int>(std::lround(1e3 * std::clamp(timeout, 0.0, 60.0)));
@@ -162,10 +184,7 @@ class OpenNi2Connection final : public Connection {
     OniFrame* raw = nullptr;
     check(library_->read_frame(stream, &raw), "stopped delivering");
     const Frame image(raw, {library_});
-    if (once_ && image->frameIndex <= last_) at_end_ = true;  // it began again
-    if (at_end_) return DepthCamera::Status::ended;
-    last_ = image->frameIndex;
-    at_end_ = once_ && last_ >= frames_;
+    if (once_ && !once_->take(image->frameIndex)) return DepthCamera::Status::ended;
     if (!is_whole(*image)) {
       damaged_ =
           fmt::format("{} x {} pixels in {} bytes", image->width, image->height, image->dataSize);
@@ -225,10 +244,7 @@ class OpenNi2Connection final : public Connection {
   bool mirrored_ = false;
   double across_ = 0;  // field of view, rad; 0: not known
   double down_ = 0;
-  bool once_ = false;                             // a recording that is played once
-  int frames_ = std::numeric_limits<int>::max();  // of a recording that tells them
-  int last_ = 0;                                  // the frame's number in it
-  bool at_end_ = false;
+  std::optional<PlayedOnce> once_;
   std::string damaged_;  // what the last damaged frame was like
 };
 

@@ -27,9 +27,8 @@ SharedLibrary load_openni2() {
 
 }  // namespace
 
-OpenNi2Library::OpenNi2Library() : library_(load_openni2()) {
-  find_all();
-  if (initialize_(ONI_API_VERSION) == ONI_STATUS_OK) return;
+OpenNi2Library::OpenNi2Library() : OpenNi2Functions{load_openni2()} {
+  if (initialize(ONI_API_VERSION) == ONI_STATUS_OK) return;
   throw Error(
       fmt::format("openni2: the library does not start ({}). Reinstall libopenni2-0; its drivers "
                   "are in OpenNI2/Drivers next to it.",
@@ -37,38 +36,16 @@ OpenNi2Library::OpenNi2Library() : library_(load_openni2()) {
 }
 
 OpenNi2Library::~OpenNi2Library() {
-  shutdown_();
+  shutdown();
 }
 
 std::string OpenNi2Library::last_words() const {
-  std::string words = get_extended_error_();
+  std::string words = get_extended_error();
   std::ranges::replace_if(
       words, [](char c) { return c < ' '; }, ' ');
   const std::size_t begin = words.find_first_not_of(' ');
   if (begin == std::string::npos) return "no reason given";
   return words.substr(begin, words.find_last_not_of(' ') - begin + 1);
-}
-
-void OpenNi2Library::find_all() {
-  library_.find("oniInitialize", initialize_);
-  library_.find("oniShutdown", shutdown_);
-  library_.find("oniGetExtendedError", get_extended_error_);
-  library_.find("oniGetDeviceList", get_device_list);
-  library_.find("oniReleaseDeviceList", release_device_list);
-  library_.find("oniDeviceOpen", open);
-  library_.find("oniDeviceClose", close);
-  library_.find("oniDeviceGetSensorInfo", get_sensor_info);
-  library_.find("oniDeviceSetProperty", set_device_property);
-  library_.find("oniDeviceIsPropertySupported", has_device_property);
-  library_.find("oniDeviceCreateStream", create_stream);
-  library_.find("oniStreamDestroy", destroy_stream);
-  library_.find("oniStreamStart", start);
-  library_.find("oniStreamStop", stop);
-  library_.find("oniStreamGetProperty", get_property);
-  library_.find("oniStreamSetProperty", set_property);
-  library_.find("oniWaitForAnyStream", wait);
-  library_.find("oniStreamReadFrame", read_frame);
-  library_.find("oniFrameRelease", release_frame);
 }
 
 bool is_whole(const OniFrame& image) {

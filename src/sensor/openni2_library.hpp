@@ -10,9 +10,34 @@
 
 namespace palpate::sensor {
 
-/// OpenNI2's C interface, found at run time: a program that opens none of its cameras needs neither
-/// the library nor the threads that it starts.
-class OpenNi2Library {
+/// The part of OpenNI2's C interface that is used here, found at run time: a program that opens
+/// none of its cameras needs neither the library nor the threads that it starts.
+struct OpenNi2Functions {
+  SharedLibrary library;
+  decltype(&::oniInitialize) initialize = library["oniInitialize"];
+  decltype(&::oniShutdown) shutdown = library["oniShutdown"];
+  decltype(&::oniGetExtendedError) get_extended_error = library["oniGetExtendedError"];
+  decltype(&::oniGetDeviceList) get_device_list = library["oniGetDeviceList"];
+  decltype(&::oniReleaseDeviceList) release_device_list = library["oniReleaseDeviceList"];
+  decltype(&::oniDeviceOpen) open = library["oniDeviceOpen"];
+  decltype(&::oniDeviceClose) close = library["oniDeviceClose"];
+  decltype(&::oniDeviceGetSensorInfo) get_sensor_info = library["oniDeviceGetSensorInfo"];
+  decltype(&::oniDeviceSetProperty) set_device_property = library["oniDeviceSetProperty"];
+  decltype(&::oniDeviceIsPropertySupported) has_device_property =
+      library["oniDeviceIsPropertySupported"];
+  decltype(&::oniDeviceCreateStream) create_stream = library["oniDeviceCreateStream"];
+  decltype(&::oniStreamDestroy) destroy_stream = library["oniStreamDestroy"];
+  decltype(&::oniStreamStart) start = library["oniStreamStart"];
+  decltype(&::oniStreamStop) stop = library["oniStreamStop"];
+  decltype(&::oniStreamGetProperty) get_property = library["oniStreamGetProperty"];
+  decltype(&::oniStreamSetProperty) set_property = library["oniStreamSetProperty"];
+  decltype(&::oniWaitForAnyStream) wait = library["oniWaitForAnyStream"];
+  decltype(&::oniStreamReadFrame) read_frame = library["oniStreamReadFrame"];
+  decltype(&::oniFrameRelease) release_frame = library["oniFrameRelease"];
+};
+
+/// OpenNI2, running.
+class OpenNi2Library : public OpenNi2Functions {
  public:
   /// Loads and starts it. @throws Error that says what is missing.
   OpenNi2Library();
@@ -22,31 +47,6 @@ class OpenNi2Library {
 
   /// The library's text for its last error, on one line.
   [[nodiscard]] std::string last_words() const;
-
-  decltype(&::oniGetDeviceList) get_device_list = nullptr;
-  decltype(&::oniReleaseDeviceList) release_device_list = nullptr;
-  decltype(&::oniDeviceOpen) open = nullptr;
-  decltype(&::oniDeviceClose) close = nullptr;
-  decltype(&::oniDeviceGetSensorInfo) get_sensor_info = nullptr;
-  decltype(&::oniDeviceSetProperty) set_device_property = nullptr;
-  decltype(&::oniDeviceIsPropertySupported) has_device_property = nullptr;
-  decltype(&::oniDeviceCreateStream) create_stream = nullptr;
-  decltype(&::oniStreamDestroy) destroy_stream = nullptr;
-  decltype(&::oniStreamStart) start = nullptr;
-  decltype(&::oniStreamStop) stop = nullptr;
-  decltype(&::oniStreamGetProperty) get_property = nullptr;
-  decltype(&::oniStreamSetProperty) set_property = nullptr;
-  decltype(&::oniWaitForAnyStream) wait = nullptr;
-  decltype(&::oniStreamReadFrame) read_frame = nullptr;
-  decltype(&::oniFrameRelease) release_frame = nullptr;
-
- private:
-  void find_all();
-
-  SharedLibrary library_;
-  decltype(&::oniInitialize) initialize_ = nullptr;
-  decltype(&::oniShutdown) shutdown_ = nullptr;
-  decltype(&::oniGetExtendedError) get_extended_error_ = nullptr;
 };
 
 /// Does it hold all depths that it says, in a format that is known?

@@ -6,6 +6,7 @@
 
 #include "base/requirement.hpp"
 #include "servo/passivity.hpp"
+#include "servo/sliding_share.hpp"
 
 namespace palpate {
 namespace {
@@ -52,14 +53,10 @@ double stored(const Vector3d& force, double stiffness) noexcept {
   return stiffness > 0 ? force.squaredNorm() / (2 * stiffness) : 0;
 }
 
-// From the hand to the proxy, m.
-Vector3d stretch(const Guard::Input& input) noexcept {
-  if (!(input.stiffness > 0)) return Vector3d::Zero();
-  return input.force / input.stiffness;
-}
-
-Vector3d tangential(const Vector3d& v, const Vector3d& normal) noexcept {
-  return v - v.dot(normal) * normal;
+void note(Guard::State& state, GuardNote bit, std::uint64_t& count) noexcept {
+  if (has(state.notes, bit)) return;
+  state.notes = state.notes | bit;
+  ++count;
 }
 
 }  // namespace
@@ -86,7 +83,6 @@ class Guard::Inside {
 
   void begin(const Guard::Input& input) noexcept;
   [[nodiscard]] Motion follow(const Guard::Input& input) const noexcept;
-  [[nodiscard]] double sliding(const Guard::Input& input, const Motion& motion) const noexcept;
   [[nodiscard]] double held(const Guard::Input& input) const noexcept;
   [[nodiscard]] Vector3d damp(const Guard::Input& input, const Motion& motion) const noexcept;
   [[nodiscard]] Vector3d start(const Guard::Input& input, const Vector3d& force) noexcept;
@@ -100,7 +96,6 @@ class Guard::Inside {
   [[nodiscard]] Vector3d remember(const Guard::Input& input, const Motion& motion,
                                   const Vector3d& force) noexcept;
   [[nodiscard]] Vector3d fail(Guard::Fault fault) noexcept;
-  void note(GuardNote bit, std::uint64_t& count) noexcept;
 
   GuardOptions options_;
   Passivity passivity_;
@@ -109,9 +104,8 @@ class Guard::Inside {
   Vector3d velocity_ = Vector3d::Zero();  // smoothed, of the step before
   Vector3d slewed_ = Vector3d::Zero();    // let through by clamp and slew then
   double stiffness_ = 0;                  // that made a force last, N/m
-  Vector3d stretch_ = Vector3d::Zero();   // from hand to proxy in the step before, m
-  double sliding_ = 1;                    // share of its way that the proxy follows
-  double gain_ = 0;                       // of the soft start
+  SlidingShare sliding_;
+  double gain_ = 0;  // of the soft start
   bool started_ = false;
 };
 
@@ -149,18 +143,18 @@ Vector3d Guard::Inside::pass(const Guard::Input& input) noexcept {
   if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
   if (!started_) begin(input);
   const Motion motion = follow(input);
-  sliding_ = sliding(input, motion);
+  sliding_.update(before_, input, motion.way);
   if (input.stiffness > 0) stiffness_ = input.stiffness;
   passivity_.account(before_.force, motion.way, held(input), input.dt);
   state_.energy = passivity_.energy();
   if (input.dt > options_.silence) {
     gain_ = 0;
     slewed_.setZero();
-    note(GuardNote::silence, state_.counts.silences);
+    note(state_, GuardNote::silence, state_.counts.silences);
     return remember(input, motion, Vector3d::Zero());
   }
   if (input.softened && !input.normal.isZero(0)) {
-    note(GuardNote::softened, state_.counts.softened);
+    note(state_, GuardNote::softened, state_.counts.softened);
   }
   const Vector3d wanted = limit_length(start(input, damp(input, motion)));
   slewed_ = limit_change(input, motion, wanted);
@@ -174,8 +168,7 @@ void Guard::Inside::begin(const Guard::Input& input) noexcept {
   gain_ = 0;
   slewed_.setZero();
   stiffness_ = 0;
-  stretch_ = stretch(input);
-  sliding_ = 1;
+  sliding_.begin(input);
   passivity_.reset();
   started_ = true;
 }
@@ -191,33 +184,20 @@ double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
-// Share of the hand's displacement along the surface that the proxy follows, smoothed; 1 at the
-// first touch.
-double Guard::Inside::sliding(const Guard::Input& input, const Motion& motion) const noexcept {
-  if (before_.normal.isZero(0) || before_.stiffness == 0 || input.stiffness == 0) return 1;
-  const Vector3d along = tangential(motion.way, input.normal);
-  const double square = along.squaredNorm();
-  if (!(square > 0)) return sliding_;
-  const Vector3d proxy_way = motion.way + stretch(input) - stretch_;
-  // std::max turns NaN (0 / 0 at a tiny stiffness) into 0.
-  const double share = std::min(1.0, std::max(0.0, proxy_way.dot(along) / square));
-  return sliding_ + Guard::kSmoothing * (share - sliding_);
-}
-
 // Adds the damper; never turns round the part along the normal.
 Vector3d Guard::Inside::damp(const Guard::Input& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
   const double pressed = std::max(0.0, input.force.dot(input.normal));
   const double damped = -options_.damping * motion.velocity.dot(input.normal);
-  const Vector3d held = (1 - sliding_) * tangential(motion.velocity, input.normal);
+  const Vector3d held = (1 - sliding_.share()) * tangential(motion.velocity, input.normal);
   return input.force + std::max(damped, -pressed) * input.normal - options_.damping * held;
 }
 
 Vector3d Guard::Inside::start(const Guard::Input& input, const Vector3d& force) noexcept {
   gain_ = input.felt ? std::max(gain_, std::min(1.0, affordable_gain(input))) : 0;
   if (gain_ == 1) return force;
-  if (input.felt && !force.isZero(0)) note(GuardNote::starting, state_.counts.starting);
+  if (input.felt && !force.isZero(0)) note(state_, GuardNote::starting, state_.counts.starting);
   return gain_ * force;
 }
 
@@ -238,7 +218,7 @@ Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
   if (!input.felt || input.normal.isZero(0)) return force;
   const Vector3d brake = passivity_.brake(force, motion.way, input.dt, options_.damping);
   if (brake.isZero(0)) return force;
-  note(GuardNote::braked, state_.counts.braked);
+  note(state_, GuardNote::braked, state_.counts.braked);
   return force + brake;
 }
 
@@ -261,21 +241,21 @@ Vector3d Guard::Inside::limit_change(const Guard::Input& input, const Motion& mo
   const Vector3d change = force - slewed_;
   const double size = change.norm();
   if (size <= allowed) return force;
-  note(GuardNote::slewed, state_.counts.slewed);
+  note(state_, GuardNote::slewed, state_.counts.slewed);
   return slewed_ + allowed / size * change;
 }
 
 Vector3d Guard::Inside::limit_length(const Vector3d& force) noexcept {
   const double length = force.norm();
   if (length <= options_.maximum_force) return force;
-  note(GuardNote::clamped, state_.counts.clamped);
+  note(state_, GuardNote::clamped, state_.counts.clamped);
   return options_.maximum_force / length * force;
 }
 
 Vector3d Guard::Inside::remember(const Guard::Input& input, const Motion& motion,
                                  const Vector3d& force) noexcept {
   before_ = input;
-  stretch_ = stretch(input);
+  sliding_.remember(input);
   velocity_ = motion.velocity;
   before_.force = force;
   return force;
@@ -288,12 +268,6 @@ Vector3d Guard::Inside::fail(Guard::Fault fault) noexcept {
   state_.notes = GuardNote::fault;
   started_ = false;
   return Vector3d::Zero();
-}
-
-void Guard::Inside::note(GuardNote bit, std::uint64_t& count) noexcept {
-  if (has(state_.notes, bit)) return;
-  state_.notes = state_.notes | bit;
-  ++count;
 }
 
 }  // namespace palpate

@@ -2,7 +2,6 @@
 #include "servo/passivity.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate {
 

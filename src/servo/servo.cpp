@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <optional>
 
 #include "base/latest.hpp"
 #include "base/requirement.hpp"

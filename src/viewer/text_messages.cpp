@@ -1,7 +1,6 @@
 // Parses the JSON that pages send and writes the JSON that they get.
 #include <fmt/core.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <set>

@@ -1,10 +1,12 @@
 // Recordings that begin and end in the middle of a run.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "apps/palpate/record/recorder.hpp"
@@ -12,7 +14,9 @@
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "bag/mcap_reader.hpp"
+#include "bag/mcap_writer.hpp"
 #include "message/palpate_types.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 #include "support/contains.hpp"
 #include "support/folder.hpp"
@@ -31,6 +35,22 @@ std::vector<message::Tick> ticks_in(const std::string& path) {
   }
   EXPECT_TRUE(reader.contents().losses.empty());
   return ticks;
+}
+
+// Copies a recording, with half of each step's message.
+void copy_with_half_steps(const std::string& from, const std::string& to) {
+  bag::McapReader reader(from);
+  bag::McapWriter writer(to);
+  for (std::size_t i = 0; i < reader.contents().attachments.size(); ++i) {
+    writer.attach(reader.attachment(i));
+  }
+  reader.choose([](const bag::Channel& channel) { return channel.topic.ends_with("/tick"); });
+  std::optional<std::uint16_t> channel;
+  for (bag::Message message; reader.next(message);) {
+    if (!channel) channel = writer.add_channel(reader.channel_of(message));
+    writer.write(*channel, message.stamp, message.data.first(message.data.size() / 2));
+  }
+  writer.close();
 }
 
 Json setup_in(const std::string& path) {
@@ -172,6 +192,18 @@ TEST_F(RecordingTest, AFileFromTheMiddleHoldsItsStepsToTheLastBit) {
   EXPECT_EQ(replay.code, 1);
   EXPECT_TRUE(test::contains(replay.out, "recorded from step 121")) << replay.out;
   EXPECT_EQ(columns(shell_.read("steps.csv"))["fz"].size(), felt.size());
+}
+
+TEST_F(RecordingTest, ADamagedStepIsToldWithTheFilesNameWhereItIsOnlyShownToo) {
+  begin("whole.mcap");
+  step(10);
+  (void)recorder_->finish();
+  copy_with_half_steps("whole.mcap", "half.mcap");
+  const Replay replay("half.mcap");
+  const auto nothing = [](const ServoState&, const DeviceInfo&) {};
+  const auto told = testing::ThrowsMessage<Error>(testing::StartsWith("half.mcap: damaged: "));
+  EXPECT_THAT([&] { (void)replay.run(0, nothing); }, told);
+  EXPECT_THAT([&] { replay.show(0, nothing); }, told);
 }
 
 TEST_F(RecordingTest, WhatCannotBeMadeChangesNothing) {

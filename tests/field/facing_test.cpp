@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "field/evaluate.hpp"
 #include "field/patch.hpp"
 #include "support/make_points.hpp"
 
@@ -75,6 +76,49 @@ TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
   EXPECT_FALSE(patch.behind());
   stand(15e-3, 2e-3);
   EXPECT_FALSE(patch.behind());
+}
+
+/// A face in z = 0 as far as x = `end`, and beneath it a wall in x = 0 that faces along x; m.
+std::unique_ptr<SurfacePoints> face_over_wall(double end) {
+  std::vector<test::TestPoint> all;
+  for (int j = -10; j <= 10; ++j) {
+    for (int i = -10; 2e-3 * i <= end + 1e-9; ++i) {
+      all.push_back({{2e-3 * i, 2e-3 * j, 0}, Vector3d::UnitZ(), 5e-3, 1});
+    }
+    for (int i = 1; i <= 8; ++i) {
+      all.push_back({{0, 2e-3 * j, -2e-3 * i}, Vector3d::UnitX(), 5e-3, 1});
+    }
+  }
+  auto points = std::make_unique<SurfacePoints>(test::make_points(all));
+  const float infinity = std::numeric_limits<float>::infinity();
+  points->sheets = {.sheet = std::vector<std::uint32_t>(points->size(), 0),
+                    .part = {0, 0},
+                    .known = {0, 0},
+                    .residual = std::vector<float>(points->size(), 0),
+                    .above = std::vector<float>(points->size(), infinity),
+                    .below = std::vector<float>(points->size(), infinity)};
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    points->sheets.sheet[i] = points->grid.points()[i].z() < -1e-3F ? 1 : 0;
+  }
+  return points;
+}
+
+/// Is it free 1 mm under the face and 2 mm before the wall, for a hand that comes from above?
+bool is_free_before_the_wall(double end) {
+  const std::unique_ptr<SurfacePoints> points = face_over_wall(end);
+  Patch patch(2048);
+  const Stance stance{{1e-3, 0, 3e-3}, Vector3d::Zero()};
+  patch.gather(std::vector<ActiveLayer>{{.points = points.get()}}, 1, {1e-3, 0, 0}, 4e-3,
+               {.stance = &stance});
+  return evaluate(ImplicitSurface(FieldOptions{}), patch, {2e-3, 0, -1e-3}).value > 0;
+}
+
+TEST(Facing, AWallUnderAFaceCutsNothingOffIt) {
+  EXPECT_FALSE(is_free_before_the_wall(20e-3));
+}
+
+TEST(Facing, AFaceEndsAtTheEdgeWhereAWallBegins) {
+  EXPECT_TRUE(is_free_before_the_wall(0));
 }
 
 }  // namespace

@@ -53,6 +53,16 @@ TEST(Transforms, AreNotGuessedBeforeAfterAndInGaps) {
   EXPECT_THAT(why, testing::HasSubstr("elsewhere"));
 }
 
+TEST(Transforms, AreInterpolatedOverHalfASecondAndNoMore) {
+  Transforms known;
+  known.add(
+      {{transform("world", "camera", 10, {0, 0, 0}), transform("world", "camera", 10.5, {1, 0, 0}),
+        transform("world", "camera", 11.001, {2, 0, 0})}},
+      false);
+  EXPECT_TRUE(known.find("world", "camera", 10.25));
+  EXPECT_FALSE(known.find("world", "camera", 10.75));
+}
+
 TEST(Transforms, LeaveOutWhatIsNoPoseOrMakesNoTree) {
   Transforms known;
   const double none = std::numeric_limits<double>::quiet_NaN();

@@ -62,6 +62,7 @@ class ARobot : public ::testing::Test {
     Source* source;
     Height height;
     bool on = true;
+    int every = 1;  ///< frames of the quickest camera
   };
   Scene scene_;
   std::vector<Camera> cameras_;
@@ -73,7 +74,7 @@ class ARobot : public ::testing::Test {
  private:
   void push() {
     for (const Camera& camera : cameras_) {
-      if (!camera.on) continue;
+      if (!camera.on || frames_ % camera.every != 0) continue;
       const double height = camera.height(now_);
       const DepthOf depth = height > 0.5 ? [](double, double) { return 0.0; } : wall(0.5 - height);
       (void)camera.source->push(frame_of(small_camera(), now_, depth),

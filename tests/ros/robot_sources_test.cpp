@@ -38,6 +38,18 @@ TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
   EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
 }
 
+TEST_F(ARobot, WaitsWhereACameraHasEnded) {
+  Source& source = camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, 0.1});
+  ASSERT_TRUE(runs(1).target);
+  cameras_.back().on = false;
+  source.keep();
+  const RobotGuide::Answer answer = runs(0.5);
+  EXPECT_FALSE(answer.target);
+  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (camera)"));
+}
+
 TEST_F(ARobot, AsksOnlyTheCamerasThatItIsToldToAsk) {
   camera("one", at_rest);
   camera("two", at_rest);
@@ -127,6 +139,22 @@ TEST_F(ARobot, BelievesTheCameraThatSawSomethingComeRatherThanAnOlderFrame) {
   ASSERT_TRUE(runs(1).target);
   cameras_.front().on = false;  // its last frame is valid for two more frames
   EXPECT_FALSE(runs(0.05).target);
+}
+
+// Tool and robot are 50 mm apart when a wall comes over both.
+TEST_F(ARobot, BelievesNoOlderFrameOfTheToolWhileItWaitsElsewhere) {
+  camera("slow", at_rest);
+  cameras_.back().every = 6;  // 5 Hz: a frame is valid for 0.31 s
+  camera("quick", [](double t) { return t < 1.01 ? 0 : 0.3; });
+  starts();
+  tool_at({0, 0, 0.05});
+  ASSERT_TRUE(runs(1.02).target);
+  cameras_.front().on = false;
+  EXPECT_FALSE(runs(0.04).target);
+  tool_at({0.05, 0, 0.05});
+  EXPECT_FALSE(runs(0.19).target) << "the quick one sees it come there, and then stay";
+  EXPECT_THAT(runs(0.02).why, HasSubstr("something came between camera and tool"));
+  EXPECT_FALSE(runs(kLook, true).target) << "the slow one's last frame is older";
 }
 
 TEST_F(ARobot, NeedsAllOfABallFree) {

@@ -111,6 +111,25 @@ TEST_F(ASight, ForeseesWhatComesOn) {
   EXPECT_FALSE(at(place).came) << "it has been there for a while";
 }
 
+TEST_F(ASight, ForeseesWhatComesOnAfterTheCamerasClockWasSetBack) {
+  constexpr double kClosing = 0.5;  // m/s
+  stamp_ = 100;
+  for (int i = 0; i < 4; ++i) sees(wall(0.6));
+  stamp_ = 1;
+  for (int i = 0; i < 4; ++i) sees(wall(0.5 - i * kClosing * kFramePeriod));
+  EXPECT_EQ(at({0, 0, 0.44}).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.44}, 0, 2 * kFramePeriod).says, Says::solid) << "the wall is at 0.425 m";
+}
+
+TEST_F(ASight, IsNotMisledByAFrameThatComesAfterANewerOne) {
+  sees(wall(0.4));
+  sees(wall(0.4));
+  const double late = stamp_ + kFramePeriod / 2;
+  sees(wall(0.4));
+  sight_.see(frame_of(small_camera(), late, wall(0.5)), Eigen::Isometry3d::Identity(), kPixelNoise);
+  EXPECT_EQ(at({0, 0, 0.45}).says, Says::solid);
+}
+
 // Where bent lenses see a wall and what is just before and behind it, in the middle and at the rim.
 TEST_F(ASight, KnowsThatLensesBend) {
   for (const double k1 : {-0.2, 0.2}) {
@@ -176,12 +195,27 @@ TEST(Seen, IsThereFromTheFirstQuestionOn) {
   EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old);  // after its way here and 2.5 frames
 }
 
+TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  for (const double stamp : {0., 0.03}) {
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp; }));
+  }
+  source.keep();
+  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old) << "what is felt stays";
+}
+
 TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
   Scene scene;
   Source& source = scene.add("image");
   source.set(frame_of(small_camera(), 0, wall(0.5)));
   EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
   EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->says, Says::solid);
+  source.keep();
+  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
 }
 
 TEST(Seen, IsNothingOfClouds) {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/output.hpp"

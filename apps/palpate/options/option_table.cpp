@@ -33,6 +33,25 @@ const char* refusal(const Registration& option, const RunFacts& run) {
   return nullptr;
 }
 
+std::vector<std::string> sections(const OptionTable& table) {
+  std::vector<std::string> names = {kSource};
+  for (const Registration& each : table.all()) {
+    if (!each.section.empty() && std::ranges::find(names, each.section) == names.end()) {
+      names.push_back(each.section);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> keys(const OptionTable& table, std::string_view section) {
+  std::vector<std::string> names;
+  if (section == kSource) names = {"name", "from", "pose"};
+  for (const Registration& each : table.all()) {
+    if (stands_in(each, section)) names.push_back(each.key());
+  }
+  return names;
+}
+
 // `take`, whose UsageError is one of the command line.
 std::function<void(const std::string&)> checked(const std::string& name,
                                                 std::function<void(const std::string&)> take) {
@@ -100,56 +119,38 @@ const Registration* OptionTable::find(std::string_view section, std::string_view
   return found == all_.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> OptionTable::sections() const {
-  std::vector<std::string> names = {kSource};
-  for (const Registration& each : all_) {
-    if (!each.section.empty() && std::ranges::find(names, each.section) == names.end()) {
-      names.push_back(each.section);
-    }
-  }
-  return names;
-}
-
-std::vector<std::string> OptionTable::keys(std::string_view section) const {
-  std::vector<std::string> names;
-  if (section == kSource) names = {"name", "from", "pose"};
-  for (const Registration& each : all_) {
-    if (stands_in(each, section)) names.push_back(each.key());
-  }
-  return names;
-}
-
-bool OptionTable::has_section(std::string_view section) const {
-  const std::vector<std::string> all = sections();
+bool has_section(const OptionTable& table, std::string_view section) {
+  const std::vector<std::string> all = sections(table);
   return std::ranges::find(all, section) != all.end();
 }
 
-std::string OptionTable::unknown_section(std::string_view section) const {
+std::string unknown_section(const OptionTable& table, std::string_view section) {
   return fmt::format("'{}' is not a section of a set-up file; {}the sections are {}", section,
-                     question(section, sections()), fmt::join(sections(), ", "));
+                     question(section, sections(table)), fmt::join(sections(table), ", "));
 }
 
-std::string OptionTable::unknown_key(std::string_view section, std::string_view key) const {
+std::string unknown_key(const OptionTable& table, std::string_view section, std::string_view key) {
   std::vector<std::string> places;
-  for (const std::string& each : sections()) {
-    const std::vector<std::string> there = keys(each);
+  for (const std::string& each : sections(table)) {
+    const std::vector<std::string> there = keys(table, each);
     if (std::ranges::find(there, key) != there.end()) places.push_back(in_brackets(each));
   }
   return fmt::format("'{}' is not a key of {}; {}its keys are {}", key, in_brackets(section),
-                     places.empty() ? question(key, keys(section))
+                     places.empty() ? question(key, keys(table, section))
                                     : fmt::format("it belongs to {}; ", fmt::join(places, ", ")),
-                     fmt::join(keys(section), ", "));
+                     fmt::join(keys(table, section), ", "));
 }
 
-void OptionTable::check_scopes(const GivenOptions& given, const RunFacts& run) const {
-  for (const Registration& each : all_) {
+void check_scopes(const OptionTable& table, const GivenOptions& given, const RunFacts& run) {
+  for (const Registration& each : table.all()) {
     const char* const words = given.contains(each.name) ? refusal(each, run) : nullptr;
     if (words != nullptr) throw UsageError(fmt::format("{} {}", each.name, words));
   }
 }
 
-void OptionTable::check_scopes(const DescribedOptions& described, const RunFacts& sources) const {
-  for (const Registration& each : all_) {
+void check_scopes(const OptionTable& table, const DescribedOptions& described,
+                  const RunFacts& sources) {
+  for (const Registration& each : table.all()) {
     const auto found = described.find(each.name);
     if (found == described.end() || !each.each_source) continue;
     const char* const words = refusal(each, sources);

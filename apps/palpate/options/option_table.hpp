@@ -151,21 +151,6 @@ class OptionTable {
   [[nodiscard]] const Registration* find(std::string_view section, std::string_view key) const;
 
   [[nodiscard]] const std::deque<Registration>& all() const { return all_; }
-  [[nodiscard]] bool has_section(std::string_view section) const;
-
-  /// What is wrong with a part that no set-up has, and which it has.
-  [[nodiscard]] std::string unknown_section(std::string_view section) const;
-
-  /// What is wrong with a key that `section` does not have: where it belongs or what may be meant,
-  /// and which keys there are.
-  [[nodiscard]] std::string unknown_key(std::string_view section, std::string_view key) const;
-
-  /// @throws UsageError when an option of the command line applies to nothing of the run.
-  void check_scopes(const GivenOptions& given, const RunFacts& run) const;
-
-  /// The same of keys that tell of sources. Others may be there for other runs.
-  /// @throws Error that says where the key stands.
-  void check_scopes(const DescribedOptions& described, const RunFacts& sources) const;
 
  private:
   template <class Value>
@@ -181,8 +166,6 @@ class OptionTable {
   Registration& registered(const std::string& name, KeyKind kind, CLI::Option* option);
   Registration& shown(const std::string& name, KeyKind kind, CLI::Option* option,
                       const std::string& type);
-  [[nodiscard]] std::vector<std::string> sections() const;
-  [[nodiscard]] std::vector<std::string> keys(std::string_view section) const;
 
   CLI::App& command_;
   CLI::App keys_;  // of set-up files alone
@@ -191,6 +174,24 @@ class OptionTable {
   bool each_source_ = false;
   std::deque<Registration> all_;
 };
+
+[[nodiscard]] bool has_section(const OptionTable& table, std::string_view section);
+
+/// What is wrong with a part that no set-up has, and which it has.
+[[nodiscard]] std::string unknown_section(const OptionTable& table, std::string_view section);
+
+/// What is wrong with a key that `section` does not have: where it belongs or what may be meant,
+/// and which keys there are.
+[[nodiscard]] std::string unknown_key(const OptionTable& table, std::string_view section,
+                                      std::string_view key);
+
+/// @throws UsageError when an option of the command line applies to nothing of the run.
+void check_scopes(const OptionTable& table, const GivenOptions& given, const RunFacts& run);
+
+/// The same of keys that tell of sources. Others may be there for other runs.
+/// @throws Error that says where the key stands.
+void check_scopes(const OptionTable& table, const DescribedOptions& described,
+                  const RunFacts& sources);
 
 /// The options that a command line has, which was parsed by `command`.
 [[nodiscard]] GivenOptions given_options(const CLI::App& command);

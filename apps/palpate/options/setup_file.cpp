@@ -161,7 +161,7 @@ std::vector<std::string> SetupFile::texts_of(std::string_view key, KeyKind kind,
 void SetupFile::take(const OptionTable& table, std::string_view section, const toml::key& key,
                      const toml::node& node, DescribedOptions& described) const {
   const Registration* const known = table.find(section, key.str());
-  if (known == nullptr) fail(key.source(), table_.unknown_key(section, key.str()));
+  if (known == nullptr) fail(key.source(), unknown_key(table_, section, key.str()));
   const std::vector<std::string> texts = texts_of(key.str(), known->kind, node);
   described[known->name] = in_words(key.source(), fmt::format("'{}'", key.str()));
   if (given_.contains(known->name)) return;
@@ -244,7 +244,7 @@ std::vector<DescribedSource> SetupFile::sources(const SourcePlan& base,
 
 void SetupFile::check_sections(const toml::table& file) const {
   for (const auto& [key, node] : file) {
-    if (!table_.has_section(key.str())) fail(key.source(), table_.unknown_section(key.str()));
+    if (!has_section(table_, key.str())) fail(key.source(), unknown_section(table_, key.str()));
     if (key.str() != "source" && !node.is_table()) {
       fail(node.source(),
            fmt::format("'{0}' is {1}; write a section [{0}] with its keys on the lines below",

@@ -187,12 +187,12 @@ TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
   plan.time.real_time = in_real_time(plan, choices.simulated_time);
   plan.page.served = plan.time.real_time && is_watched(choices);
   const RunFacts facts = facts_of(plan, choices);
-  table.check_scopes(given, facts);
-  table.check_scopes(described, facts);
+  check_scopes(table, given, facts);
+  check_scopes(table, described, facts);
   for (const DescribedSource& source : sources) {
     RunFacts its;
     add_facts(its, source.plan);
-    table.check_scopes(source.described, its);
+    check_scopes(table, source.described, its);
   }
   check_picture(plan.outputs.picture);
   return plan;

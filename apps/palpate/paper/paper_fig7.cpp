@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <memory>
 #include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"

@@ -21,9 +21,7 @@ namespace palpate::app {
 
 namespace {
 
-constexpr std::size_t kSteps = 8192;     // queue of a hand: 8 s at 1 kHz; judgement
-constexpr std::size_t kMostFrames = 16;  // queue of all sources: half a second at 30 Hz; judgement
-constexpr std::chrono::milliseconds kLook{5};  // between two looks at the queues; judgement
+constexpr std::size_t kSteps = 8192;  // queue of a hand: 8 s at 1 kHz; judgement
 std::int64_t wall_clock() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
@@ -40,12 +38,13 @@ std::string free_name() {
 
 }  // namespace
 
-Recorder::Recorder(const std::string& path) : name_(path) {
+Recorder::Recorder(const std::string& path) : orders_(path) {
   if (path.empty()) return;
-  report_.path = path;
+  present_.report.path = path;
   takes_frames_ = true;
   // A run that fails to begin must not overwrite an older recording.
-  if (!std::filesystem::is_regular_file(path)) file_ = std::make_unique<RecordingFile>(path);
+  if (!std::filesystem::is_regular_file(path))
+    present_.file = std::make_unique<RecordingFile>(path);
 }
 
 Recorder::~Recorder() {
@@ -60,36 +59,22 @@ StepTraces* Recorder::add_hand() {
 
 void Recorder::begin(LoadedScene& loaded, std::vector<const Servo*> servos, double now,
                      bool waits) {
-  loaded_ = &loaded;
-  servos_ = std::move(servos);
-  waits_ = waits;
-  epoch_ = wall_clock() - std::llround(1e9 * now);
-  changes_.assign(loaded.scene.size(), 0);
-  gaps_.assign(loaded.scene.size(), 0);
-  if (!file_ && !report_.path.empty()) file_ = std::make_unique<RecordingFile>(report_.path);
-  if (file_) file_->begin(setup_of(loaded, servos_, epoch_));
+  subject_ = {&loaded, std::move(servos), wall_clock() - std::llround(1e9 * now)};
+  waiting_.begin(loaded.scene.size(), waits);
+  const std::string& path = present_.report.path;
+  if (!present_.file && !path.empty()) present_.file = std::make_unique<RecordingFile>(path);
+  if (present_.file) present_.file->begin(subject_.setup());
   thread_ = std::thread([this] { work(); });
 }
 
 std::string Recorder::record(bool on) {
-  const std::lock_guard lock(mutex_);
-  if (on != name_.empty()) return name_;
-  Order order;
-  if (on) {
+  return orders_.record(on, [this] {
+    RecordOrder order;
     order.path = free_name();
     order.file = std::make_unique<RecordingFile>(order.path);
-    order.setup = setup_of(*loaded_, servos_, epoch_);
-  }
-  std::string name = on ? order.path : name_;
-  name_ = order.path;
-  orders_.push_back(std::move(order));
-  called_.notify_one();
-  return name;
-}
-
-std::string Recorder::recording() const {
-  const std::lock_guard lock(mutex_);
-  return name_;
+    order.setup = subject_.setup();
+    return order;
+  });
 }
 
 void Recorder::on_broken(Broken broken) {
@@ -105,8 +90,9 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
     use.kind = frame.cloud ? "cloud" : "image";
     use.stamp = frame.stamp;
     if (frame.T_world_sensor) use.pose = rows_of(*frame.T_world_sensor);
-    const std::uint64_t before = SourceTrace(loaded_->scene.source(source)).publications();
-    const std::uint64_t dropped = loaded_->scene.source(source).state().dropped;
+    Source& its = subject_.source(source);
+    const std::uint64_t before = SourceTrace(its).publications();
+    const std::uint64_t dropped = its.state().dropped;
     const Source::StartTime asked = [&] { return use.start = start(); };
     std::exception_ptr problem;
     try {
@@ -115,10 +101,9 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
       problem = std::current_exception();
       use.why_not = error.what();
     }
-    const Source& its = loaded_->scene.source(source);
     use.dropped = its.state().dropped != dropped;
     if (use.dropped) use.why_not = "all snapshots were held";
-    const bool shown = SourceTrace(loaded_->scene.source(source)).publications() != before;
+    const bool shown = SourceTrace(its).publications() != before;
     if (!shown && use.why_not.empty()) use.why_not = "nothing was within reach";
     put(source, std::move(use), without_colors(frame));
     if (problem) std::rethrow_exception(problem);
@@ -137,24 +122,13 @@ std::function<void()> Recorder::watching(std::size_t source, std::function<void(
 
 // The thread that pushes.
 void Recorder::put(std::size_t source, message::FrameUse use, DepthFrame frame) {
-  const SourceTrace trace(loaded_->scene.source(source));
+  const SourceTrace trace(subject_.source(source));
   use.publication = trace.publications();
   for (const Reach& ball : trace.reach()) {
     use.reach.insert(use.reach.end(),
                      {ball.center.x(), ball.center.y(), ball.center.z(), ball.radius});
   }
-  std::unique_lock lock(mutex_);
-  if (waits_) room_.wait(lock, [this] { return frames_.size() < kMostFrames; });
-  if (frames_.size() >= kMostFrames && use.kind != "end") {
-    ++lost_frames_;
-    gaps_[source] = 1;
-    return;
-  }
-  use.gap = std::exchange(gaps_[source], 0) != 0;
-  if (trace.changes() != std::exchange(changes_[source], trace.changes())) {
-    use.options = exact_json(trace.options()).dump();
-  }
-  frames_.push_back({source, std::move(frame), std::move(use)});
+  waiting_.put(source, std::move(use), std::move(frame), trace);
 }
 
 void Recorder::note(double now, const std::optional<RosBridge::RobotState>& robot) {
@@ -165,50 +139,33 @@ void Recorder::note(double now, const std::optional<RosBridge::RobotState>& robo
   }
   message::DiagnosticStatus status = ros::robot_status(*robot);
   if (std::exchange(robot_, status.message) == status.message) return;
-  const std::lock_guard lock(mutex_);
-  robots_.push_back({now, std::move(status)});
+  waiting_.put({now, std::move(status)});
 }
 
 void Recorder::keep_up() {
-  while (std::ranges::any_of(hands_, &StepTraces::fills)) std::this_thread::sleep_for(kLook);
+  while (std::ranges::any_of(hands_, &StepTraces::fills)) std::this_thread::sleep_for(kQueueLook);
 }
 
 void Recorder::work() {
   bool last = false;
   while (!last) {
-    std::deque<Order> orders;
-    {
-      std::unique_lock lock(mutex_);
-      const auto called = [this] { return ending_ || !orders_.empty(); };
-      if (file_) {
-        called_.wait_for(lock, kLook, called);
-      } else {
-        called_.wait(lock, called);
-      }
-      orders.swap(orders_);
-      last = ending_;
-    }
+    std::deque<RecordOrder> orders = orders_.wait(present_.file != nullptr, last);
     drain();
-    for (Order& order : orders) carry_out(std::move(order));
+    for (RecordOrder& order : orders) carry_out(std::move(order));
   }
   close();
 }
 
-void Recorder::carry_out(Order order) {
+void Recorder::carry_out(RecordOrder order) {
   close();
   if (!order.file) return;
   drain();  // a step that came while the file before was closed
-  dropped_ = dropped();
-  report_ = {};
-  report_.path = order.path;
-  file_ = std::move(order.file);
-  {
-    const std::lock_guard lock(mutex_);
-    gaps_.assign(gaps_.size(), 0);
-  }
+  present_ = {std::move(order.file), {}, dropped()};
+  present_.report.path = order.path;
+  waiting_.forget_gaps();
   accept(true);  // recorded is what comes from now on, though what follows takes its time
   try {
-    file_->begin(order.setup);
+    present_.file->begin(order.setup);
   } catch (const std::exception& error) {
     fail(error.what());
   }
@@ -220,26 +177,21 @@ void Recorder::accept(bool on) {
 }
 
 void Recorder::drain() {
-  std::deque<RecordedFrame> frames;
-  std::deque<RecordedRobot> robots;
-  {
-    const std::lock_guard lock(mutex_);
-    frames.swap(frames_);
-    robots.swap(robots_);
-  }
-  room_.notify_all();
+  const auto [frames, robots] = waiting_.take();
+  const std::unique_ptr<RecordingFile>& file = present_.file;
+  RecordReport& report = present_.report;
   try {
     for (const RecordedFrame& frame : frames) {
-      if (file_) file_->write(frame);
-      if (frame.use.kind != "end") ++report_.frames;
+      if (file) file->write(frame);
+      if (frame.use.kind != "end") ++report.frames;
     }
     for (const RecordedRobot& robot : robots) {
-      if (file_) file_->write(robot);
+      if (file) file->write(robot);
     }
     for (std::size_t i = 0; i < hands_.size(); ++i) {
       while (const StepTrace* const step = hands_[i].front()) {
-        if (file_) file_->write(i, *step);
-        ++report_.steps;
+        if (file) file->write(i, *step);
+        ++report.steps;
         hands_[i].drop();
       }
     }
@@ -249,11 +201,8 @@ void Recorder::drain() {
 }
 
 void Recorder::fail(const std::string& why) {
-  report_.problem = why;
-  {
-    const std::lock_guard lock(mutex_);
-    if (name_ == report_.path) name_.clear();
-  }
+  present_.report.problem = why;
+  orders_.forget(present_.report.path);
   close();
   drain();  // into nothing
   // Unlike fmt::print() this does not throw where standard error is full, too.
@@ -264,20 +213,21 @@ void Recorder::fail(const std::string& why) {
 
 // Writes what is queued and closes the file.
 void Recorder::close() {
-  if (!file_) return;
+  std::unique_ptr<RecordingFile>& file = present_.file;
+  RecordReport& report = present_.report;
+  if (!file) return;
   accept(false);
-  if (report_.problem.empty()) drain();
-  if (!file_) return;  // that failed
+  if (report.problem.empty()) drain();
+  if (!file) return;  // that failed
   try {
-    file_->close();
+    file->close();
   } catch (const std::exception& error) {
-    if (report_.problem.empty()) report_.problem = error.what();
+    if (report.problem.empty()) report.problem = error.what();
   }
-  file_.reset();
-  report_.lost_steps = dropped() - dropped_;
-  const std::lock_guard lock(mutex_);
-  report_.lost_frames = std::exchange(lost_frames_, 0);
-  reports_.push_back(std::move(report_));
+  file.reset();
+  report.lost_steps = dropped() - present_.dropped;
+  report.lost_frames = waiting_.take_lost();
+  reports_.push_back(std::move(report));
 }
 
 std::uint64_t Recorder::dropped() const {
@@ -287,11 +237,7 @@ std::uint64_t Recorder::dropped() const {
 }
 
 std::vector<RecordReport> Recorder::finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  called_.notify_one();
+  orders_.end();
   if (thread_.joinable()) thread_.join();
   close();  // where it had not begun
   return reports_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -12,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "apps/palpate/record/record_queues.hpp"
 #include "apps/palpate/record/recording_file.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "message/palpate_types.hpp"
@@ -61,7 +61,7 @@ class Recorder {
   /// @throws Error when the file cannot be made, and nothing changes.
   std::string record(bool on);
   /// The file that is being recorded; empty: none. Any thread.
-  [[nodiscard]] std::string recording() const;
+  [[nodiscard]] std::string recording() const { return orders_.name(); }
 
   /// Is told on the recorder's thread why a file ended by itself, the run going on. When
   /// on_broken() has returned, the one before is called no more.
@@ -84,16 +84,26 @@ class Recorder {
   [[nodiscard]] std::vector<RecordReport> finish();
 
  private:
-  // To begin a file, or, where that is null, to end the present one.
-  struct Order {
-    std::unique_ptr<RecordingFile> file;
-    std::string path;
-    RecordedSetup setup;
+  // The file that is written, how it goes, and how many steps were lost before it.
+  struct Present {
+    std::unique_ptr<RecordingFile> file;  // null: nothing is recorded
+    RecordReport report;
+    std::uint64_t dropped = 0;
+  };
+
+  // What is recorded, once that has begun.
+  struct Subject {
+    LoadedScene* loaded = nullptr;
+    std::vector<const Servo*> servos;
+    std::int64_t epoch = 0;  // ns
+
+    [[nodiscard]] RecordedSetup setup() const { return setup_of(*loaded, servos, epoch); }
+    [[nodiscard]] Source& source(std::size_t i) const { return loaded->scene.source(i); }
   };
 
   void put(std::size_t source, message::FrameUse use, DepthFrame frame);
   void work();
-  void carry_out(Order order);
+  void carry_out(RecordOrder order);
   void close();
   void fail(const std::string& why);
   void accept(bool on);
@@ -101,29 +111,15 @@ class Recorder {
   [[nodiscard]] std::uint64_t dropped() const;
 
   // The thread's, once it has begun.
-  std::unique_ptr<RecordingFile> file_;  // null: nothing is recorded
-  RecordReport report_;                  // of it
-  std::uint64_t dropped_ = 0;            // steps before it
+  Present present_;
   std::vector<RecordReport> reports_;
 
   std::deque<StepTraces> hands_;
-  LoadedScene* loaded_ = nullptr;
-  std::vector<const Servo*> servos_;
-  std::string robot_;       // what was noted of it last; the run's thread's
-  std::int64_t epoch_ = 0;  // ns
-  bool waits_ = false;
+  Subject subject_;
+  std::string robot_;  // what was noted of it last; the run's thread's
   std::atomic<bool> takes_frames_{false};
-  mutable std::mutex mutex_;  // of what follows, but that changes_[i] is source i's stream's
-  std::condition_variable room_;
-  std::condition_variable called_;
-  std::string name_;  // of the file that was asked for last; empty: it was ended
-  std::deque<Order> orders_;
-  std::deque<RecordedFrame> frames_;
-  std::deque<RecordedRobot> robots_;    // states of the robot
-  std::uint64_t lost_frames_ = 0;       // of the present file
-  std::vector<std::uint64_t> changes_;  // of each source's options, that were told
-  std::vector<char> gaps_;              // of each source: its last frame was not recorded
-  bool ending_ = false;
+  WaitingFrames waiting_;
+  RecordOrders orders_;
   std::mutex broken_mutex_;
   Broken broken_;
   std::thread thread_;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <utility>
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/record/options_json.hpp"
@@ -212,15 +211,17 @@ ForceDifference Replay::run(std::size_t hand, const EachStep& each) const {
 }
 
 void Replay::show(std::size_t hand, const EachStep& each) const {
-  const Recording::Hand& its = recording_.hands().at(hand);
-  Recording::Steps steps(recording_, hand);
-  std::optional<double> start;
-  while (const std::optional<Recording::Step> step = steps.next()) {
-    ServoState state = state_of(step->tick, its.options);
-    if (!start) start = state.time;
-    state.time -= *start;
-    each(state, its.device);
-  }
+  guarded(recording_.path(), [&] {
+    const Recording::Hand& its = recording_.hands().at(hand);
+    Recording::Steps steps(recording_, hand);
+    std::optional<double> start;
+    while (const std::optional<Recording::Step> step = steps.next()) {
+      ServoState state = state_of(step->tick, its.options);
+      if (!start) start = state.time;
+      state.time -= *start;
+      each(state, its.device);
+    }
+  });
 }
 
 }  // namespace palpate::app

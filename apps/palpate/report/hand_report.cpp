@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <string_view>
-
 #include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/source_report.hpp"

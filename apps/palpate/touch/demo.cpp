@@ -1,5 +1,4 @@
 // The command demo: a run that needs no file.
-#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>

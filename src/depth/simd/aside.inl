@@ -55,7 +55,9 @@ inline void round_sizes(Chunk& c) {
 
 // Sets the largest windows: by noise and wanted error, in blocks that the slopes foreshorten.
 inline void size_windows(const FitInput& in, int row, Chunk& c) {
-  constexpr float kSide = .88F;  // half side over radius: a disc's moments (docs/method.md 6.3)
+  // Half side over radius: a rectangle has a disc's second moments at sqrt(3) / 2 = .866 and its area
+  // at sqrt(pi) / 2 = .886; between them (judgement; docs/method.md 6.3).
+  constexpr float kSide = .88F;
   const auto y = static_cast<float>(in.y0 + row * in.step_y);
   const auto step_x = static_cast<float>(in.step_x);
   const auto step_y = static_cast<float>(in.step_y);

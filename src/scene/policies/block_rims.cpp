@@ -1,10 +1,10 @@
 // Weighs the points of a depth frame that lie beside rims and holes.
+#include "scene/policies/block_rims.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "field/formulas.hpp"
-#include "scene/policies/block_surface.hpp"
-#include "scene/policies/lanes.hpp"
 
 namespace palpate {
 namespace {
@@ -24,9 +24,11 @@ Floats weight(Kernel kernel, const Floats& q) {
 
 }  // namespace
 
-// How many blocks of the rectangle from the image's first block to each are empty or lie beside
-// another surface.
-void BlockSurface::mark_rims(const FilteredDepth& depth) {
+// No block is beside a rim yet; how many blocks of the rectangle from the image's first block to
+// each are empty or lie beside another surface.
+void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of, const BlockGrid& grid) {
+  halves_.assign(depth.size() + kLanes, 0);
+  row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   const std::ptrdiff_t columns = depth.columns;
   const auto width = static_cast<std::size_t>(columns + 1);
   rims_.resize(width * (static_cast<std::size_t>(depth.rows) + 1));
@@ -34,9 +36,9 @@ void BlockSurface::mark_rims(const FilteredDepth& depth) {
   each_row(depth, [&](std::size_t v) {
     std::int32_t* const sums = &rims_[(v + 1) * width];
     sums[0] = 0;
-    const float* const z = &z_[place(0, static_cast<int>(v))];
-    const float* const above = z - stride_;
-    const float* const radii = &radii_[v * (width - 1)];
+    const float* const z = &grid.z[grid.place(0, static_cast<int>(v))];
+    const float* const above = z - grid.stride;
+    const float* const radii = &of[v * (width - 1)];
     for (std::ptrdiff_t u = 0; u < columns; ++u) {
       const float radius = radii[u];
       const bool aside = (u > 0) & (std::abs(z[u] - z[u - 1]) > radius);
@@ -47,14 +49,14 @@ void BlockSurface::mark_rims(const FilteredDepth& depth) {
   for (std::size_t k = width; k < rims_.size(); ++k) rims_[k] += rims_[k - width];
 }
 
-int BlockSurface::half_window(const FilteredDepth& depth, std::size_t block) const {
+int BlockRims::half_window(const FilteredDepth& depth, std::size_t block, float radius) const {
   const double side = depth.pitch * static_cast<double>(depth.positions[block].z());
-  const double half = std::ceil(static_cast<double>(radii_[block]) / side);
+  const double half = std::ceil(static_cast<double>(radius) / side);
   const double asked = std::ceil(static_cast<double>(minimum_radius_) / side);
   return static_cast<int>(std::clamp(half, 1.0, std::max<double>(kLargestWindow, asked)));
 }
 
-bool BlockSurface::near_rim(const FilteredDepth& depth, std::size_t block, int half) const {
+bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half) const {
   const int u = static_cast<int>(block) % depth.columns;
   const int v = static_cast<int>(block) / depth.columns;
   const int left = u - half;
@@ -68,14 +70,16 @@ bool BlockSurface::near_rim(const FilteredDepth& depth, std::size_t block, int h
   return sum(right, bottom) - sum(left, bottom) - sum(right, top) + sum(left, top) > 0;
 }
 
-void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact) {
+void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
+                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact) {
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
-  mark_rims(depth);
+  mark(depth, radii, grid);
   const auto columns = static_cast<std::size_t>(depth.columns);
   // Most blocks are far outside, by more than single precision may err.
   const auto far = [&](std::size_t at, const Ball& ball) {
-    const Vectors place{load<Floats>(&x_[at]), load<Floats>(&y_[at]), load<Floats>(&z_[at])};
+    const Vectors place{load<Floats>(&grid.x[at]), load<Floats>(&grid.y[at]),
+                        load<Floats>(&grid.z[at])};
     const Vectors way = place - all_lanes(ball.center.cast<float>());
     const double reach = 1.001 * ball.radius + 1e-5 * ball.center.norm();
     return all(dot(way, way) > static_cast<float>(reach * reach));
@@ -86,18 +90,18 @@ void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> b
   each_row(depth, [&](std::size_t v) {
     const std::size_t end = (v + 1) * columns;
     for (std::size_t b = v * columns; b < end; ++b) {
-      const std::size_t at = place(static_cast<int>(b - v * columns), static_cast<int>(v));
+      const std::size_t at = grid.place(static_cast<int>(b - v * columns), static_cast<int>(v));
       if (exact == Exact::within && b + kLanes <= end && all_far(at)) {
         b += kLanes - 1;
         continue;
       }
-      if (radii_[b] == 0) continue;
+      if (radii[b] == 0) continue;
       const auto inside = [&](const Ball& ball) {
         return (depth.positions[b].cast<double>() - ball.center).squaredNorm() <=
                ball.radius * ball.radius;
       };
       if (exact == Exact::within && std::none_of(balls.begin(), balls.end(), inside)) continue;
-      const int half = half_window(depth, b);
+      const int half = half_window(depth, b, radii[b]);
       if (!near_rim(depth, b, half)) continue;
       halves_[b] = half;
       row_halves_[v] = std::max(row_halves_[v], half);
@@ -109,19 +113,20 @@ void BlockSurface::list_rims(const FilteredDepth& depth, std::span<const Ball> b
 // Calls take(block, place, sum) for each block whose sum over what is around it is wanted: of
 // weights times what stands in `factors`.
 template <class Take>
-void BlockSurface::sum_around(const FilteredDepth& depth, const float* factors, const Take& take) {
+void BlockRims::sum_around(const FilteredDepth& depth, const BlockGrid& grid, const float* factors,
+                           const Take& take) const {
   const auto sum = [&](std::size_t at, const Ints& halves, int half) {
-    const auto x = load<Floats>(&x_[at]);
-    const auto y = load<Floats>(&y_[at]);
-    const auto z = load<Floats>(&z_[at]);
+    const auto x = load<Floats>(&grid.x[at]);
+    const auto y = load<Floats>(&grid.y[at]);
+    const auto z = load<Floats>(&grid.z[at]);
     Floats total{};
     for (int dv = -half; dv <= half; ++dv) {
       for (int du = -half; du <= half; ++du) {
-        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(stride_) + du;
-        const Floats dx = load<Floats>(&x_[from]) - x;
-        const Floats dy = load<Floats>(&y_[from]) - y;
-        const Floats dz = load<Floats>(&z_[from]) - z;
-        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&per_r2_[from]);
+        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(grid.stride) + du;
+        const Floats dx = load<Floats>(&grid.x[from]) - x;
+        const Floats dy = load<Floats>(&grid.y[from]) - y;
+        const Floats dz = load<Floats>(&grid.z[from]) - z;
+        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&grid.per_r2[from]);
         const Floats w = weight(kernel_, q) * load<Floats>(factors + from);
         const Ints inside = (q < 1) & (halves >= std::max(std::abs(du), std::abs(dv)));
         total += inside ? w : Floats{};
@@ -135,9 +140,9 @@ void BlockSurface::sum_around(const FilteredDepth& depth, const float* factors, 
       const auto halves = load<Ints>(&halves_[first]);
       const int half = std::max({halves[0], halves[1], halves[2], halves[3]});
       if (half == 0) continue;
-      const Floats sums = sum(place(u, v), halves, half);
+      const Floats sums = sum(grid.place(u, v), halves, half);
       for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
-        if (halves[l] > 0) take(first + l, place(u + l, v), sums[l]);
+        if (halves[l] > 0) take(first + l, grid.place(u + l, v), sums[l]);
       }
     }
   };
@@ -147,11 +152,13 @@ void BlockSurface::sum_around(const FilteredDepth& depth, const float* factors, 
 }
 
 // a_i = 1 / max(S_i, 0.8 Sbar_i).
-void BlockSurface::weigh_rims(const FilteredDepth& depth) {
-  sum_around(depth, ones_.data(), [&](std::size_t, std::size_t at, float sum) { sums_[at] = sum; });
-  sum_around(depth, sums_.data(), [&](std::size_t block, std::size_t at, float around) {
-    const float sum = std::max(sums_[at], kShareOfAround * around / sums_[at]);
-    areas_[block] = radii_[block] * radii_[block] / sum;
+void BlockRims::weigh(const FilteredDepth& depth, std::span<const float> radii, BlockGrid& grid,
+                      std::span<float> areas) const {
+  sum_around(depth, grid, grid.ones.data(),
+             [&](std::size_t, std::size_t at, float sum) { grid.sums[at] = sum; });
+  sum_around(depth, grid, grid.sums.data(), [&](std::size_t block, std::size_t at, float around) {
+    const float sum = std::max(grid.sums[at], kShareOfAround * around / grid.sums[at]);
+    areas[block] = radii[block] * radii[block] / sum;
   });
 }
 

@@ -14,7 +14,6 @@ namespace {
 constexpr float kSpacings = 2.5f;  // R in spacings
 constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
-constexpr float kNowhere = 1e30f;  // 1 / R^2 of no point, 1/m^2
 
 // Deviation of a place that is sure, in R: three of it are where a point weighs half, 0.47 R
 // (derived; docs/method.md 6.7).
@@ -44,38 +43,38 @@ void put(std::vector<float>& column, std::size_t at, const Lanes& lanes) {
 }  // namespace
 
 void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> exact_within) {
-  measure(depth, exact_within, exact_within.empty() ? Exact::nowhere : Exact::within);
+  measure(depth, exact_within,
+          exact_within.empty() ? BlockRims::Exact::nowhere : BlockRims::Exact::within);
 }
 
 void BlockSurface::measure(const FilteredDepth& depth) {
-  measure(depth, {}, Exact::everywhere);
+  measure(depth, {}, BlockRims::Exact::everywhere);
 }
 
-void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact) {
-  make_room(depth, std::max(margin_, kLargestWindow));
+void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> balls,
+                           BlockRims::Exact exact) {
+  grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
   start(depth);
   limit_growth(depth);
-  list_rims(depth, balls, exact);
-  if (largest_half_ > margin_) {
-    make_room(depth, largest_half_);
-    each_row(depth, [&](std::size_t v) { lay_out_places(depth, v); });
+  rims_.find(depth, radii_, grid_, balls, exact);
+  if (rims_.largest_half() > grid_.margin) {
+    grid_.make_room(depth, rims_.largest_half());
+    each_row(depth, [&](std::size_t v) { grid_.lay_out_places(depth, v); });
   }
   each_row(depth, [&](std::size_t v) { lay_out(depth, v); });
   each_row(depth, [&](std::size_t v) { trust_row(depth, v); });
-  if (largest_half_ > 0) weigh_rims(depth);
+  if (rims_.largest_half() > 0) rims_.weigh(depth, radii_, grid_, areas_);
 }
 
 // Radii by spacing, and areas of a surface that goes on on all sides.
 void BlockSurface::start(const FilteredDepth& depth) {
   const std::size_t count = depth.size();
   for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(count + kLanes);
-  halves_.assign(count + kLanes, 0);
-  row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   const auto pitch = static_cast<float>(depth.pitch);
   const float whole = whole_sum(kernel_);
   const auto columns = static_cast<std::size_t>(depth.columns);
   each_row(depth, [&](std::size_t v) {
-    lay_out_places(depth, v);
+    grid_.lay_out_places(depth, v);
     for (std::size_t b = v * columns; b < (v + 1) * columns; ++b) {
       if (!present(depth, b)) {
         radii_[b] = areas_[b] = 0;
@@ -104,7 +103,7 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   const auto may_limit = [&](std::ptrdiff_t b, std::ptrdiff_t by, std::size_t at) {
     const auto other = load<Floats>(&radii_[b + by]);
     const Floats room = load<Floats>(&radii_[b]) - other;
-    return any((room > step * load<Floats>(&z_[at])) & (other != 0));
+    return any((room > step * load<Floats>(&grid_.z[at])) & (other != 0));
   };
   const auto limit = [&](std::ptrdiff_t b, std::ptrdiff_t by) {
     const float room = radii_[b] - radii_[by];
@@ -119,8 +118,8 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
       const std::ptrdiff_t b = v * columns + u;
       const std::ptrdiff_t skip = sign > 0 ? 0 : kLanes - 1;  // to the first of those side by side
       if (k > 0 && row > 0 && k + kLanes <= columns &&
-          !may_limit(b - skip, -sign, place(static_cast<int>(u - skip), v)) &&
-          !may_limit(b - skip, -sign * columns, place(static_cast<int>(u - skip), v))) {
+          !may_limit(b - skip, -sign, grid_.place(static_cast<int>(u - skip), v)) &&
+          !may_limit(b - skip, -sign * columns, grid_.place(static_cast<int>(u - skip), v))) {
         k += kLanes;
         continue;
       }
@@ -131,33 +130,9 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   }
 }
 
-// Makes room for the columns, with a margin of so many empty blocks all around.
-void BlockSurface::make_room(const FilteredDepth& depth, int margin) {
-  const auto stride = static_cast<std::size_t>(depth.columns + 2 * margin);
-  const std::size_t size = stride * static_cast<std::size_t>(depth.rows + 2 * margin) + kLanes;
-  if (margin == margin_ && stride == stride_ && size == x_.size()) return;
-  margin_ = margin;
-  stride_ = stride;
-  for (auto* column : {&x_, &y_, &z_, &reaches_, &precisions_, &sums_}) column->assign(size, 0);
-  per_r2_.assign(size, kNowhere);
-  ones_.assign(size, 1);
-}
-
-void BlockSurface::lay_out_places(const FilteredDepth& depth, std::size_t v) {
-  const auto columns = static_cast<std::size_t>(depth.columns);
-  const Eigen::Vector3f* position = depth.positions.data() + v * columns;
-  const std::size_t first = place(0, static_cast<int>(v));
-  for (std::size_t at = first; at < first + columns; ++at) {
-    x_[at] = position->x();
-    y_[at] = position->y();
-    z_[at] = position->z();
-    ++position;
-  }
-}
-
 // Puts side by side what sums over neighbours need.
 void BlockSurface::lay_out(const FilteredDepth& depth, std::size_t v) {
-  std::size_t at = place(0, static_cast<int>(v));
+  std::size_t at = grid_.place(0, static_cast<int>(v));
   std::size_t b = v * static_cast<std::size_t>(depth.columns);
   const auto take = [&](const auto& radius, const auto& deviation, const auto& area, auto lanes) {
     using Lanes = decltype(lanes);
@@ -167,10 +142,10 @@ void BlockSurface::lay_out(const FilteredDepth& depth, std::size_t v) {
     const Lanes precision = 1 / (deviation * deviation + sure * sure);
     const auto there = radius > 0;
     const Lanes nothing{};
-    put(reaches_, at, radius < spread ? spread : radius);
-    put(per_r2_, at, there ? 1 / (radius * radius) : nothing + kNowhere);
-    put(precisions_, at, there ? precision : nothing);
-    put(sums_, at, there ? (1 < sum ? sum : nothing + 1) : nothing);
+    put(grid_.reaches, at, radius < spread ? spread : radius);
+    put(grid_.per_r2, at, there ? 1 / (radius * radius) : nothing + BlockGrid::kNowhere);
+    put(grid_.precisions, at, there ? precision : nothing);
+    put(grid_.sums, at, there ? (1 < sum ? sum : nothing + 1) : nothing);
   };
   int u = 0;
   for (; u + kLanes <= depth.columns; u += kLanes, at += kLanes, b += kLanes) {
@@ -184,14 +159,14 @@ void BlockSurface::lay_out(const FilteredDepth& depth, std::size_t v) {
 
 void BlockSurface::trust_row(const FilteredDepth& depth, std::size_t v) {
   const std::size_t first = v * static_cast<std::size_t>(depth.columns);
-  const auto stride = static_cast<std::ptrdiff_t>(stride_);
+  const auto stride = static_cast<std::ptrdiff_t>(grid_.stride);
   const std::ptrdiff_t beside[] = {-stride - 1, -stride,    -stride + 1, -1,
                                    1,           stride - 1, stride,      stride + 1};
   for (int u = 0; u < depth.columns; u += kLanes) {
-    const float* const z = &z_[place(u, static_cast<int>(v))];
-    const float* const precisions = &precisions_[place(u, static_cast<int>(v))];
+    const float* const z = &grid_.z[grid_.place(u, static_cast<int>(v))];
+    const float* const precisions = &grid_.precisions[grid_.place(u, static_cast<int>(v))];
     const auto own = load<Floats>(precisions);
-    const auto reach = load<Floats>(&reaches_[place(u, static_cast<int>(v))]);
+    const auto reach = load<Floats>(&grid_.reaches[grid_.place(u, static_cast<int>(v))]);
     Floats count{};
     Floats sum{};
     for (const std::ptrdiff_t by : beside) {

@@ -5,11 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "geometry/parallel.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
+#include "scene/policies/block_grid.hpp"
+#include "scene/policies/block_rims.hpp"
 
 namespace palpate {
 
@@ -23,7 +24,9 @@ class BlockSurface {
 
   /// `minimum_radius`: no R below this, m.
   explicit BlockSurface(Kernel kernel, double minimum_radius = 0)
-      : kernel_(kernel), minimum_radius_(static_cast<float>(minimum_radius)) {}
+      : kernel_(kernel),
+        minimum_radius_(static_cast<float>(minimum_radius)),
+        rims_(kernel_, minimum_radius_) {}
 
   /// Radii and areas of all blocks. Beside rims and holes a weight is exact inside the balls
   /// (sensor frame), elsewhere that of a whole surface. Allocates when the size of frames changes.
@@ -54,56 +57,20 @@ class BlockSurface {
   }
 
  private:
-  static constexpr int kLargestWindow = 8;  // blocks on either side
-
-  enum class Exact { nowhere, within, everywhere };
-
-  template <class Visit>
-  static void each_row(const FilteredDepth& depth, const Visit& visit) {
-    constexpr std::size_t kRowsAtATime = 8;  // judgement: shares work among threads
-    detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtATime,
-                          [&](std::size_t v) { visit(v); });
-  }
-
-  void measure(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
+  void measure(const FilteredDepth& depth, std::span<const Ball> balls, BlockRims::Exact exact);
   void start(const FilteredDepth& depth);
   void limit_growth(const FilteredDepth& depth);
   void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
-  void mark_rims(const FilteredDepth& depth);
-  [[nodiscard]] int half_window(const FilteredDepth& depth, std::size_t block) const;
-  [[nodiscard]] bool near_rim(const FilteredDepth& depth, std::size_t block, int half) const;
-  void list_rims(const FilteredDepth& depth, std::span<const Ball> balls, Exact exact);
-  void make_room(const FilteredDepth& depth, int margin);
-  void lay_out_places(const FilteredDepth& depth, std::size_t v);
   void lay_out(const FilteredDepth& depth, std::size_t v);
   void trust_row(const FilteredDepth& depth, std::size_t v);
-  template <class Take>
-  void sum_around(const FilteredDepth& depth, const float* factors, const Take& take);
-  void weigh_rims(const FilteredDepth& depth);
 
   Kernel kernel_;
   float minimum_radius_;
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
   std::vector<float> trusts_;
-  std::vector<std::int32_t> rims_;  // blocks without or beside another surface, summed up to each
-  std::vector<std::int32_t>
-      halves_;                   // of windows whose sums are taken from neighbours; 0: none are
-  std::vector<int> row_halves_;  // the largest of each row
-  int largest_half_ = 0;
-
-  // The rest has a margin of nothing all around, so that neighbours are there without asking.
-  [[nodiscard]] std::size_t place(int u, int v) const {
-    return static_cast<std::size_t>(v + margin_) * stride_ + static_cast<std::size_t>(u + margin_);
-  }
-  int margin_ = 0;
-  std::size_t stride_ = 0;
-  std::vector<float> x_, y_, z_;   // m
-  std::vector<float> reaches_;     // in depth, of what may be the same surface, m
-  std::vector<float> per_r2_;      // 1 / R^2, 1/m^2
-  std::vector<float> precisions_;  // 1/m^2; 0: no point
-  std::vector<float> sums_;        // S_i
-  std::vector<float> ones_;
+  BlockGrid grid_;
+  BlockRims rims_;
 };
 
 /// Finds where the faces of a fitted depth image meet, and tells each block beside an edge or a

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "scene/policies/point_writer.hpp"
+#include "scene/policies/moving_points.hpp"
 
 namespace palpate {
 

@@ -1,0 +1,125 @@
+// Decides on the point that a frame shows at each block, and on the old ones there.
+#include "scene/policies/block_fates.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kAhead =
+    64;  // places that are prefetched before they are settled (judgement)
+
+// Share of the blocks around one that have to show the same surface; a line has 2 of 8 (derived).
+constexpr float kVouch = 0.25f;
+
+// Closer than R by what rounding may do.
+constexpr float kWithin2 = 0.98f;
+
+}  // namespace
+
+void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) const {
+  to.going_on.clear();
+  to.shown.clear();
+  to.unseen.clear();
+  for (std::size_t place = begin; place < end; place += kLanes) {
+    blocks_.prefetch(place + kAhead);
+    const SeenFour four = blocks_.four_at(place);
+    FourWays& ways = to.going_on.emplace_back();
+    if (place + kLanes <= end && goes_on(four, ways)) continue;
+    to.going_on.pop_back();
+    for (int l = 0; l < kLanes && place + l < end; ++l) settle(four.lane(l), to);
+  }
+}
+
+/// Are four live points seen again within R, as they face, beside no edge, alone at their places?
+/// Else there is more to decide. Worth 16 to 29 % of a frame (bench/RESULTS.md).
+bool BlockFates::goes_on(const SeenFour& seen, FourWays& ways) const {
+  const std::uint32_t first = tracks_.four_at(seen.place);
+  if (first == BlockEntries::kNone) return false;
+  bool live = true;
+  for (std::uint32_t k = 0; k < kLanes; ++k) {
+    const Entry& entry = shown_.entries()[first + k];
+    live = live & (entry.kind == EntryKind::live);
+    ways.variance[k] = entry.variance;
+  }
+  const auto old_edges = load<Ints>(&shown_.edges()[first]);
+  if (!live || any(~(seen.edges & old_edges))) return false;
+  ways.from = shown_.four_at(first);
+  ways.place = seen.place;
+  const Vectors way = ways.from.position - seen.position;
+  const Vectors& normal = ways.from.normal;
+  const Ints near = (seen.radius > 0) & (dot(way, way) <= kWithin2 * (seen.radius * seen.radius));
+  const Ints turns = ~normal.zero() &
+                     (dot(seen.normal, normal) < SeenPoint::kTurns * dot(seen.normal, seen.normal));
+  if (!all(near & ~turns)) return false;
+  moves_.follow(seen, ways);
+  return true;
+}
+
+/// Decides on the point that the frame has at a block, and on the old ones there.
+void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
+  std::optional<BlockTracks::Partner> partner;
+  if (seen.state.radius > 0) partner = tracks_.partner_of(seen);
+  const bool shown = seen.state.radius > 0 && is_sure(seen, partner);
+  if (!shown) partner.reset();
+  float at = blocks_.depth_of(seen.state.position);
+  if (shown && !partner) add(moves_.appear(seen), seen, to);
+  if (partner) {
+    const auto& [i, before] = *partner;
+    const bool vouched = !stays(seen, before);
+    const Fate own = fate({.shown = true, .same = true, .vouched = vouched});
+    if (own == Fate::stay) at = blocks_.depth_of(before.position);
+    add(own == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
+  }
+  const std::span<const std::uint32_t> old = tracks_.at(seen.place);
+  bool held = false;
+  for (const std::uint32_t i : old) {
+    if (partner && i == partner->i) continue;
+    FateFacts facts{.kind = shown_.entries()[i].kind, .shown = shown};
+    if (shown) {
+      facts.beyond = blocks_.depth_of(shown_.at(i).position) - at;
+      facts.radius = seen.state.radius;
+      facts.may_hide = facts.beyond > facts.radius && may_hide(old, i);
+    } else {
+      facts.second = facts.kind == EntryKind::live && std::exchange(held, true);
+    }
+    add(moves_.unseen(fate(facts), i), seen, to);
+  }
+}
+
+/// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal
+/// that noise has turned within a frame? One that turns for longer is believed after a while.
+bool BlockFates::is_sure(const SeenPoint& seen,
+                         const std::optional<BlockTracks::Partner>& partner) const {
+  if (partner) return !(seen.turns_from(partner->before.normal) && moves_.is_fresh(partner->i));
+  return !shown_.any() || blocks_.vouching(seen.place) >= kVouch;
+}
+
+/// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
+/// shows that, too? Such a frame does not tell where the surface is.
+bool BlockFates::stays(const SeenPoint& seen, const PointState& before) const {
+  return (before.position - seen.state.position).norm() > seen.state.radius &&
+         blocks_.vouching(seen.place) < FrameBlocks::kVouchToMove;
+}
+
+/// A block remembers one hidden surface: the one that was hidden first. What moves before it leaves
+/// no trail.
+bool BlockFates::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const {
+  const std::vector<Entry>& entries = shown_.entries();
+  if (entries[i].kind == EntryKind::hidden) return true;
+  const PointState point = shown_.at(i);
+  return std::ranges::none_of(old, [&](std::uint32_t other) {
+    return entries[other].kind == EntryKind::hidden &&
+           (shown_.at(other).position - point.position).norm() > point.radius;
+  });
+}
+
+void BlockFates::add(Way way, const SeenPoint& at, SettledPlaces& to) const {
+  if (PointMoves::is_gone(way)) return;
+  way.entry.place = at.place;
+  way.code = blocks_.order().codes[at.place];
+  (way.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(way);
+}
+
+}  // namespace palpate

@@ -1,0 +1,55 @@
+// Declares what becomes of the points at each block.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scene/policies/block_tracks.hpp"
+#include "scene/policies/fate.hpp"
+#include "scene/policies/frame_blocks.hpp"
+#include "scene/policies/moving_points.hpp"
+#include "scene/policies/point_moves.hpp"
+#include "scene/policies/shown_points.hpp"
+
+namespace palpate {
+
+/// What becomes of the points at some places of the curve.
+struct SettledPlaces {
+  std::vector<FourWays> going_on;
+  std::vector<Way> shown;   ///< of places where there is more to decide, in their order
+  std::vector<Way> unseen;  ///< points that no block shows
+
+  /// How many points blocks show.
+  [[nodiscard]] std::size_t count() const { return kLanes * going_on.size() + shown.size(); }
+};
+
+/// Gathers the facts on which the fate of each point depends, and has it moved accordingly.
+class BlockFates {
+ public:
+  /// All have to last as long.
+  BlockFates(const ShownPoints& shown, const FrameBlocks& blocks, const BlockTracks& tracks,
+             const PointMoves& moves)
+      : shown_(shown), blocks_(blocks), tracks_(tracks), moves_(moves) {}
+
+  /// Decides on the places from `begin` to `end`. Any number of threads, each with its own `to`.
+  void settle(std::size_t begin, std::size_t end, SettledPlaces& to) const;
+
+ private:
+  [[nodiscard]] bool goes_on(const SeenFour& seen, FourWays& ways) const;
+  void settle(const SeenPoint& seen, SettledPlaces& to) const;
+  [[nodiscard]] bool is_sure(const SeenPoint& seen,
+                             const std::optional<BlockTracks::Partner>& partner) const;
+  [[nodiscard]] bool stays(const SeenPoint& seen, const PointState& before) const;
+  [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
+  void add(Way way, const SeenPoint& at, SettledPlaces& to) const;
+
+  const ShownPoints& shown_;
+  const FrameBlocks& blocks_;
+  const BlockTracks& tracks_;
+  const PointMoves& moves_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,46 @@
+// Declares columns of blocks side by side, for sums over neighbours.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "geometry/parallel.hpp"
+#include "palpate/depth/depth_filter.hpp"
+
+namespace palpate {
+
+/// Calls visit(row) for the rows of a frame, on several threads.
+template <class Visit>
+void each_row(const FilteredDepth& depth, const Visit& visit) {
+  constexpr std::size_t kRowsAtATime = 8;  // judgement: shares work among threads
+  detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtATime,
+                        [&](std::size_t v) { visit(v); });
+}
+
+/// Columns of blocks with a margin of nothing all around, so that neighbours are there without
+/// asking.
+struct BlockGrid {
+  int margin = 0;  ///< blocks
+  std::size_t stride = 0;
+  std::vector<float> x, y, z;     ///< m
+  std::vector<float> reaches;     ///< in depth, of what may be the same surface, m
+  std::vector<float> per_r2;      ///< 1 / R^2, 1/m^2
+  std::vector<float> precisions;  ///< 1/m^2; 0: no point
+  std::vector<float> sums;        ///< S_i
+  std::vector<float> ones;
+
+  static constexpr float kNowhere = 1e30f;  ///< 1 / R^2 of no point, 1/m^2
+
+  /// Where a block stands in the columns.
+  [[nodiscard]] std::size_t place(int u, int v) const {
+    return static_cast<std::size_t>(v + margin) * stride + static_cast<std::size_t>(u + margin);
+  }
+
+  /// Makes room for the columns of a frame, with a margin of so many blocks.
+  void make_room(const FilteredDepth& depth, int blocks);
+
+  /// Puts down where the blocks of a row are.
+  void lay_out_places(const FilteredDepth& depth, std::size_t v);
+};
+
+}  // namespace palpate

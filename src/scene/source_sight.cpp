@@ -1,0 +1,43 @@
+// Says what a source's raw frames show, and for how long.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "depth/input.hpp"
+#include "scene/sight.hpp"
+#include "scene/source_inside.hpp"
+
+namespace palpate {
+namespace {
+
+// Frames that may be missing until a camera is silent. As many periods of its device stop a servo
+// (guard_for()).
+constexpr double kMissedFrames = 2.5;
+
+}  // namespace
+
+/// Lets the frame say which places are free.
+void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
+  depth::check(frame);
+  if (!std::isfinite(frame.stamp)) return;
+  const NoiseModel& noise = builder->noise();
+  sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
+}
+
+/// The age up to which a frame can say what is free, s.
+double Source::Inside::lasts() const {
+  if (stays) return std::numeric_limits<double>::infinity();
+  const std::lock_guard lock(mutex);
+  const double silence = options.policy.silence;
+  const double missed = kMissedFrames * state.interval;
+  return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);
+}
+
+std::optional<Seen> Source::seen(const Ball& ball, double now) const {
+  inside_->watched = true;
+  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->lasts());
+  if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
+  return seen;
+}
+
+}  // namespace palpate

@@ -1,0 +1,120 @@
+// Checks who is who: which old points the blocks of a new frame show again.
+#include "scene/policies/block_tracks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "palpate/depth/depth_filter.hpp"
+#include "scene/policies/morph.hpp"
+#include "support/depth_frames.hpp"
+#include "support/rates.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using test::kFrame;
+using test::looking_down;
+using test::small_camera;
+using test::wall;
+
+// Shows a wall in every block, then looks at another frame.
+class BlockTracksTest : public testing::Test {
+ protected:
+  BlockTracksTest() {
+    Morph morph{{}};
+    const FilteredDepth depth = filtered(wall(0.5));
+    auto points = std::make_shared<SurfacePoints>();
+    morph.look({depth, pinhole_});
+    morph.fill_still({depth, pinhole_}, {0, 0, kFrame}, points);
+    std::vector<Entry> entries(points->size());
+    for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i].place = i;
+    origin_ = points->origin;
+    shown_.replace(std::move(points), {0, 0, kFrame}, entries);
+    show(wall(0.5), false);
+  }
+
+  FilteredDepth filtered(const test::DepthOf& depth_of) {
+    DepthFilter filter({.memory = 1});
+    return filter.filter(test::frame_of(small_camera(), 0, depth_of), T_world_sensor_);
+  }
+
+  void show(const test::DepthOf& depth_of, bool moved) {
+    depth_ = filtered(depth_of);
+    blocks_.look(depth_, {}, true);
+    shown_.begin({kFrame, kFrame, kFrame}, origin_);
+    blocks_.put(depth_, origin_, false);
+    tracks_.begin(moved, pinhole_, kFrame);
+  }
+
+  [[nodiscard]] SeenPoint seen(std::uint32_t place) const { return blocks_.four_at(place).lane(0); }
+  [[nodiscard]] std::size_t middle() const { return blocks_.order().places[depth_.size() / 2]; }
+
+  Pinhole pinhole_ = small_camera().pinhole;
+  Eigen::Isometry3d T_world_sensor_ = looking_down();
+  Vector3d origin_ = Vector3d::Zero();
+  FilteredDepth depth_;
+  FrameBlocks blocks_{Kernel::wyvill, 0};
+  ShownPoints shown_;
+  BlockTracks tracks_{shown_, blocks_};
+};
+
+TEST_F(BlockTracksTest, ABlockThatShowsThePointAgainIsItsPartner) {
+  for (std::uint32_t place = 0; place < blocks_.order().size(); ++place) {
+    const auto partner = tracks_.partner_of(seen(place));
+    ASSERT_TRUE(partner) << place;
+    EXPECT_EQ(partner->i, place);
+    EXPECT_EQ(partner->before.position, seen(place).state.position);
+  }
+  EXPECT_EQ(tracks_.four_at(4), 4u);
+}
+
+TEST_F(BlockTracksTest, WhatHasMovedAsFastAsAHandIsTheSame) {
+  show(wall(0.5 - 0.9 * kFrame), false);
+  EXPECT_TRUE(tracks_.partner_of(seen(middle())));
+}
+
+TEST_F(BlockTracksTest, WhatHasMovedFasterIsAnother) {
+  show(wall(0.4), false);
+  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+}
+
+TEST_F(BlockTracksTest, WhatLeavesIsNoPartner) {
+  shown_.entries()[middle()].kind = EntryKind::leaving;
+  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+}
+
+TEST_F(BlockTracksTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
+  T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
+  show(wall(0.5), true);
+  std::size_t matched = 0;
+  std::size_t outside = 0;
+  for (std::uint32_t i = 0; i < shown_.entries().size(); ++i) {
+    const Entry& entry = shown_.entries()[i];
+    if (entry.kind == EntryKind::outside) {
+      ++outside;
+      continue;
+    }
+    const auto partner = tracks_.partner_of(seen(entry.place));
+    ASSERT_TRUE(partner) << i;
+    EXPECT_LT((partner->before.position - shown_.at(i).position).norm(), seen(i).state.radius);
+    ++matched;
+  }
+  EXPECT_GT(outside, 0u);
+  EXPECT_GT(matched, 5 * outside);
+}
+
+TEST_F(BlockTracksTest, APointThatComesBackIntoTheImageIsLiveAgain) {
+  T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
+  show(wall(0.5), true);
+  T_world_sensor_ = looking_down();
+  show(wall(0.5), true);
+  for (const Entry& entry : shown_.entries()) EXPECT_EQ(entry.kind, EntryKind::live);
+}
+
+}  // namespace
+}  // namespace palpate
