@@ -23,7 +23,7 @@ struct Candidate {
 };
 
 // No function: heaps call a pointer to one, and inline this.
-constexpr auto nearer = [](const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
+constexpr auto kNearer = [](const CellGrid::Neighbor& a, const CellGrid::Neighbor& b) {
   return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
                                                   : a.index < b.index;
 };
@@ -33,11 +33,11 @@ void offer(std::vector<CellGrid::Neighbor>& heap, std::size_t k,
            const CellGrid::Neighbor& neighbor) {
   if (heap.size() < k) {
     heap.push_back(neighbor);
-    std::push_heap(heap.begin(), heap.end(), nearer);
-  } else if (nearer(neighbor, heap.front())) {
-    std::pop_heap(heap.begin(), heap.end(), nearer);
+    std::push_heap(heap.begin(), heap.end(), kNearer);
+  } else if (kNearer(neighbor, heap.front())) {
+    std::pop_heap(heap.begin(), heap.end(), kNearer);
     heap.back() = neighbor;
-    std::push_heap(heap.begin(), heap.end(), nearer);
+    std::push_heap(heap.begin(), heap.end(), kNearer);
   }
 }
 
@@ -122,19 +122,22 @@ void CellGrid::within(const Eigen::Vector3f& center, float radius,
   std::array<std::uint32_t, kMaxStack> stack;
   std::size_t open = 0;
   stack[open++] = 0;
+  std::size_t count = found.size();
   while (open > 0) {
     const Cell& cell = cells_[stack[--open]];
-    if (detail::squared_distance(cell, center) > squared_radius) continue;
-    for (std::uint32_t c = cell.children; c-- > 0;) stack[open++] = cell.first_child + c;
-    if (cell.children != 0) continue;
-    std::size_t count = found.size();
-    found.resize(count + cell.size());
-    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // without branches: hits are random
-      found[count] = i;
-      count += detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
+    const bool inside = detail::largest_squared_distance(cell, center) <= squared_radius;
+    for (std::uint32_t c = inside ? 0 : cell.children; c-- > 0;) {
+      stack[open] = cell.first_child + c;  // no branch: whether a cell is near cannot be foretold
+      open += detail::squared_distance(cells_[stack[open]], center) <= squared_radius ? 1 : 0;
     }
-    found.resize(count);
+    if (!inside && cell.children != 0) continue;
+    if (count + cell.size() > found.size()) found.resize(2 * (count + cell.size()));
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // no branch: hits are random
+      found[count] = i;
+      count += inside || detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
+    }
   }
+  found.resize(count);
 }
 
 void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
@@ -156,7 +159,7 @@ void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
       offer(found, k, {i, detail::squared_distance(points_[i], center)});
     }
   }
-  std::sort_heap(found.begin(), found.end(), nearer);
+  std::sort_heap(found.begin(), found.end(), kNearer);
 }
 
 }  // namespace palpate

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/parallel.hpp"
@@ -32,6 +35,11 @@ struct Lanes {
   Floats v;
 
   explicit Lanes(const Floats& floats) : v(floats) {}
+  /// Three of four numbers.
+  explicit Lanes(const float* floats) {
+    std::memcpy(&v, floats, sizeof v);
+    v[3] = 0;
+  }
   explicit Lanes(const Eigen::Vector3f& p) : v{p.x(), p.y(), p.z(), 0.f} {}
 
   [[nodiscard]] Lanes operator-(const Lanes& other) const { return Lanes(v - other.v); }
@@ -42,18 +50,32 @@ struct Lanes {
   }
 };
 
+/// The cell's box, each bound read together with the number that stands behind it.
+[[nodiscard]] inline std::pair<Lanes, Lanes> box_of(const CellGrid::Cell& cell) {
+  static_assert(offsetof(CellGrid::Cell, upper) == 3 * sizeof(float));
+  return {Lanes(cell.lower.data()), Lanes(cell.upper.data())};
+}
+
 /// Between the boxes [lower, upper] and the cell's.
 [[nodiscard]] inline float squared_distance(const CellGrid::Cell& cell,
                                             const Eigen::Vector3f& lower,
                                             const Eigen::Vector3f& upper) {
-  const Lanes below = Lanes(cell.lower) - Lanes(upper);
-  const Lanes above = Lanes(lower) - Lanes(cell.upper);
+  const auto [cell_lower, cell_upper] = box_of(cell);
+  const Lanes below = cell_lower - Lanes(upper);
+  const Lanes above = Lanes(lower) - cell_upper;
   return below.larger(above).larger(Lanes(Lanes::Floats{})).squared_norm();
 }
 
 [[nodiscard]] inline float squared_distance(const CellGrid::Cell& cell,
                                             const Eigen::Vector3f& point) {
   return squared_distance(cell, point, point);
+}
+
+/// From the point to the farthest corner of the cell's box: no point of the cell is farther.
+[[nodiscard]] inline float largest_squared_distance(const CellGrid::Cell& cell,
+                                                    const Eigen::Vector3f& point) {
+  const auto [lower, upper] = box_of(cell);
+  return (upper - Lanes(point)).larger(Lanes(point) - lower).squared_norm();
 }
 
 /// Points [begin, end) of the sorted order and their tight box, m.

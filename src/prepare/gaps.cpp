@@ -57,9 +57,11 @@ WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& 
   constexpr float kSlope = 1;  // of R over distance, once gaps are closed; judgement
   WeightSums sums(sampling.grid, radii.values, options.kernel);
   if (options.radius || options.paper || !options.estimate_normals) return sums;
+  const std::vector<float> before = radii.values;
   if (close_gaps(sampling.grid, sums.own, sampling.spacings, radii.values, fits) == 0) return sums;
   limit_growth(sampling.grid, kSlope, radii.values, &fits);
-  return WeightSums(sampling.grid, radii.values, options.kernel);
+  sums.update(sampling.grid, before, radii.values, options.kernel);
+  return sums;
 }
 
 }  // namespace palpate

@@ -26,8 +26,8 @@ constexpr float kGapTrust = 0.3f;     // confidence, at least
 constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
 constexpr float kGapSpacings = 0.3f;  // least height, in spacings
 
-// Share of the squared slope from which a point is looked at closely: rounding takes less away.
-constexpr float kSafe = 0.999f;  // derived
+// Factor on the squared slope where points are picked for a closer look.
+constexpr float kSafe = 0.999f;  // derived: rounding takes less
 
 // Votes of one sheet on another; all are judgement.
 constexpr float kVoteReach = 1.3f;      // R

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -36,27 +37,69 @@ struct Input {
   const CellGrid& grid;
   std::vector<float> inverse;     // 1 / R_i^2
   std::vector<float> cell_reach;  // m
+  WeightSum sum;                  // of the kernel
 };
 
-Input make_input(const CellGrid& grid, std::span<const float> radii) {
-  Input input{grid, std::vector<float>(grid.size()), detail::largest_in_cells(grid, radii)};
+Input make_input(const CellGrid& grid, std::span<const float> radii, Kernel kernel) {
+  const simd::JoinFunctions& joins = simd::best_joins();
+  Input input{grid, std::vector<float>(grid.size()), detail::largest_in_cells(grid, radii),
+              kernel == Kernel::wyvill ? joins.wyvill_sums : joins.wendland_sums};
   std::transform(radii.begin(), radii.end(), input.inverse.begin(),
                  [](float radius) { return std::min(1 / (radius * radius), kLargest); });
   return input;
 }
 
-// For each point i the sum of w_ij values_j over all points j; no values: all 1.
-std::vector<float> sums_of(const Input& input, WeightSum sum, std::span<const float> values) {
-  std::vector<float> sums(input.grid.size());
-  detail::for_each_neighborhood(
-      input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        simd::Row row;
-        sum(detail::make_join(input.grid, first, count, runs), input.inverse.data(), values.data(),
-            &row);
-        std::copy_n(row, count, sums.begin() + first);
-      });
-  return sums;
+// For each point i that is `asked` for (empty: for all) the sum of w_ij values_j over all points j;
+// no values: all 1.
+void sums_of(const Input& input, std::span<const float> values, std::span<const std::uint8_t> asked,
+             std::vector<float>& sums) {
+  const auto is_asked = [&](std::uint32_t begin, std::uint32_t count) {
+    return asked.empty() || std::ranges::count(asked.subspan(begin, count), 1) > 0;
+  };
+  detail::for_each_block(input.grid, [&](const detail::Block& block, detail::Surroundings& around) {
+    if (!is_asked(block.begin, block.size())) return;
+    detail::for_each_part(
+        input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach}, block, around,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          if (!is_asked(first, count)) return;
+          simd::Row row;
+          input.sum(detail::make_join(input.grid, first, count, runs), input.inverse.data(),
+                    values.data(), &row);
+          for (std::uint32_t q = 0; q < count; ++q) {
+            if (is_asked(first + q, 1)) sums[first + q] = row[q];
+          }
+        });
+  });
+}
+
+// The same of values = own, over the point's own.
+void means_of(const Input& input, std::span<const float> own, std::span<const std::uint8_t> asked,
+              std::vector<float>& means) {
+  sums_of(input, own, asked, means);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    if (asked.empty() || asked[i] != 0) means[i] /= own[i];
+  }
+}
+
+// 1 for each point of leaves that are within the reach of points in another, m; 0: they have none.
+std::vector<std::uint8_t> reached(const CellGrid& grid, const std::vector<float>& reaches) {
+  std::vector<std::uint8_t> result(grid.size());
+  const std::vector<float> of_cells = detail::largest_in_cells(grid, reaches);
+  std::array<std::uint32_t, CellGrid::kMaxStack> stack;
+  for (std::size_t c = 0; c < of_cells.size(); ++c) {
+    const CellGrid::Cell& from = grid.cells()[c];
+    if (of_cells[c] <= 0 || from.children > 0) continue;
+    std::size_t open = 0;
+    stack[open++] = 0;
+    while (open > 0) {
+      const CellGrid::Cell& cell = grid.cells()[stack[--open]];
+      const float squared = detail::squared_distance(cell, from.lower, from.upper);
+      if (squared > of_cells[c] * of_cells[c]) continue;
+      for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
+      if (cell.children == 0) std::fill_n(result.begin() + cell.begin, cell.size(), 1);
+    }
+  }
+  return result;
 }
 
 // Are there enough others within the smaller of both points' diameters? A point that weighs as much
@@ -75,15 +118,29 @@ bool has_company(const CellGrid& grid, std::span<const float> radii, float own_s
 
 }  // namespace
 
-WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel) {
+WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel)
+    : own(grid.size()), around(grid.size()) {
   check(grid, radii);
-  const simd::JoinFunctions& joins = simd::best_joins();
-  const WeightSum sum = kernel == Kernel::wyvill ? joins.wyvill_sums : joins.wendland_sums;
-  const Input input = make_input(grid, radii);
-  own = sums_of(input, sum, {});
-  around = sums_of(input, sum, own);
-  detail::parallel_each(grid.size(), std::size_t{1} << 16,
-                        [&](std::size_t i) { around[i] /= own[i]; });
+  const Input input = make_input(grid, radii, kernel);
+  sums_of(input, {}, {}, own);
+  means_of(input, own, {}, around);
+}
+
+void WeightSums::update(const CellGrid& grid, std::span<const float> before,
+                        std::span<const float> radii, Kernel kernel) {
+  check(grid, radii);
+  const Input input = make_input(grid, radii, kernel);
+  std::vector<float> reaches(grid.size());  // of points that are not as before, m
+  const auto look = [&](std::span<const float> old, std::span<const float> now) {
+    for (std::size_t i = 0; i < reaches.size(); ++i) {
+      if (old[i] != now[i]) reaches[i] = std::max(before[i], radii[i]);
+    }
+  };
+  look(before, radii);
+  const std::vector<float> own_before = own;
+  sums_of(input, {}, reached(grid, reaches), own);
+  look(own_before, own);
+  means_of(input, own, reached(grid, reaches), around);
 }
 
 std::vector<float> density_weights(const WeightSums& sums) {

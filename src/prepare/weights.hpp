@@ -22,6 +22,12 @@ struct WeightSums {
   /// @throws Error when there are not as many radii as points, or one is not positive and finite.
   WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel = Kernel::wyvill);
 
+  /// Sums as of these `radii`, where they were those of the radii `before`: looks again at what
+  /// those that changed reach.
+  /// @throws Error as above.
+  void update(const CellGrid& grid, std::span<const float> before, std::span<const float> radii,
+              Kernel kernel = Kernel::wyvill);
+
   std::vector<float> own;     ///< S_i, at least 1
   std::vector<float> around;  ///< Sbar_i
 };

@@ -75,6 +75,21 @@ TEST(WeightSums, WantARadiusForEachPoint) {
   EXPECT_THROW(WeightSums(grid, std::vector<float>(9, 0.f)), Error);
 }
 
+TEST(WeightSums, FollowRadiiThatChangeAsIfSummedAnew) {
+  Clouds clouds(3);
+  const CellGrid grid(clouds.sphere(4000, 1));
+  const std::vector<float> before(grid.size(), 0.1f);
+  std::vector<float> after = before;
+  for (const std::size_t i : {7u, 8u, 2000u, 3999u}) {
+    after[i] = static_cast<float>(clouds.uniform(0.02, 0.3));
+  }
+  WeightSums sums(grid, before);
+  sums.update(grid, before, after);
+  const WeightSums anew(grid, after);
+  EXPECT_EQ(sums.own, anew.own);
+  EXPECT_EQ(sums.around, anew.around);
+}
+
 TEST(SupportRadii, AreTheLargestOfSpacingNoiseAndMinimum) {
   const std::vector<float> spacings{1e-3f, 2e-3f, 4e-3f};
   const auto expect = [&](SupportOptions options, std::size_t i, double radius) {
