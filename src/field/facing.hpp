@@ -18,7 +18,8 @@ enum Label : std::uint8_t {
   kInFront = 0,  ///< the free side of its plane is free, beside it
   kBehind = 1,   ///< it meets what is in front at a convex edge, or that hides it: solid is
                  ///< what is below both
-  kAcross = 2,   ///< it meets what is in front in a crease: free is what is above both
+  kAcross = 2,   ///< it meets what is in front in a crease, or where that goes on: free is what is
+                 ///< above both
 };
 static_assert(kAcross == simd::kLabels - 1);
 

@@ -161,7 +161,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double all[simd::kLabels] = {};
   const auto sign = static_cast<float>(sign_of(now_.parts[sheet.part]));
   double planes[simd::kLabels] = {};
-  double beyond[simd::kLabels] = {};
+  double beyond = 0;  // of what is in front: where it goes on beyond the sheet's plane
   each_meeting(
       sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
         const float length = way.norm();
@@ -171,7 +171,8 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
         above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
         all[q.label] += w;
         const float unsharp = kUnsharp * std::max(p.residual, q.residual);
-        if (-sign * p.normal.dot(way) > kBeyond * p.radius + unsharp) beyond[q.label] += w;
+        const bool passes = -sign * p.normal.dot(way) > kBeyond * p.radius + unsharp;
+        if (q.label == kInFront && passes) beyond += w;
       });
   int same = -1;
   for (int k = 0; k < simd::kLabels; ++k) {
@@ -189,7 +190,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   const bool concave = above[other] >= 0;
   // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
   const bool plate = parallel[other] < -kBackToBack * all[other];
-  if (other == kInFront && !plate && beyond[other] > kLeastMeeting) return kAcross;
+  if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
   if (other == kBehind && concave) return kInFront;
   if (other == kAcross && !concave) return kInFront;
   return concave ? kAcross : kBehind;

@@ -85,7 +85,7 @@ class RobotGuide {
   Robot robot_;
   Memory tool_;
   bool follows_ = true;
-  double speed_ = 0;  // highest of the touched surface towards the camera of late, m/s
+  double speed_ = 0;  // of the touched surface towards the camera, the highest lately, m/s
   double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
   double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
   double followed_ = 0;  // when it followed last, s; -infinite: something was solid since

@@ -22,7 +22,7 @@ class Sight {
  public:
   /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
   /// frames of one size have come, it takes no memory. Passes over a frame that is older than
-  /// the one before, and begins anew with the next where that is older, too.
+  /// the one before, and starts again with the next where that is older, too.
   void see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
            const NoiseModel& noise);
 

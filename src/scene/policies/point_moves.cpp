@@ -126,22 +126,23 @@ Way PointMoves::unseen(Fate fate, std::uint32_t i) const {
     case Fate::hide:
       return hide(i);
     case Fate::hold:
-      return hold(i, shown_.entries()[i].kind);
+      return hold(i);
     default:
       return leave(i);
   }
 }
 
 /// Nothing says that the point is gone, nothing that it is there.
-Way PointMoves::hold(std::uint32_t i, EntryKind kind) const {
+Way PointMoves::hold(std::uint32_t i) const {
+  const Entry& entry = shown_.entries()[i];
   // Stamps may go back.
-  const double confirmed = std::min(shown_.entries()[i].confirmed, moment_.stamp);
+  const double confirmed = std::min(entry.confirmed, moment_.stamp);
   const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
   const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
   const PointState from = shown_.at(i);
   const float most = std::min(from.presence, sure);
   const float presence = std::max(most, from.presence - share_of(options_.fade));
-  return keep(i, from, presence, kind, confirmed);
+  return keep(i, from, presence, entry.kind, confirmed);
 }
 
 /// Something before it keeps it from being seen.

@@ -59,7 +59,7 @@ class PointMoves {
  private:
   [[nodiscard]] float share_of(double time) const;
   [[nodiscard]] EdgeWay edge_of(const SeenPoint& seen, std::uint32_t i) const;
-  [[nodiscard]] Way hold(std::uint32_t i, EntryKind kind) const;
+  [[nodiscard]] Way hold(std::uint32_t i) const;
   [[nodiscard]] Way hide(std::uint32_t i) const;
   [[nodiscard]] Way go(std::uint32_t i) const;
   [[nodiscard]] Way leave(std::uint32_t i) const;
