@@ -253,7 +253,8 @@ void Sight::forget() {
   frames_ = 0;
 }
 
-/// Asks the frame before where the newest one measured nothing.
+/// Asks the frame before where the newest one measured nothing; there it has to count twice as
+/// long.
 std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
@@ -268,7 +269,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const 
   if (seen.age > lasts) {
     seen.says = Seen::Says::old;
   } else if (seen.says == Seen::Says::nothing && frames_ > 1 &&
-             now - before_.frame.stamp <= lasts) {
+             now - before_.frame.stamp <= 2 * lasts) {
     seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
   }
   return seen;

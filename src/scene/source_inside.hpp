@@ -145,6 +145,7 @@ struct Source::Inside {
   Prepared::Report report;
   std::shared_ptr<const SurfacePoints> points;
   Source::State state;
+  FrameLifetime lifetime;
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
   std::vector<Reach> found;                  // the same thread's

@@ -8,13 +8,6 @@
 #include "scene/source_inside.hpp"
 
 namespace palpate {
-namespace {
-
-// Frames that may be missing until a camera is silent. As many periods of its device stop a servo
-// (guard_for()).
-constexpr double kMissedFrames = 2.5;
-
-}  // namespace
 
 /// Lets the frame say which places are free.
 void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
@@ -24,13 +17,14 @@ void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_wo
   sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
 }
 
-/// The age up to which a frame can say what is free, s.
+/// The age up to which a frame can say what is free, s: until the next one should have replaced it.
 double Source::Inside::lasts() const {
   if (stays) return std::numeric_limits<double>::infinity();
   const std::lock_guard lock(mutex);
   const double silence = options.policy.silence;
-  const double missed = kMissedFrames * state.interval;
-  return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);
+  const double most = std::min(state.latency, silence) + silence;
+  const double usual = lifetime.longest();
+  return usual > 0 ? std::min(usual, most) : most;
 }
 
 std::optional<Seen> Source::seen(const Ball& ball, double now) const {

@@ -38,6 +38,23 @@ TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
   EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
 }
 
+// What begins to move where a frame is lost is told by the next one that comes.
+TEST_F(ARobot, WaitsForALostFrame) {
+  camera("camera", at_rest);
+  starts();
+  presses_at(0);
+  for (int k = 0; k < 40; ++k) {
+    cameras_.back().on = k % 5 != 1 && k % 5 != 3;
+    runs(kFrame);
+  }
+  cameras_.back().on = true;
+  ASSERT_TRUE(runs(2 * kFrame).target);
+  cameras_.back().on = false;
+  EXPECT_THAT(runs(1.9 * kFrame).why, HasSubstr("shows nothing new (camera)"));
+  cameras_.back().on = true;
+  EXPECT_TRUE(runs(kFrame).target) << "at once";
+}
+
 TEST_F(ARobot, WaitsWhereACameraHasEnded) {
   Source& source = camera("camera", at_rest);
   starts();

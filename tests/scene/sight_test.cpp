@@ -89,6 +89,14 @@ TEST_F(ASight, BridgesOneFrameThatMeasuresNothing) {
   EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
 }
 
+TEST_F(ASight, AsksTheFrameBeforeForOneMoreFrame) {
+  sees(wall(0.5));
+  sees([](double, double) { return 0; });
+  const double later = kFrameLasts - 1e-3;  // the frame before is a period older
+  EXPECT_EQ(at({0, 0, 0.4}, 0, later).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.4}, 0, kFrameLasts + 1e-3).says, Says::old);
+}
+
 TEST_F(ASight, IsTooOldAfterAWhile) {
   sees(wall(0.5));
   EXPECT_EQ(at({0, 0, 0.4}, 0, 0.9 * kFrameLasts).says, Says::free);
@@ -192,7 +200,25 @@ TEST(Seen, IsThereFromTheFirstQuestionOn) {
   EXPECT_EQ(source.seen(ball, 0.01)->says, Says::free);
   ASSERT_TRUE(push(0.03));
   EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old);  // after its way here and 2.5 frames
+  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old);
+}
+
+TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
+  constexpr double kDelay = 0.02;  // s
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  double stamp = 0;
+  for (int k = 0; k < 100; ++k) {
+    if (k % 5 == 1 || k % 5 == 3) continue;
+    stamp = k * kFramePeriod;
+    ASSERT_TRUE(
+        source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + kDelay; }));
+  }
+  const double due = kFramePeriod + kDelay;
+  EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->says, Says::old);
 }
 
 TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
@@ -205,7 +231,7 @@ TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
   }
   source.keep();
   EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old) << "what is felt stays";
+  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old) << "what is felt stays";
 }
 
 TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
