@@ -52,6 +52,17 @@ TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
   EXPECT_TRUE(behind.towards.isApprox(-Vector3d(0.01, 0, 0.52).normalized(), 1e-6));
 }
 
+TEST_F(ASight, TellsAllOfTheWayToWhatIsMeasuredWhereThatIsFar) {
+  const NoiseModel patches{{kPixelSigma, 0, 0}, 5};  // a window errs as one pixel
+  sight_.see(frame_of(small_camera(), 0, wall(0.5)), Eigen::Isometry3d::Identity(), patches);
+  const auto behind = [&](double way) {
+    return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kFrameLasts)->behind;
+  };
+  EXPECT_EQ(behind(2.9 * kPixelSigma), 0);
+  EXPECT_LT(behind(3.1 * kPixelSigma), 0.3 * kPixelSigma) << "nothing jumps where it begins";
+  EXPECT_NEAR(behind(20 * kPixelSigma), 20 * kPixelSigma, 0.5 * kPixelSigma);
+}
+
 TEST_F(ASight, TakesSteepSurfacesForWhatTheyAre) {
   const double turn = 70 * std::numbers::pi / 180;
   const Vector3d normal(std::sin(turn), 0, -std::cos(turn));

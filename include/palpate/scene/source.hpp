@@ -106,7 +106,8 @@ struct Seen {
   };
 
   Says says = Says::outside;
-  double behind = 0;  ///< m; a solid ball that goes so far towards the camera is free
+  double behind = 0;  ///< m; a solid ball that goes so far towards the camera is free: to what is
+                      ///< measured, or less where noise may have feigned some of it
   bool came = false;  ///< a solid one was free some frames before
   double age = 0;     ///< of the frame, s
   Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from the ball to the camera
