@@ -71,13 +71,8 @@ class FrameIntervalFilter {
 /// How old a camera's frame becomes until the next one replaces it, unless that one is lost.
 class FrameLifetime {
  public:
-  /// A frame of this stamp begins to count at `start`, s.
-  void add(double stamp, double start) {
-    const double gap = stamp - last_stamp_;
-    last_stamp_ = stamp;
-    if (frames_++ == 0 || !(gap > 0)) return;
-    ends_[count_++ % kFrames] = {gap, start - stamp + gap};
-  }
+  /// A frame was replaced at this age by one whose stamp is so much later, s.
+  void add(double gap, double age) { ends_[count_++ % kFrames] = {gap, age}; }
 
   /// The age that no frame exceeds while none is lost: the mean and three deviations of the last
   /// ones, s. 0: too few have come.
@@ -115,9 +110,7 @@ class FrameLifetime {
   static constexpr double kDeviations = 3;  // as many as noise is allowed (Sight)
 
   std::array<End, kFrames> ends_;
-  std::size_t count_ = 0;  // of ends that came
-  std::size_t frames_ = 0;
-  double last_stamp_ = 0;
+  std::size_t count_ = 0;  // of all that came
 };
 
 }  // namespace palpate

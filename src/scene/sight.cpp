@@ -252,6 +252,7 @@ void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor
   std::swap(before_, newest_);
   std::swap(newest_, spare_);
   frames_ = std::min(frames_ + 1, 3);
+  asked_before_ = std::exchange(asked_, false);
 }
 
 void Sight::forget() {
@@ -259,13 +260,24 @@ void Sight::forget() {
   frames_ = 0;
 }
 
+/// The age up to which a frame counts, s. The newest one came after the last question, so that the
+/// one before is replaced now, unless nobody asked for that either.
+double Sight::lasts(double now, double most) {
+  const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
+  const double gap = newest_.frame.stamp - before_.frame.stamp;
+  if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
+  const double usual = lifetime_.longest();
+  return usual > 0 && !std::isinf(most) ? std::min(usual, most) : most;
+}
+
 /// Asks the frame before where the newest one measured nothing; there it has to count twice as
 /// long.
-std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const {
+std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
+  const double lasts = this->lasts(now, most);
   const auto is_base = [&](const PosedFrame& base, const PosedFrame& frame) {
-    return !std::isinf(lasts) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
+    return !std::isinf(most) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
   };
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;

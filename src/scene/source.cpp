@@ -261,7 +261,6 @@ void Source::Inside::note(const Snapshot& snapshot) {
   state.interval = state.frames > 1 ? builder->interval() : 0;
   state.latency = snapshot.start - snapshot.stamp;
   state.stamp = snapshot.stamp;
-  lifetime.add(snapshot.stamp, snapshot.start);
   state.points = points->size();
   state.silent_from = snapshot.silent_from;
   state.fade = snapshot.fade;

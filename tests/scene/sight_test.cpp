@@ -30,7 +30,7 @@ class ASight : public ::testing::Test {
     sight_.see(frame_of(small_camera(), stamp_, depth, noise, seed), Eigen::Isometry3d::Identity(),
                kPixelNoise);
   }
-  [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) const {
+  [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) {
     return *sight_.at({place, radius}, stamp_ + later, kFrameLasts);
   }
 
@@ -224,12 +224,27 @@ TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
   for (int k = 0; k < 100; ++k) {
     if (k % 5 == 1 || k % 5 == 3) continue;
     stamp = k * kFramePeriod;
-    ASSERT_TRUE(
-        source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + kDelay; }));
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + 1; }));
+    EXPECT_EQ(source.seen(ball, stamp + kDelay)->says, Says::free);
   }
   const double due = kFramePeriod + kDelay;
   EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->says, Says::free);
   EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->says, Says::old);
+}
+
+TEST(Seen, LastsNoLongerAfterNobodyAskedForAWhile) {
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  double stamp = 0;
+  for (int k = 0; k < 60; ++k) {
+    stamp = k * kFramePeriod;
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp; }));
+    if (k < 30 || k > 50) (void)source.seen(ball, stamp);
+    if (k == 50) (void)source.seen(ball, stamp + 0.9 * kFramePeriod);
+  }
+  EXPECT_EQ(source.seen(ball, stamp + kFramePeriod + 1e-3)->says, Says::old);
 }
 
 TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
