@@ -76,9 +76,9 @@ Allowance allowance(const Trial& trial, const Vector3d& x, double t) {
   allowed.mm = allowed.noise;
   if (depth <= allowed.noise) return allowed;
   for (const Watcher& watcher : trial.cameras) {
-    const double window = one_frame(watcher);
-    if (window > allowed.window && looks_there(trial, watcher, x, t - window))
-      allowed.window = window;
+    double window = one_frame(watcher);
+    while (window > allowed.window && !looks_there(trial, watcher, x, t - window)) window -= kTick;
+    allowed.window = std::max(allowed.window, window);
   }
   double least = depth;
   for (double s = 0; s < allowed.window; s += kTick)
