@@ -25,9 +25,9 @@ Vector3d surface_before(const Trial& trial, const Vector3d& eye, const Vector3d&
 }
 
 // One frame of a camera, s: just before a frame arrives, the newest one is an interval and the
-// delay old. Lost and late frames get no more.
+// delay old; longer where one is taken early and the next one late. Lost frames get no more.
 double one_frame(const Watcher& watcher) {
-  return 1 / watcher.options.rate + watcher.delay;
+  return 1 / watcher.options.rate + 2 * watcher.options.jitter + watcher.delay;
 }
 
 bool looks_there(const Trial& trial, const Watcher& watcher, const Vector3d& x, double t) {
