@@ -143,7 +143,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   Memory hand = tool_;
   note(free, free && judge(state.hip, now, hand).free(), now, pressed);
   if (!follows_) return wait(proxy, now, dt);
-  const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
+  const Vector3d target = state.contact.proxy + proxy.seen.lift * proxy.seen.towards;
   return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 

@@ -187,26 +187,28 @@ std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pi
   return places;
 }
 
-/// How far the ball is behind a surface that was measured `depth` m before it, if noise may feign
-/// `noise` m: nothing up to that, and soon all of what is more.
-double behind(double depth, double noise) {
-  return depth > noise ? depth - noise * noise / depth : 0;
-}
-
 /// Adds what a ray shows to what is known of the ball. The surface goes on as it came from an
 /// earlier frame, and noise may feign three deviations of what follows from that.
 void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& seen) {
-  double farthest = behind(-gap.metres, kSure * gap.deviation);
+  double behind = 0;
+  double lift = 0;  // is steady where it begins, and soon the whole depth
+  const auto measured = [&](double depth, double noise) {
+    if (!(depth > noise)) return;
+    behind = std::max(behind, depth - noise);
+    lift = std::max(lift, depth - noise * noise / depth);
+  };
+  measured(-gap.metres, kSure * gap.deviation);
   const bool compares = before && before->whole && gap.whole;
   if (compares) {
     const double ahead = std::max(seen.age, 0.0) / span;
     const double error = std::hypot((1 + ahead) * gap.deviation, ahead * before->deviation);
     const double foreseen = ahead * (before->metres - gap.metres) - gap.metres;
-    farthest = std::max(farthest, behind(foreseen, kSure * error));
+    measured(foreseen, kSure * error);
   }
-  if (farthest <= seen.behind) return;
+  seen.lift = std::max(seen.lift, lift);
+  if (behind <= seen.behind) return;
   seen.says = Seen::Says::solid;
-  seen.behind = farthest;
+  seen.behind = behind;
   seen.came = compares && before->free();
 }
 

@@ -55,12 +55,12 @@ TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
 TEST_F(ASight, TellsAllOfTheWayToWhatIsMeasuredWhereThatIsFar) {
   const NoiseModel patches{{kPixelSigma, 0, 0}, 5};  // a window errs as one pixel
   sight_.see(frame_of(small_camera(), 0, wall(0.5)), Eigen::Isometry3d::Identity(), patches);
-  const auto behind = [&](double way) {
-    return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kFrameLasts)->behind;
+  const auto lift = [&](double way) {
+    return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kFrameLasts)->lift;
   };
-  EXPECT_EQ(behind(2.9 * kPixelSigma), 0);
-  EXPECT_LT(behind(3.1 * kPixelSigma), 0.3 * kPixelSigma) << "nothing jumps where it begins";
-  EXPECT_NEAR(behind(20 * kPixelSigma), 20 * kPixelSigma, 0.5 * kPixelSigma);
+  EXPECT_EQ(lift(2.9 * kPixelSigma), 0);
+  EXPECT_LT(lift(3.1 * kPixelSigma), 0.3 * kPixelSigma) << "nothing jumps where it begins";
+  EXPECT_NEAR(lift(20 * kPixelSigma), 20 * kPixelSigma, 0.5 * kPixelSigma);
 }
 
 TEST_F(ASight, TakesSteepSurfacesForWhatTheyAre) {
