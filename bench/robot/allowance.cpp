@@ -25,9 +25,9 @@ Vector3d surface_before(const Trial& trial, const Vector3d& eye, const Vector3d&
 }
 
 // One frame of a camera, s: just before a frame arrives, the newest one is an interval and the
-// delay old. Lost and late frames get no more.
+// delay old; longer where one is taken early and the next one late. Lost frames get no more.
 double one_frame(const Watcher& watcher) {
-  return 1 / watcher.options.rate + watcher.delay;
+  return 1 / watcher.options.rate + 2 * watcher.options.jitter + watcher.delay;
 }
 
 bool looks_there(const Trial& trial, const Watcher& watcher, const Vector3d& x, double t) {
@@ -76,9 +76,9 @@ Allowance allowance(const Trial& trial, const Vector3d& x, double t) {
   allowed.mm = allowed.noise;
   if (depth <= allowed.noise) return allowed;
   for (const Watcher& watcher : trial.cameras) {
-    const double window = one_frame(watcher);
-    if (window > allowed.window && looks_there(trial, watcher, x, t - window))
-      allowed.window = window;
+    double window = one_frame(watcher);
+    while (window > allowed.window && !looks_there(trial, watcher, x, t - window)) window -= kTick;
+    allowed.window = std::max(allowed.window, window);
   }
   double least = depth;
   for (double s = 0; s < allowed.window; s += kTick)

@@ -31,8 +31,10 @@ constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
-constexpr double kBlink = 0.3;    // s; after a shorter loss of sight it resumes at once (judgement)
-constexpr double kFreeFor = 0.5;  // s, so that a hand that passes does not start it (judgement)
+// s that hand and tool are free before it starts, so that a hand that passes does not start it;
+// after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:
+// 0.4 s)
+constexpr double kFreeFor = 0.5;
 constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
 constexpr double kJoin = 0.02;      // m; a hand finds a place again to that (judgement)
 // m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
@@ -111,15 +113,14 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
-// Is the straight way from the robot to the target seen to be free?
+// Is the straight way from the robot to the target seen to be free? A surface may have come over
+// the robot in one frame, as far as it does slowly.
 bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
   if (!robot_.place) return true;
-  const Vector3d& from = *robot_.place;
-  if ((target - from).norm() <= kWayStep) return true;
-  const auto steps = static_cast<int>(std::ceil((target - from).norm() / kWayStep));
-  Memory way = robot_.memory;
-  for (int i = 0; i < steps; ++i) {
-    if (!judge(from + (target - from) * i / steps, now, way).free()) return false;
+  const Vector3d way = target - *robot_.place;
+  Memory memory = robot_.memory;
+  for (double gone = kJump; gone < way.norm(); gone += kWayStep) {
+    if (!judge(*robot_.place + gone * way.normalized(), now, memory).free()) return false;
   }
   return true;
 }
@@ -135,23 +136,23 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   if (proxy.source == nullptr) return without_view(state, now, pressed);
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
-  const bool lags = robot_.place && (follows_ || now - followed_ <= kBlink);
+  const bool lags = robot_.place && (follows_ || now - followed_ <= kFreeFor);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
   Memory hand = tool_;
   note(free, free && judge(state.hip, now, hand).free(), now, pressed);
   if (!follows_) return wait(proxy, now, dt);
-  const Vector3d target = state.contact.proxy + ahead * proxy.seen.towards;
+  const Vector3d target = state.contact.proxy + proxy.seen.lift * proxy.seen.towards;
   return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
 }
 
 // Stops following when the proxy is not free. Starts again when proxy and hand have been free for
-// kFreeFor, when the button is pressed again, or after a loss of sight shorter than kBlink.
+// kFreeFor, when the button is pressed again, or after a loss of sight shorter than kFreeFor.
 void RobotGuide::note(bool proxy_free, bool both_free, double now, bool pressed) {
   free_since_ = both_free ? std::min(free_since_, now) : kNever;
   const bool may =
-      follows_ || pressed || now - free_since_ >= kFreeFor || now - followed_ <= kBlink;
+      follows_ || pressed || now - free_since_ >= kFreeFor || now - followed_ <= kFreeFor;
   follows_ = proxy_free && may;
 }
 

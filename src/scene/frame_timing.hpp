@@ -1,6 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 
 namespace palpate {
 
@@ -63,6 +66,51 @@ class FrameIntervalFilter {
   double last_stamp_ = 0;
   double last_start_ = 0;
   int frames_ = 0;
+};
+
+/// How old a camera's frame becomes until the next one replaces it, unless that one is lost.
+class FrameLifetime {
+ public:
+  /// A frame was replaced at this age by one whose stamp is so much later, s.
+  void add(double gap, double age) { ends_[count_++ % kFrames] = {gap, age}; }
+
+  /// The age that no frame exceeds while none is lost: the mean and three deviations of the last
+  /// ones, s. 0: too few have come.
+  [[nodiscard]] double longest() const {
+    const std::size_t known = std::min(count_, kFrames);
+    if (known < kFrames / 2) return 0;
+    std::array<End, kFrames> ends = ends_;
+    const auto end = ends.begin() + static_cast<std::ptrdiff_t>(known);
+    const auto quarter = ends.begin() + static_cast<std::ptrdiff_t>(known / 4);
+    std::nth_element(ends.begin(), quarter, end,
+                     [](const End& a, const End& b) { return a.gap < b.gap; });
+    const double interval = quarter->gap;
+    double count = 0, sum = 0, squares = 0;
+    for (auto i = ends.begin(); i != end; ++i) {
+      if (i->gap > kLost * interval) continue;
+      const double before = count > 0 ? sum / count : 0;
+      sum += i->age;
+      count += 1;
+      squares += (i->age - before) * (i->age - sum / count);
+    }
+    return sum / count + kDeviations * std::sqrt(squares / std::max(count - 1, 1.0));
+  }
+
+ private:
+  // The end of a frame's time.
+  struct End {
+    double gap = 0;  // to the next one's stamp, s
+    double age = 0;  // its own then, s
+  };
+
+  // Frames: their deviation is known to a sixth, 1 / sqrt(2 n).
+  static constexpr std::size_t kFrames = 16;
+  // Intervals: half way from one, which a lost frame makes two.
+  static constexpr double kLost = 1.5;
+  static constexpr double kDeviations = 3;  // as many as noise is allowed (Sight)
+
+  std::array<End, kFrames> ends_;
+  std::size_t count_ = 0;  // of all that came
 };
 
 }  // namespace palpate

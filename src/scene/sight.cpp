@@ -190,14 +190,22 @@ std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pi
 /// Adds what a ray shows to what is known of the ball. The surface goes on as it came from an
 /// earlier frame, and noise may feign three deviations of what follows from that.
 void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& seen) {
-  double behind = gap.free() ? 0 : -gap.metres - kSure * gap.deviation;
+  double behind = 0;
+  double lift = 0;  // is steady where it begins, and soon the whole depth
+  const auto measured = [&](double depth, double noise) {
+    if (!(depth > noise)) return;
+    behind = std::max(behind, depth - noise);
+    lift = std::max(lift, depth - noise * noise / depth);
+  };
+  measured(-gap.metres, kSure * gap.deviation);
   const bool compares = before && before->whole && gap.whole;
   if (compares) {
     const double ahead = std::max(seen.age, 0.0) / span;
     const double error = std::hypot((1 + ahead) * gap.deviation, ahead * before->deviation);
     const double foreseen = ahead * (before->metres - gap.metres) - gap.metres;
-    behind = std::max(behind, foreseen - kSure * error);
+    measured(foreseen, kSure * error);
   }
+  seen.lift = std::max(seen.lift, lift);
   if (behind <= seen.behind) return;
   seen.says = Seen::Says::solid;
   seen.behind = behind;
@@ -246,6 +254,7 @@ void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor
   std::swap(before_, newest_);
   std::swap(newest_, spare_);
   frames_ = std::min(frames_ + 1, 3);
+  asked_before_ = std::exchange(asked_, false);
 }
 
 void Sight::forget() {
@@ -253,12 +262,24 @@ void Sight::forget() {
   frames_ = 0;
 }
 
-/// Asks the frame before where the newest one measured nothing.
-std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const {
+/// The age up to which a frame counts, s. The newest one came after the last question, so that the
+/// one before is replaced now, unless nobody asked for that either.
+double Sight::lasts(double now, double most) {
+  const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
+  const double gap = newest_.frame.stamp - before_.frame.stamp;
+  if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
+  const double usual = lifetime_.longest();
+  return usual > 0 && !std::isinf(most) ? std::min(usual, most) : most;
+}
+
+/// Asks the frame before where the newest one measured nothing; there it has to count twice as
+/// long.
+std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
+  const double lasts = this->lasts(now, most);
   const auto is_base = [&](const PosedFrame& base, const PosedFrame& frame) {
-    return !std::isinf(lasts) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
+    return !std::isinf(most) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
   };
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
@@ -268,7 +289,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, double lasts) const 
   if (seen.age > lasts) {
     seen.says = Seen::Says::old;
   } else if (seen.says == Seen::Says::nothing && frames_ > 1 &&
-             now - before_.frame.stamp <= lasts) {
+             now - before_.frame.stamp <= 2 * lasts) {
     seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
   }
   return seen;

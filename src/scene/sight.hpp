@@ -6,6 +6,7 @@
 
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/source.hpp"
+#include "scene/frame_timing.hpp"
 
 namespace palpate {
 
@@ -29,16 +30,23 @@ class Sight {
   /// No frame has come any more.
   void forget();
 
-  /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until it
-  /// is `lasts` old. Nothing: no frame has come.
-  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, double lasts) const;
+  /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until
+  /// the next one is due, and until it is `most` old (s); infinite: it stays. Who asks often lets
+  /// it know when frames are due: it measures how old they are when they are first asked for.
+  /// Nothing: no frame has come.
+  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, double most);
 
  private:
-  mutable std::mutex mutex_;  // of what follows
+  [[nodiscard]] double lasts(double now, double most);
+
+  std::mutex mutex_;  // of what follows
   PosedFrame newest_;
-  PosedFrame before_;  // the one before
-  PosedFrame base_;    // an earlier one, that tells speeds where frames come quickly
-  int frames_ = 0;     // of the first three that have come
+  PosedFrame before_;          // the one before
+  PosedFrame base_;            // an earlier one, that tells speeds where frames come quickly
+  int frames_ = 0;             // of the first three that have come
+  bool asked_ = false;         // has anybody asked the newest one?
+  bool asked_before_ = false;  // and the one before?
+  FrameLifetime lifetime_;
 
   PosedFrame spare_;   // the thread's that shows frames
   bool late_ = false;  // the same thread's: was the last frame older than the newest?

@@ -8,13 +8,6 @@
 #include "scene/source_inside.hpp"
 
 namespace palpate {
-namespace {
-
-// Frames that may be missing until a camera is silent. As many periods of its device stop a servo
-// (guard_for()).
-constexpr double kMissedFrames = 2.5;
-
-}  // namespace
 
 /// Lets the frame say which places are free.
 void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
@@ -24,18 +17,17 @@ void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_wo
   sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
 }
 
-/// The age up to which a frame can say what is free, s.
-double Source::Inside::lasts() const {
+/// The age up to which a frame can say what is free at most, s.
+double Source::Inside::lasts_at_most() const {
   if (stays) return std::numeric_limits<double>::infinity();
   const std::lock_guard lock(mutex);
   const double silence = options.policy.silence;
-  const double missed = kMissedFrames * state.interval;
-  return std::min(state.latency, silence) + (missed > 0 ? std::min(missed, silence) : silence);
+  return std::min(state.latency, silence) + silence;
 }
 
 std::optional<Seen> Source::seen(const Ball& ball, double now) const {
   inside_->watched = true;
-  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->lasts());
+  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->lasts_at_most());
   if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
   return seen;
 }

@@ -38,6 +38,49 @@ TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
   EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
 }
 
+// What begins to move where a frame is lost is told by the next one that comes.
+TEST_F(ARobot, WaitsForALostFrame) {
+  camera("camera", at_rest);
+  starts();
+  presses_at(0);
+  for (int k = 0; k < 40; ++k) {
+    cameras_.back().on = k % 5 != 1 && k % 5 != 3;
+    runs(kFrame);
+  }
+  cameras_.back().on = true;
+  ASSERT_TRUE(runs(2 * kFrame).target);
+  cameras_.back().on = false;
+  EXPECT_THAT(runs(1.9 * kFrame).why, HasSubstr("shows nothing new (camera)"));
+  cameras_.back().on = true;
+  EXPECT_TRUE(runs(kFrame).target) << "at once";
+}
+
+TEST_F(ARobot, GoesOnAtOnceAfterASlowCameraLostTwoFrames) {
+  camera("camera", at_rest);
+  cameras_.back().every = 6;  // 5 Hz
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(2.05).target);
+  cameras_.back().on = false;
+  EXPECT_FALSE(runs(0.4).target);
+  cameras_.back().on = true;
+  EXPECT_TRUE(runs(0.2).target);
+}
+
+// The robot itself is behind what came meanwhile; the way out to the front is short.
+TEST_F(ARobot, FollowsToTheFrontOfWhatCameALittleWhileAFrameWasLost) {
+  camera("camera", [](double t) { return t < 1.01 ? 0 : 0.008; });
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(1).target);
+  cameras_.back().on = false;
+  ASSERT_FALSE(runs(2 * kFrame).target);
+  cameras_.back().on = true;
+  const RobotGuide::Answer answer = runs(1.1 * kFrame);
+  ASSERT_TRUE(answer.target) << answer.why;
+  EXPECT_NEAR(answer.target->z(), 0.008, 1e-3);
+}
+
 TEST_F(ARobot, WaitsWhereACameraHasEnded) {
   Source& source = camera("camera", at_rest);
   starts();

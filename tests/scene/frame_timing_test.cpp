@@ -1,8 +1,9 @@
-// Checks the smoothed interval and the times of snapshots.
+// Checks the smoothed interval, the times of snapshots, and how long frames count.
 #include "scene/frame_timing.hpp"
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 
 namespace palpate {
@@ -63,6 +64,52 @@ TEST(FrameIntervalFilter, AClockThatIsSetBackChangesNothing) {
   stamp = 0;
   for (int k = 0; k < 3; ++k) static_cast<void>(filter.next(stamp, 20));
   EXPECT_NEAR(filter.interval(), 1. / 30, 1e-9);
+}
+
+constexpr double kInterval = 0.1;  // s
+constexpr double kDelay = 0.02;    // s
+
+// The lifetime after frames that are up to `jitter` (s) early or late, and of which a share is
+// lost.
+FrameLifetime after(int frames, double jitter, double lost) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> error(-jitter, jitter);
+  std::bernoulli_distribution drop(lost);
+  FrameLifetime lifetime;
+  std::optional<double> before;
+  for (int k = 0; k < frames; ++k) {
+    const double stamp = kInterval * k + error(random);
+    if (drop(random)) continue;
+    if (before) lifetime.add(stamp - *before, stamp - *before + kDelay);
+    before = stamp;
+  }
+  return lifetime;
+}
+
+TEST(FrameLifetime, IsUnknownAtFirst) {
+  EXPECT_EQ(after(8, 0, 0).longest(), 0);
+  EXPECT_NEAR(after(9, 0, 0).longest(), kInterval + kDelay, 1e-9);
+}
+
+TEST(FrameLifetime, IsNoLongerWhereFramesAreLost) {
+  EXPECT_NEAR(after(200, 0, 0.4).longest(), kInterval + kDelay, 1e-9);
+}
+
+TEST(FrameLifetime, LastsAsLongAsFramesThatComeLate) {
+  constexpr double kJitter = 0.01;  // s
+  for (const double lost : {0., 0.4}) {
+    const double longest = after(200, kJitter, lost).longest();
+    EXPECT_GT(longest, kInterval + kDelay + 1.5 * kJitter) << lost;
+    EXPECT_LT(longest, kInterval + kDelay + 4 * kJitter) << lost;
+  }
+}
+
+TEST(FrameLifetime, FollowsAnotherRate) {
+  FrameLifetime lifetime;
+  for (int k = 0; k < 30; ++k) lifetime.add(1. / 60, 1. / 60);
+  EXPECT_NEAR(lifetime.longest(), 1. / 60, 1e-9);
+  for (int k = 0; k < 16; ++k) lifetime.add(0.2, 0.2);
+  EXPECT_NEAR(lifetime.longest(), 0.2, 1e-9);
 }
 
 }  // namespace

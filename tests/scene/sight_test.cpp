@@ -30,7 +30,7 @@ class ASight : public ::testing::Test {
     sight_.see(frame_of(small_camera(), stamp_, depth, noise, seed), Eigen::Isometry3d::Identity(),
                kPixelNoise);
   }
-  [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) const {
+  [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) {
     return *sight_.at({place, radius}, stamp_ + later, kFrameLasts);
   }
 
@@ -50,6 +50,17 @@ TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
   EXPECT_EQ(behind.says, Says::solid);
   EXPECT_NEAR(behind.behind, 0.02, 4 * kPixelSigma);
   EXPECT_TRUE(behind.towards.isApprox(-Vector3d(0.01, 0, 0.52).normalized(), 1e-6));
+}
+
+TEST_F(ASight, TellsAllOfTheWayToWhatIsMeasuredWhereThatIsFar) {
+  const NoiseModel patches{{kPixelSigma, 0, 0}, 5};  // a window errs as one pixel
+  sight_.see(frame_of(small_camera(), 0, wall(0.5)), Eigen::Isometry3d::Identity(), patches);
+  const auto lift = [&](double way) {
+    return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kFrameLasts)->lift;
+  };
+  EXPECT_EQ(lift(2.9 * kPixelSigma), 0);
+  EXPECT_LT(lift(3.1 * kPixelSigma), 0.3 * kPixelSigma) << "nothing jumps where it begins";
+  EXPECT_NEAR(lift(20 * kPixelSigma), 20 * kPixelSigma, 0.5 * kPixelSigma);
 }
 
 TEST_F(ASight, TakesSteepSurfacesForWhatTheyAre) {
@@ -87,6 +98,14 @@ TEST_F(ASight, BridgesOneFrameThatMeasuresNothing) {
   EXPECT_EQ(at({0, 0, 0.55}).says, Says::solid);
   sees([](double, double) { return 0; });
   EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
+}
+
+TEST_F(ASight, AsksTheFrameBeforeForOneMoreFrame) {
+  sees(wall(0.5));
+  sees([](double, double) { return 0; });
+  const double later = kFrameLasts - 1e-3;  // the frame before is a period older
+  EXPECT_EQ(at({0, 0, 0.4}, 0, later).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.4}, 0, kFrameLasts + 1e-3).says, Says::old);
 }
 
 TEST_F(ASight, IsTooOldAfterAWhile) {
@@ -192,7 +211,40 @@ TEST(Seen, IsThereFromTheFirstQuestionOn) {
   EXPECT_EQ(source.seen(ball, 0.01)->says, Says::free);
   ASSERT_TRUE(push(0.03));
   EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old);  // after its way here and 2.5 frames
+  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old);
+}
+
+TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
+  constexpr double kDelay = 0.02;  // s
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  double stamp = 0;
+  for (int k = 0; k < 100; ++k) {
+    if (k % 5 == 1 || k % 5 == 3) continue;
+    stamp = k * kFramePeriod;
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + 1; }));
+    EXPECT_EQ(source.seen(ball, stamp + kDelay)->says, Says::free);
+  }
+  const double due = kFramePeriod + kDelay;
+  EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->says, Says::old);
+}
+
+TEST(Seen, LastsNoLongerAfterNobodyAskedForAWhile) {
+  Scene scene;
+  Source& source = scene.add("camera");
+  const Ball ball{{0, 0, 0.4}, 0};
+  (void)source.seen(ball, 0);  // asks for frames
+  double stamp = 0;
+  for (int k = 0; k < 60; ++k) {
+    stamp = k * kFramePeriod;
+    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp; }));
+    if (k < 30 || k > 50) (void)source.seen(ball, stamp);
+    if (k == 50) (void)source.seen(ball, stamp + 0.9 * kFramePeriod);
+  }
+  EXPECT_EQ(source.seen(ball, stamp + kFramePeriod + 1e-3)->says, Says::old);
 }
 
 TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
@@ -205,7 +257,7 @@ TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
   }
   source.keep();
   EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.2)->says, Says::old) << "what is felt stays";
+  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old) << "what is felt stays";
 }
 
 TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {

@@ -106,9 +106,12 @@ struct Seen {
   };
 
   Says says = Says::outside;
-  double behind = 0;  ///< m; a solid ball that goes so far towards the camera is free
-  bool came = false;  ///< a solid one was free some frames before
-  double age = 0;     ///< of the frame, s
+  double behind =
+      0;            ///< m; a solid ball that goes so far towards the camera is free, noise allowed
+  double lift = 0;  ///< m; so far it is to be moved: all of the way to what is measured, but less
+                    ///< where noise may have feigned most of it; no less than `behind`
+  bool came = false;                                  ///< a solid one was free some frames before
+  double age = 0;                                     ///< of the frame, s
   Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from the ball to the camera
 };
 
@@ -205,9 +208,11 @@ class Source {
   /// What the newest depth frames say of a ball (m, world) at time `now` (s, on the clock of their
   /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
   /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
-  /// once two and a half should have followed it, or PolicyOptions::silence after it came, the last
-  /// one before keep(), too; one of set() never is. From raw depths, not from the surface. Nothing
-  /// for clouds, and until a frame is pushed after the first call. Any thread but a servo's.
+  /// once the next one should have replaced it: at the age at which the last 16 frames were
+  /// replaced, three deviations allowed, lost frames left out; after fewer than nine frames, and at
+  /// the latest, PolicyOptions::silence after it came. So is the last one before keep(); one of
+  /// set() never is. From raw depths, not from the surface. Nothing for clouds, and until a frame
+  /// is pushed after the first call. Any thread but a servo's.
   [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
   /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a
