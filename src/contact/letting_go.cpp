@@ -1,4 +1,4 @@
-// Ends contacts whose surface is gone, and lets go of a hand that is held in free air.
+// Ends contacts whose surface is gone, and lets go of hands that nothing should hold.
 
 #include "contact/probe.hpp"
 #include "contact/proxy_inside.hpp"
@@ -52,6 +52,19 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double d
   if (away_time_ < kAwayTime) return;
   contact.notes |= ContactNote::freed;
   if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
+}
+
+// Who passed through a surface is not held by it from within. The spring fades in 20 ms.
+void Proxy::Inside::free_trapped(Probe& probe, const Eigen::Vector3d& hip,
+                                 Contact& contact) noexcept {
+  if (!touching_) return way_out_.wander(probe, position_);
+  if (!is_held() || !way_out_.is_shut_in(probe, position_, normal_, hip)) return;
+  fading_.take(position_, tank_.stiffness());
+  release(hip);
+  contact.force.setZero();
+  contact.normal.setZero();
+  contact.stiffness = 0;
+  contact.notes |= ContactNote::freed;
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

@@ -35,6 +35,7 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   started_ = !fault_;
   step_length_ = 0;
   fading_ = {};
+  way_out_.reset();
   revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
   hand_ = position_;
@@ -57,6 +58,8 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
+  if (changed) way_out_.reset();
+  free_trapped(probe, hip, contact);
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;

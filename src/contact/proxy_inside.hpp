@@ -6,6 +6,7 @@
 
 #include "contact/probe.hpp"
 #include "contact/slide.hpp"
+#include "contact/way_out.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {
@@ -102,6 +103,7 @@ class Proxy::Inside {
              const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
+  void free_trapped(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
   [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
                                          const Eigen::Vector3d& hip) const noexcept;
@@ -113,6 +115,7 @@ class Proxy::Inside {
   ProxyOptions options_;
   EnergyTank tank_;
   FadingSpring fading_;  // of contacts that a change of the surface ended
+  WayOut way_out_;       // of a static scene
   Surface surface_;      // where the proxy touches
   Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();   // of the last contact; zero: none

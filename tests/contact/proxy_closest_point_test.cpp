@@ -206,6 +206,7 @@ TEST(ClosestPoint, FreeSpaceFarFromEverythingCostsOneBallTest) {
   const SphereField sphere(0.04);
   Proxy proxy;
   proxy.reset({0, 0, 0.3});
+  rest(proxy, sphere, {0, 0, 0.3}, 10);  // until it knows that it is in open air
   drive(proxy, sphere, {0, 0, 0.3}, {0.1, 0.2, 0.3}, 1.0,
         [](const Vector3d& hip, const Contact& c) {
           EXPECT_EQ(c.evaluations, 1);

@@ -1,0 +1,147 @@
+// Looks for a way from a proxy, and from its hand, to open air.
+#include "contact/way_out.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace palpate {
+namespace {
+
+// The first way, along the normal, is open for most who press deep: they pay for little
+// (judgement).
+constexpr int kFirstLooks = 4;   // a step
+constexpr int kFirstWork = 1;    // one sample a step, which may gather points
+constexpr int kMostWork = 8000;  // a step on the other ways: some 25 us (judgement)
+
+constexpr double kOpenAir = 256;     // of R: who has so much room is in a room, not in a body
+constexpr double kFirstBall = 0.5;   // of R; later ones double where there is room
+constexpr double kLeastBall = 0.25;  // of R: the field is asked where there is less room
+constexpr double kStride = 0.3;      // of R: single sheets are solid for over half an R
+constexpr double kClear = 0.1;       // of R, above a surface: roughness below it bars no way
+constexpr double kDeep = 1;       // of R, from the proxy: a hand that is less far is not held hard
+constexpr double kElsewhere = 1;  // of R that a proxy moves before its way is looked for anew
+constexpr int kTurns = 2;         // a wedge needs one to be left, a rough one another
+constexpr double kLeastTurn = 0.2;  // sine (12 degrees) between a surface and the way it stops
+constexpr int kAround = 8;          // slanting directions, 45 degrees apart
+constexpr int kWays = 1 + kAround;
+
+/// The k-th direction from a surface: along its normal, or slanting by 45 degrees.
+Eigen::Vector3d direction_from(const Eigen::Vector3d& normal, int k) noexcept {
+  if (k == 0) return normal;
+  const Eigen::Vector3d side = normal.unitOrthogonal();
+  const double angle = 2 * std::numbers::pi / kAround * k;
+  return (std::cos(angle) * side + std::sin(angle) * normal.cross(side) + normal).normalized();
+}
+
+}  // namespace
+
+WayOut::Ray WayOut::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
+                        double radius) noexcept {
+  return {.from = from, .along = along, .radius = radius, .ball = kFirstBall * radius};
+}
+
+void WayOut::Ray::go(double stride) noexcept {
+  before = gone;
+  gone += stride;
+  if (turns == 0) room = gone;
+}
+
+/// Goes on along the surface that is in the way, from the last place before it; false where that
+/// is no way on.
+bool WayOut::Ray::turn(const Eigen::Vector3d& gradient) noexcept {
+  const Eigen::Vector3d normal = gradient.normalized();
+  const Eigen::Vector3d next = along - std::min(0.0, along.dot(normal)) * normal;
+  const double length = next.norm();
+  if (++turns > kTurns || !(length > kLeastTurn)) return false;
+  from += before * along + kClear * radius * normal;
+  along = next / length;
+  gone = before = 0;
+  ball = kFirstBall * radius;
+  return true;
+}
+
+WayOut::End WayOut::walk(Probe& probe, const Effort& effort) noexcept {
+  const double least = kLeastBall * ray_.radius;
+  const int before = probe.work();
+  for (int look = 0; look < effort.looks; ++look) {
+    const Eigen::Vector3d x = ray_.from + ray_.gone * ray_.along;
+    if (probe.is_free({x, ray_.ball})) {
+      ray_.go(ray_.ball);
+      ray_.ball *= 2;
+      if (ray_.gone > kOpenAir * ray_.radius) return End::open;
+    } else if (ray_.ball > least) {
+      ray_.ball = std::max(least, 0.5 * ray_.ball);
+    } else if (effort.work == 0) {
+      return End::blocked;
+    } else {
+      const Sample here = probe.sample(x);
+      if (here.value > 0) {
+        ray_.go(kStride * ray_.radius);
+      } else if (!ray_.turn(here.gradient)) {
+        return End::blocked;
+      }
+      if (probe.work() - before >= effort.work) break;
+    }
+  }
+  return End::none;
+}
+
+void WayOut::wander(Probe& probe, const Eigen::Vector3d& place) noexcept {
+  if (state_ != State::free) ray_ = {};
+  state_ = State::free;
+  if (was_out_) return;
+  if (!ray_.any()) {
+    direction_ = (direction_ + 1) % kWays;
+    const double side = direction_ % 2 == 0 ? 1 : -1;
+    ray_ = ray(place, direction_from(side * Eigen::Vector3d::UnitZ(), direction_),
+               probe.step_length());
+  }
+  const End end = walk(probe, {kFirstLooks, 0});
+  was_out_ = end == End::open;
+  if (end != End::none) ray_ = {};
+}
+
+/// Looks on for the way of a proxy that touches.
+void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
+                         const Eigen::Vector3d& normal) noexcept {
+  const double radius = probe.step_length();
+  const Eigen::Vector3d from = place + kClear * radius * normal;
+  if (state_ != State::asked) {
+    state_ = State::asked;
+    direction_ = 0;
+    has_room_ = false;
+    ray_ = ray(from, normal, radius);
+  }
+  const Effort effort =
+      direction_ == 0 ? Effort{kFirstLooks, kFirstWork} : Effort{kMostLooks - 1, kMostWork};
+  const End end = walk(probe, effort);
+  if (end == End::none) return;
+  has_room_ = has_room_ || ray_.room >= kStride * radius;
+  if (end == End::blocked && ++direction_ < kWays) {
+    ray_ = ray(from, direction_from(normal, direction_), radius);
+    return;
+  }
+  state_ = end == End::open || !has_room_ ? State::open : State::shut;
+  known_ = place;
+  ray_ = {};
+}
+
+bool WayOut::is_shut_in(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                        const Eigen::Vector3d& hip) noexcept {
+  const double radius = probe.step_length();
+  if (!was_out_ || (place - hip).norm() < kDeep * radius) return false;
+  if (state_ == State::open && (place - known_).norm() < kElsewhere * radius) return false;
+  if (!probe.is_free({hip, kLeastBall * radius})) return false;
+  if (state_ != State::shut) {
+    look_around(probe, place, normal);
+    return false;
+  }
+  if (!ray_.any()) ray_ = ray(hip, (hip - place).normalized(), radius);
+  const End end = walk(probe, {kMostLooks - 1, 0});
+  if (end != End::none) ray_ = {};
+  return end == End::open;
+}
+
+}  // namespace palpate

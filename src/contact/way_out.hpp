@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "contact/probe.hpp"
+
+namespace palpate {
+
+/// Tells, by a few looks a step, that a proxy is shut in by a surface that it passed through.
+///
+/// A place has a way out if one leads from it straight, or along the first surface that is in the
+/// way, to open air: 256 R away. A proxy that has been in open air cannot come to a place without a
+/// way out, unless a surface let it pass; that surface holds it from within. Asks for no side of
+/// any point but near the proxy. A scene that changes is looked at anew. Real-time.
+class WayOut {
+ public:
+  /// What a step spends at most, evaluations.
+  static constexpr int kMostLooks = 16;  // judgement
+
+  /// The surface has changed, or the proxy was put elsewhere.
+  void reset() noexcept { *this = {}; }
+
+  /// A step in which the proxy is free, at `place` (m).
+  void wander(Probe& probe, const Eigen::Vector3d& place) noexcept;
+
+  /// A step in which the proxy touches, at `place` (m) with contact normal `normal`, and the hand
+  /// is at `hip` (m). True once: the hand is in open air, the proxy has been there and is shut in.
+  [[nodiscard]] bool is_shut_in(Probe& probe, const Eigen::Vector3d& place,
+                                const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept;
+
+ private:
+  /// A way that is walked in balls that are free for certain, where there are any.
+  struct Ray {
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();   // m
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();  // unit; zero: there is no ray
+    double radius = 0;                                // R where it begins, m
+    double gone = 0;                                  // m
+    double before = 0;                                // gone, a stride ago, m
+    double ball = 0;                                  // radius of the next, m
+    int turns = 0;
+    double room = 0;  // from the beginning to the first turn, m
+
+    [[nodiscard]] bool any() const noexcept { return !along.isZero(0); }
+    void go(double stride) noexcept;
+    [[nodiscard]] bool turn(const Eigen::Vector3d& gradient) noexcept;
+  };
+  /// The most that a step spends on a ray.
+  struct Effort {
+    int looks = 0;
+    int work = 0;  // Probe::work(); a sample that has begun is finished. 0: none, so that what is
+                   // not free for certain ends the ray
+  };
+  enum class End { none, open, blocked };
+  /// Of the proxy: it is free; its way out is looked for, is known, or there is none.
+  enum class State { free, asked, open, shut };
+
+  [[nodiscard]] static Ray ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
+                               double radius) noexcept;
+  [[nodiscard]] End walk(Probe& probe, const Effort& effort) noexcept;
+  void look_around(Probe& probe, const Eigen::Vector3d& place,
+                   const Eigen::Vector3d& normal) noexcept;
+
+  Ray ray_;
+  State state_ = State::free;
+  int direction_ = 0;                                // of the ray
+  bool has_room_ = false;                            // is there any beside the proxy?
+  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // where the proxy's way out was found, m
+  bool was_out_ = false;                             // since the last reset
+};
+
+}  // namespace palpate

@@ -1,0 +1,171 @@
+// A hand in open air is not held from within by a surface that its proxy passed through.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "contact/drive.hpp"
+#include "contact/test_fields.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kR = 0.01;  // m
+constexpr double kThickness =
+    6e-3;  // of walls, m: single sheets of points are solid for more than R / 2
+
+/// Walls of which nothing is known but their distance. While `leaks`, they stop nobody.
+class WallsField : public Field {
+ public:
+  bool leaks = false;
+  std::uint64_t revision = 0;
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    if (leaks) return {.value = 1, .radius = kR};
+    constexpr double kSmall = 1e-7;  // m
+    Sample sample{.value = wall(x), .support = 1, .radius = kR};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d step = kSmall * Vector3d::Unit(axis);
+      sample.gradient[axis] = (wall(x + step) - wall(x - step)) / (2 * kSmall);
+    }
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return leaks || wall(ball.center) > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override {
+    return {.resolution = kR / 16, .revision = revision};
+  }
+
+ private:
+  [[nodiscard]] virtual double wall(const Vector3d& x) const noexcept = 0;
+};
+
+/// A hollow ball around the origin.
+class HollowBall final : public WallsField {
+ public:
+  static constexpr double kOuter = 0.06;  // m
+
+ private:
+  [[nodiscard]] double wall(const Vector3d& x) const noexcept override {
+    return std::abs(x.norm() - kOuter + kThickness / 2) - kThickness / 2;
+  }
+};
+
+/// Two square plates that face each other across a gap, or meet at an edge.
+class TwoPlates final : public WallsField {
+ public:
+  TwoPlates(double gap, double angle) : gap_(gap), angle_(angle) {}
+
+ private:
+  [[nodiscard]] static double plate(const Vector3d& x) noexcept {
+    const Vector3d half(0.1, 0.1, kThickness / 2);
+    const Vector3d off = (x - Vector3d(0.1, 0, 0)).cwiseAbs() - half;
+    return off.cwiseMax(0).norm() + std::min(0.0, off.maxCoeff());
+  }
+  [[nodiscard]] double wall(const Vector3d& x) const noexcept override {
+    const double c = std::cos(angle_);
+    const double s = std::sin(angle_);
+    const Vector3d turned(c * x.x() + s * x.z(), x.y(), c * x.z() - s * x.x());
+    return std::min(plate(x), plate(turned - Vector3d(0, 0, gap_)));
+  }
+  double gap_;
+  double angle_;
+};
+
+struct Outcome {
+  double most = 0;  // N
+  bool freed = false;
+  Contact last;
+};
+
+Outcome go(Proxy& proxy, const Field& field, const std::vector<Vector3d>& way, double speed) {
+  Outcome outcome;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    outcome.last =
+        drive(proxy, field, way[i - 1], way[i], speed, [&](const Vector3d&, const Contact& c) {
+          outcome.most = std::max(outcome.most, c.force.norm());
+          outcome.freed = outcome.freed || has(c.notes, ContactNote::freed);
+        });
+  }
+  return outcome;
+}
+
+const Vector3d kOutside(0.02, 0.01, 0.15);
+const Vector3d kWithin(0.005, 0, 0);
+
+TEST(WayOut, WhoCameThroughALeakIsLetGoOnTheWayOut) {
+  HollowBall ball;
+  Proxy proxy;
+  proxy.reset(kOutside);
+  ball.leaks = true;
+  ASSERT_EQ(go(proxy, ball, {kOutside, kWithin}, 0.1).most, 0);
+  ball.leaks = false;
+  const Outcome out = go(proxy, ball, {kWithin, kOutside}, 0.1);
+  EXPECT_TRUE(out.freed);
+  EXPECT_LT(out.most, 500 * 3 * kR);  // 3 R beyond the wall, and not 9
+  EXPECT_EQ(out.last.force.norm(), 0);
+  EXPECT_EQ(proxy.position(), kOutside);
+}
+
+TEST(WayOut, WhoWasNeverOutsideIsHeldByTheWallsOfARoom) {
+  const HollowBall ball;
+  Proxy proxy;
+  proxy.reset(kWithin);
+  const Outcome out = go(proxy, ball, {kWithin, {0.02, 0.01, 0.1}}, 0.1);
+  EXPECT_FALSE(out.freed);
+  EXPECT_NEAR(out.last.force.norm(),
+              500 * (Vector3d(0.02, 0.01, 0.1).norm() - HollowBall::kOuter + kThickness), 0.1);
+}
+
+TEST(WayOut, ABodyHoldsAHandThatPressesThroughAllOfIt) {
+  const HollowBall ball;
+  Proxy proxy;
+  proxy.reset(kOutside);
+  const Outcome out = go(proxy, ball, {kOutside, {0.001, 0.002, -0.03}}, 0.1);
+  EXPECT_FALSE(out.freed);
+  EXPECT_NEAR(out.last.force.norm(), 500 * (HollowBall::kOuter - 0.03), 0.1);
+}
+
+TEST(WayOut, NarrowSlotsAndWedgesHoldAHandThatCameInFromOpenAir) {
+  for (const double gap : {0.3 * kR, kR, 2 * kR, 4 * kR}) {
+    const TwoPlates slot(gap + kThickness, 0);
+    const double middle = 0.5 * (gap + kThickness);
+    Proxy proxy;
+    const Vector3d outside(-0.1, 0.01, middle);
+    proxy.reset(outside);
+    const Vector3d place(0.1, -0.02, middle);
+    const Outcome out =
+        go(proxy, slot, {outside, place, place - Vector3d(0, 0, middle + 2.5 * kR)}, 0.1);
+    EXPECT_FALSE(out.freed) << gap;
+    EXPECT_NEAR(out.last.force.norm(), 500 * (2.5 * kR + kThickness / 2), 0.5) << gap;
+  }
+  for (const double degrees : {20., 40., 60., 90.}) {
+    const double angle = degrees * std::acos(-1.0) / 180;
+    const TwoPlates wedge(0, angle);
+    const Vector3d along(std::cos(angle / 2), 0, std::sin(angle / 2));
+    Proxy proxy;
+    proxy.reset(0.3 * along);
+    const Vector3d corner = 0.05 * along;
+    const Outcome out = go(proxy, wedge, {0.3 * along, corner, corner - Vector3d(0, 0, 0.06)}, 0.1);
+    EXPECT_FALSE(out.freed) << degrees;
+    EXPECT_GT(out.last.force.norm(), 500 * 0.02) << degrees;
+  }
+}
+
+TEST(WayOut, ASurfaceThatCameAroundAProxyHoldsIt) {
+  HollowBall ball;
+  Proxy proxy;
+  proxy.reset(kOutside);
+  ball.leaks = true;
+  ASSERT_EQ(go(proxy, ball, {kOutside, kWithin}, 0.1).most, 0);
+  ball.leaks = false;
+  ++ball.revision;
+  EXPECT_FALSE(go(proxy, ball, {kWithin, {0.02, 0.01, 0.1}}, 0.1).freed);
+}
+
+}  // namespace
+}  // namespace palpate::test
