@@ -29,6 +29,12 @@ constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;  // measured (bench/RE
 // at most, and the halo adds an eighth; half the edge would add a quarter.
 constexpr double kBlockEdge = 96;  // judgement
 
+// R: the halo of a block as dense as the typical place. Measured: of 2, 3 and 5 all leave blocks
+// alike (docs/preparation.md).
+constexpr double kHalo = 3;
+// Times that where points are sparser, at most: few strays are not worth all that is around them.
+constexpr double kSparsest = 4;  // judgement
+
 constexpr double kMostPlaces =
     1 << 20;                       // of blocks along an axis either way; derived: 21 bits each
 constexpr int kMostHalvings = 11;  // derived: levels of a CellGrid's curve
@@ -51,6 +57,8 @@ void each_column(const Visit& visit, Points&... points) {
   visit(points.radii...);
   visit(points.confidences...);
   visit(points.colors...);
+  visit(points.presences...);
+  visit(points.end_presences...);
   visit(points.sheets.sheet...);
   visit(points.sheets.residual...);
   visit(points.sheets.above...);
@@ -60,11 +68,10 @@ void each_column(const Visit& visit, Points&... points) {
 /// Gives the members of `numbers`, but kNone, new numbers from 0 on in the order in which they
 /// come. Returns the old ones.
 std::vector<std::uint32_t> renumber(std::vector<std::uint32_t>& numbers) {
-  constexpr std::uint32_t kNone = SurfacePoints::Sheets::kNone;
   std::unordered_map<std::uint32_t, std::uint32_t> fresh;
   std::vector<std::uint32_t> old;
   for (std::uint32_t& number : numbers) {
-    if (number == kNone) continue;
+    if (number == SurfacePoints::Sheets::kNone) continue;
     const auto [known, is_new] = fresh.try_emplace(number, static_cast<std::uint32_t>(old.size()));
     if (is_new) old.push_back(number);
     number = known->second;
@@ -158,7 +165,15 @@ Box Blocks::box(std::size_t block) const {
   return {corner, corner + Vector3d::Constant(edge_)};
 }
 
-std::vector<std::uint32_t> Blocks::with_halo(const Block& block) const {
+double Blocks::halo(std::size_t block) const {
+  const double usual = edge_ / facts_.spacing;  // points along an edge
+  const double sparse = usual / std::sqrt(static_cast<double>(blocks_[block].points.size()));
+  return kHalo * facts_.radius * std::clamp(sparse, 1., kSparsest);
+}
+
+std::vector<std::uint32_t> Blocks::with_halo(std::size_t number) const {
+  const Block& block = blocks_[number];
+  const double reach = halo(number);
   std::vector<std::uint32_t> near = block.points;
   const Vector3d corner = corner_of(block.at);
   for (int k = 0; k < 27; ++k) {
@@ -168,7 +183,7 @@ std::vector<std::uint32_t> Blocks::with_halo(const Block& block) const {
     for (const std::uint32_t i : other->points) {
       const Vector3d way = cloud_.point(i) - corner;
       const Vector3d off = way - way.cwiseMax(0).cwiseMin(edge_);
-      if (off.cwiseAbs().maxCoeff() <= halo(facts_)) near.push_back(i);
+      if (off.cwiseAbs().maxCoeff() <= reach) near.push_back(i);
     }
   }
   std::ranges::sort(near);
@@ -177,7 +192,7 @@ std::vector<std::uint32_t> Blocks::with_halo(const Block& block) const {
 
 Piece Blocks::prepare(std::size_t number) const {
   const Block& block = blocks_[number];
-  const PointCloud near = select(cloud_, with_halo(block));
+  const PointCloud near = select(cloud_, with_halo(number));
   const Placed part{near, {}, viewpoint_};
   Prepared all = prepare_at_once(part, options_, {});
   SurfacePoints& points = all.points;
@@ -217,23 +232,23 @@ std::vector<Piece> Blocks::prepare_all() const {
   return pieces;
 }
 
-Prepared Blocks::join(std::span<const Piece> pieces) const {
+Prepared Blocks::join(std::span<const Piece* const> pieces) const {
   Stopwatch watch;
   Prepared joined;
   SurfacePoints& points = joined.points;
   std::vector<Vector3f> positions;
-  for (const Piece& piece : pieces) {
+  for (const Piece* const piece : pieces) {
     const auto sheets = static_cast<std::uint32_t>(points.sheets.part.size());
     const std::size_t before = points.sheets.sheet.size();
-    positions.insert(positions.end(), piece.positions.begin(), piece.positions.end());
+    positions.insert(positions.end(), piece->positions.begin(), piece->positions.end());
     each_column([](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); },
-                piece.columns, points);
+                piece->columns, points);
     for (std::size_t i = before; i < points.sheets.sheet.size(); ++i) {
       std::uint32_t& sheet = points.sheets.sheet[i];
       if (sheet != SurfacePoints::Sheets::kNone) sheet += sheets;
     }
-    append(piece.columns.sheets, points.sheets);
-    add(piece.report, joined.report);
+    append(piece->columns.sheets, points.sheets);
+    add(piece->report, joined.report);
   }
   points.kernel = options_.kernel;
   points.origin = cloud_.origin;
@@ -246,7 +261,7 @@ Prepared Blocks::join(std::span<const Piece> pieces) const {
   watch.lap(joined.report.seconds_index);
   joined.report.spacing = facts_.spacing;
   joined.report.noise = facts_.noise.sigma;
-  for (const Piece& piece : pieces) joined.report.voxel = piece.report.voxel;
+  for (const Piece* const piece : pieces) joined.report.voxel = piece->report.voxel;
   complete(joined);
   return joined;
 }

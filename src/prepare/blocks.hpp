@@ -37,16 +37,20 @@ class Blocks {
   /// Measures the facts where the options give none. `placed` has to outlive it.
   Blocks(const Placed& placed, const PrepareOptions& options);
 
+  [[nodiscard]] const CloudFacts& facts() const { return facts_; }
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
 
   /// The cube of a block, world frame, m.
   [[nodiscard]] Box box(std::size_t block) const;
 
+  /// How far around a block points count for it, m: more where they are sparse.
+  [[nodiscard]] double halo(std::size_t block) const;
+
   [[nodiscard]] Piece prepare(std::size_t block) const;
   [[nodiscard]] std::vector<Piece> prepare_all() const;
 
   /// One surface of some blocks, indexed. Points have the same order whichever others are there.
-  [[nodiscard]] Prepared join(std::span<const Piece> pieces) const;
+  [[nodiscard]] Prepared join(std::span<const Piece* const> pieces) const;
 
  private:
   using Place = std::array<std::int32_t, 3>;  // of a cube in the grid
@@ -58,7 +62,7 @@ class Blocks {
   [[nodiscard]] Place place_of(const Eigen::Vector3d& point) const;
   [[nodiscard]] const Block* find(const Place& at) const;
   [[nodiscard]] Eigen::Vector3d corner_of(const Place& at) const;
-  [[nodiscard]] std::vector<std::uint32_t> with_halo(const Block& block) const;
+  [[nodiscard]] std::vector<std::uint32_t> with_halo(std::size_t number) const;
   void divide();
 
   const PointCloud& cloud_;

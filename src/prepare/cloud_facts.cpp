@@ -24,6 +24,7 @@ using Eigen::Vector3f;
 constexpr std::size_t kDrawnPlaces = 32;  // places; judgement
 constexpr std::size_t kPointsAround =
     4096;                                  // points around each: windows of 20 s fit in; judgement
+constexpr std::size_t kRun = 256;          // points that are passed over together; judgement
 constexpr std::size_t kAsked = 1 << 17;    // points that are asked how far that is; judgement
 constexpr std::size_t kOneStrayOf = 1000;  // one in so many may be, at either end; judgement
 
@@ -43,16 +44,42 @@ std::vector<Vector3f> sample_of(const std::vector<Vector3f>& points) {
   return sample;
 }
 
+/// The tight box of some points, m.
+struct Bounds {
+  Vector3f lower;
+  Vector3f upper;
+};
+
+/// Scanners write down together what lies together, so that most runs are far from most places.
+std::vector<Bounds> boxes_of_runs(std::span<const Vector3f> points) {
+  std::vector<Bounds> boxes((points.size() + kRun - 1) / kRun);
+  detail::parallel_each(boxes.size(), 64, [&](std::size_t r) {
+    const auto run = points.subspan(r * kRun, std::min(kRun, points.size() - r * kRun));
+    boxes[r] = {run.front(), run.front()};
+    for (const Vector3f& p : run) {
+      boxes[r] = {boxes[r].lower.cwiseMin(p), boxes[r].upper.cwiseMax(p)};
+    }
+  });
+  return boxes;
+}
+
 /// The points around the drawn places; all of a cloud that has no more.
 PointCloud draw(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
   if (cloud.size() <= kDrawnPlaces * kPointsAround) return cloud;
   const double share = static_cast<double>(kPointsAround) / static_cast<double>(cloud.size());
+  const std::vector<Bounds> boxes = boxes_of_runs(cloud.positions);
   std::vector<std::vector<std::uint32_t>> found(kDrawnPlaces);
   detail::parallel_each(kDrawnPlaces, 1, [&](std::size_t k) {
     const Vector3f& place = sample[(2 * k + 1) * sample.size() / (2 * kDrawnPlaces)];
     const float squared = reach(sample, place, share);
-    for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-      if ((cloud.positions[i] - place).squaredNorm() <= squared) found[k].push_back(i);
+    for (std::size_t r = 0; r < boxes.size(); ++r) {
+      const Vector3f nearest = place.cwiseMax(boxes[r].lower).cwiseMin(boxes[r].upper);
+      if ((place - nearest).squaredNorm() > squared) continue;
+      const std::size_t end = std::min(cloud.size(), (r + 1) * kRun);
+      for (std::size_t i = r * kRun; i < end; ++i) {
+        if ((cloud.positions[i] - place).squaredNorm() > squared) continue;
+        found[k].push_back(static_cast<std::uint32_t>(i));
+      }
     }
   });
   std::vector<std::uint32_t> all;

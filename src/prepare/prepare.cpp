@@ -46,7 +46,10 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
   placing.lap(report.seconds_filter);
   if (!goes_by_blocks(placed, options)) return prepare_at_once(placed, options, report);
   const Blocks blocks(placed, options);
-  return blocks.join(blocks.prepare_all());
+  const std::vector<Piece> pieces = blocks.prepare_all();
+  std::vector<const Piece*> all;
+  for (const Piece& piece : pieces) all.push_back(&piece);
+  return blocks.join(all);
 }
 
 }  // namespace palpate

@@ -239,7 +239,7 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
 }  // namespace
 
 double largest_radius(const CloudFacts& facts) {
-  constexpr double kMost = 5;  // typical R: a 25th of the typical density; judgement
+  constexpr double kMost = 12;  // typical R: as far as halos go; derived
   return facts.radius > 0 ? kMost * facts.radius : std::numeric_limits<double>::infinity();
 }
 

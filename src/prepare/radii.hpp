@@ -19,15 +19,8 @@ struct Radii {
   std::vector<std::uint8_t> strays;  ///< 1: one, whose R is small; empty: not looked for
 };
 
-/// What lies farther from a block than this counts for none of its points, m.
-[[nodiscard]] inline double halo(const CloudFacts& facts) {
-  // Typical R; measured: of 2, 3 and 5 all leave blocks alike (bench/RESULTS.md), the work grows.
-  constexpr double kRadii = 3;
-  return kRadii * facts.radius;
-}
-
-/// No R is larger where the facts tell a typical one, m: a stray's support would reach farther than
-/// anybody looks around a block. Infinite where they do not.
+/// No R is larger where the facts tell a typical one, m: what a stray's support reaches beyond that
+/// nobody looks for (Blocks). Infinite where they do not.
 [[nodiscard]] double largest_radius(const CloudFacts& facts);
 
 /// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say
