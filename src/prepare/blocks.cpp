@@ -91,16 +91,29 @@ void append(const SurfacePoints::Sheets& from, SurfacePoints::Sheets& to) {
   to.known.insert(to.known.end(), from.known.begin(), from.known.end());
 }
 
-void add(const Prepared::Report& one, Prepared::Report& all) {
+/// The times of all steps.
+std::array<double*, 5> times(Prepared::Report& report) {
+  return {&report.seconds_filter, &report.seconds_index, &report.seconds_spacing,
+          &report.seconds_normals, &report.seconds_weights};
+}
+
+void add(Prepared::Report one, Prepared::Report& all) {
   all.points_in += one.points_in;
   all.points_out += one.points_out;
   all.duplicates += one.duplicates;
   all.speckle += one.speckle;
-  all.seconds_filter += one.seconds_filter;
-  all.seconds_index += one.seconds_index;
-  all.seconds_spacing += one.seconds_spacing;
-  all.seconds_normals += one.seconds_normals;
-  all.seconds_weights += one.seconds_weights;
+  for (std::size_t k = 0; k < times(all).size(); ++k) *times(all)[k] += *times(one)[k];
+}
+
+/// Makes times that passed side by side shares of the time that passed.
+void share_out(double seconds, std::span<Piece> pieces) {
+  double sum = 0;
+  for (Piece& piece : pieces) {
+    for (const double* time : times(piece.report)) sum += *time;
+  }
+  for (Piece& piece : pieces) {
+    for (double* time : times(piece.report)) *time *= sum > 0 ? seconds / sum : 0;
+  }
 }
 
 }  // namespace
@@ -224,11 +237,15 @@ Piece Blocks::prepare(std::size_t number) const {
 }
 
 std::vector<Piece> Blocks::prepare_all() const {
+  Stopwatch watch;
   std::vector<Piece> pieces(blocks_.size());
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
     // A thread that waits for parts of this block is not to begin another one.
     tbb::this_task_arena::isolate([&] { pieces[k] = prepare(k); });
   });
+  double seconds = 0;
+  watch.lap(seconds);
+  share_out(seconds, pieces);
   return pieces;
 }
 
