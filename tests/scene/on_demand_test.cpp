@@ -116,6 +116,29 @@ TEST(OnDemand, WhatToolsComeNearComesFirstAndPushesNobody) {
   EXPECT_LT(largest, 0.05);  // N
 }
 
+TEST(OnDemand, AHandThatPressesFeelsNothingOfWhatArrives) {
+  Hills hills;
+  SceneField field(hills.part);
+  const Vector3d place = hills.some->points()->bounds().center();
+  const Vector3d hip(place.x(), place.y(), height(place.x(), place.y()) - 2e-3);
+  Proxy proxy;
+  proxy.reset(hip + Vector3d(0, 0, 0.01));
+  Vector3d held = Vector3d::Zero();
+  double largest = 0;  // change of the force, N
+  double time = 1;
+  for (int k = 0; k < 3000; ++k, time += 1e-3) {
+    const double lift = std::max(0., 0.01 - 1e-4 * k);
+    field.update(time, hip + Vector3d(0, 0, lift), proxy.position());
+    const Vector3d force = proxy.step(field, hip + Vector3d(0, 0, lift), 1e-3).force;
+    if (k == 500) held = force;
+    if (k > 500) largest = std::max(largest, (force - held).norm());
+    if (k > 500 && k % 20 == 0) hills.demand->advance(*hills.some, time);
+  }
+  EXPECT_TRUE(hills.demand->done());
+  EXPECT_GT(held.norm(), 0.5);
+  EXPECT_LT(largest, 1e-6);
+}
+
 TEST(OnDemand, BecomesTheWhole) {
   Hills hills;
   while (!hills.demand->done()) hills.demand->advance(*hills.some, 1);
