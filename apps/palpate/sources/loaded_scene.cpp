@@ -96,7 +96,8 @@ const Source& add_on_demand(Scene& scene, LoadedCloud&& loaded, LoadedSource& re
   auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   result.on_demand = std::make_unique<OnDemand>(cloud, options.prepare, options.T_world_sensor);
   Source& source = scene.add(loaded.argument.name, options);
-  while (!source.points()) result.on_demand->advance(source, 0);
+  const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
+  while (is_empty() && !result.on_demand->done()) result.on_demand->advance(source, 0);
   result.cloud = std::move(cloud);
   return source;
 }
