@@ -69,7 +69,7 @@ std::size_t bytes_for(std::size_t n) {
 
 }  // namespace
 
-CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions)
+CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions, const CellGrid::Cube* cube)
     : positions_(positions),
       memory_(bytes_for(positions.size())),
       cells_(&memory_),
@@ -79,8 +79,9 @@ CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions)
   const Bounds bounds = bounds_of_all();
   records_ = allocate(count);
   scratch_ = allocate(count);
-  const int levels = levels_for(count);
-  make_keys(0, count, bounds, levels, [](std::size_t i) { return i; });
+  const int levels = cube != nullptr ? kLevels : levels_for(count);
+  make_keys(0, count, cube != nullptr ? *cube : bounds.cube(), levels,
+            [](std::size_t i) { return i; });
   sort_records(records_, scratch_, 3 * levels);
   cells_.reserve(expected_cells(count));
   depths_.reserve(expected_cells(count));
@@ -123,16 +124,15 @@ CellBuilder::Bounds CellBuilder::bounds_of_all() const {
 }
 
 template <class PlaceOf>
-void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds,
+void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const CellGrid::Cube& cube,
                             int levels, const PlaceOf& place_of) {
-  const Eigen::Vector3d lower = bounds.lower.cast<double>();
-  const double extent = (bounds.upper.cast<double>() - lower).maxCoeff();
+  const Eigen::Vector3d lower = cube.lower;
   const double steps = std::ldexp(1., levels);
-  const double scale = extent > 0 ? steps / extent : 0;
+  const double scale = cube.edge > 0 ? steps / cube.edge : 0;
   const int shift = kPlaceBits + kKeyBits - 3 * levels;
   parallel_ranges(end - begin, kGrain, [&](std::size_t from, std::size_t to) {
     const auto cell = [&](double v, double low) {
-      return static_cast<std::uint32_t>(std::min((v - low) * scale, steps - 1));
+      return static_cast<std::uint32_t>(std::clamp((v - low) * scale, 0., steps - 1));
     };
     for (std::size_t i = begin + from; i < begin + to; ++i) {
       const std::uint64_t place = place_of(i);
@@ -160,7 +160,8 @@ bool CellBuilder::sort_again(std::size_t cell) {
   const Bounds bounds = bounds_of(cells_[cell]);
   const int levels = std::min(levels_for(end - begin), CellGrid::kMaxDepth - depths_[cell]);
   if (bounds.lower == bounds.upper || levels <= 0) return false;
-  make_keys(begin, end, bounds, levels, [this](std::size_t i) { return records_[i] & kPlaceMask; });
+  make_keys(begin, end, bounds.cube(), levels,
+            [this](std::size_t i) { return records_[i] & kPlaceMask; });
   sort_records(records_.subspan(begin, end - begin), scratch_.subspan(begin, end - begin),
                3 * levels);
   depths_[cell] = static_cast<std::uint8_t>(depths_[cell] + levels);

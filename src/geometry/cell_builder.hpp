@@ -13,12 +13,13 @@ namespace palpate::detail {
 
 /// Sorts points along a Morton curve and cuts them into cells.
 ///
-/// Keys have a few levels only, in a box around the points; cells that stay too full, because
-/// density varies more than these levels resolve, are sorted again with keys in their own box.
+/// Keys have a few levels only, in a cube around the points or one that is given; cells that stay
+/// too full, because density varies more than these levels resolve, are sorted again with keys in
+/// their own box.
 class CellBuilder {
  public:
   /// @throws Error when a position is not finite.
-  explicit CellBuilder(std::span<const Eigen::Vector3f> positions);
+  CellBuilder(std::span<const Eigen::Vector3f> positions, const CellGrid::Cube* cube);
 
   [[nodiscard]] std::vector<std::uint32_t> order() const;
   [[nodiscard]] std::vector<Eigen::Vector3f> points() const;
@@ -30,11 +31,15 @@ class CellBuilder {
   struct Bounds {
     Eigen::Vector3f lower;
     Eigen::Vector3f upper;
+
+    [[nodiscard]] CellGrid::Cube cube() const {
+      return {lower.cast<double>(), (upper.cast<double>() - lower.cast<double>()).maxCoeff()};
+    }
   };
 
   [[nodiscard]] std::span<Record> allocate(std::size_t count);
   template <class PlaceOf>
-  void make_keys(std::uint32_t begin, std::uint32_t end, const Bounds& bounds, int levels,
+  void make_keys(std::uint32_t begin, std::uint32_t end, const CellGrid::Cube& cube, int levels,
                  const PlaceOf& place_of);
   void divide(std::size_t cell);
   bool sort_again(std::size_t cell);

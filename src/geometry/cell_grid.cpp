@@ -66,12 +66,17 @@ class Stack {
 
 }  // namespace
 
-CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) {
+CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions) : CellGrid(positions, nullptr) {}
+
+CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions, const Cube& cube)
+    : CellGrid(positions, &cube) {}
+
+CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions, const Cube* cube) {
   if (positions.size() > detail::kPlaceMask) {
     throw Error(fmt::format("index: {} points exceed the limit of {}; downsample them",
                             positions.size(), detail::kPlaceMask));
   }
-  const detail::CellBuilder builder(positions);
+  const detail::CellBuilder builder(positions, cube);
   order_ = builder.order();
   points_ = builder.points();
   cells_ = builder.cells();

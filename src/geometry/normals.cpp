@@ -113,8 +113,8 @@ double noise_radius(double noise, double footprint, double normal_error) {
 
 std::vector<float> support_radii(std::span<const float> spacings, const SupportOptions& options) {
   check(options);
-  const double typical = median(spacings);
-  const double multiple = options.multiple.value_or(support_multiple(options.noise, typical));
+  const double multiple =
+      options.multiple ? *options.multiple : support_multiple(options.noise, median(spacings));
   std::vector<float> radii(spacings.size());
   detail::parallel_each(radii.size(), std::size_t{1} << 16, [&](std::size_t i) {
     const auto spacing = static_cast<double>(spacings[i]);

@@ -65,6 +65,18 @@ void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
   add(sheets.below, &Twin::host);
 }
 
+void complete(Prepared& prepared) {
+  auto& [points, report] = prepared;
+  finish(points);
+  tell_trust(points, report);
+  report.radius = points.radius;
+  report.radius_smallest = points.smallest_radius;
+  report.radius_largest = 0;
+  for (const float radius : points.radii) {
+    report.radius_largest = std::max(report.radius_largest, static_cast<double>(radius));
+  }
+}
+
 Prepared assemble(Sampling sampling, Radii radii, OwnSheets fits, Weights weights, Sheets sheets,
                   const PrepareOptions& options, Prepared::Report report) {
   SurfacePoints points;
@@ -82,14 +94,11 @@ Prepared assemble(Sampling sampling, Radii radii, OwnSheets fits, Weights weight
   points.confidences.resize(points.size(), 0.0f);
   points.sheets = std::move(sheets.sheets);
   add_twins(sheets.twins, points);
-  finish(points);
   report.speckle = weights.speckle;
   report.points_out = points.size() - weights.speckle - sheets.twins.size();
-  tell_trust(points, report);
-  report.radius = points.radius;
-  report.radius_smallest = points.smallest_radius;
-  report.radius_largest = *std::max_element(points.radii.begin(), points.radii.end());
-  return {std::move(points), report};
+  Prepared prepared{std::move(points), report};
+  complete(prepared);
+  return prepared;
 }
 
 }  // namespace palpate

@@ -16,6 +16,9 @@ namespace palpate {
                                 Sheets sheets, const PrepareOptions& options,
                                 Prepared::Report report);
 
+/// Finishes points whose columns are whole, and reports on their radii and trust.
+void complete(Prepared& prepared);
+
 /// Puts points that lie on two sheets on both, with half their weight each: a sheet that lacks the
 /// points of its crease would give way there. Indexes the points again.
 void add_twins(std::span<const Twin> twins, SurfacePoints& points);

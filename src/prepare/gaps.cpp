@@ -20,7 +20,8 @@ constexpr int kWidenings = 2;        // reaches tried, each twice the last: gaps
 }  // namespace
 
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own) {
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own,
+                       float largest) {
   std::vector<std::uint32_t> faint;
   for (std::uint32_t i = 0; i < radii.size(); ++i) {
     if (sums[i] < kFaint) faint.push_back(i);
@@ -35,7 +36,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
       const std::uint32_t i = faint[k];
       const Line line = line_at(grid, i, nearest);
       const float gap = gap_across(grid, i, line, kFirstReach * before[i], kWidenings, near);
-      const float wanted = kMultiple * gap;
+      const float wanted = std::min(kMultiple * gap, largest);
       if (!(wanted > before[i])) continue;
       const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
                                       static_cast<double>(spacings[i]));
@@ -58,7 +59,10 @@ WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& 
   WeightSums sums(sampling.grid, radii.values, options.kernel);
   if (options.radius || options.paper || !options.estimate_normals) return sums;
   const std::vector<float> before = radii.values;
-  if (close_gaps(sampling.grid, sums.own, sampling.spacings, radii.values, fits) == 0) return sums;
+  const auto largest = static_cast<float>(largest_radius(sampling.facts));
+  if (close_gaps(sampling.grid, sums.own, sampling.spacings, radii.values, fits, largest) == 0) {
+    return sums;
+  }
   limit_growth(sampling.grid, kSlope, radii.values, &fits);
   sums.update(sampling.grid, before, radii.values, options.kernel);
   return sums;

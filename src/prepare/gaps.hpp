@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,8 +24,10 @@ namespace palpate {
 /// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a
 /// handful of near-duplicates is enough) spacings and limit_growth() make R too small, which tears
 /// a hole. A stray point has all others on one side and keeps its radius; so does the corner of a
-/// sheet. Returns how many were raised. Does not depend on the number of threads.
+/// sheet. None is raised above `largest`, m. Returns how many were raised. Does not depend on the
+/// number of threads.
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own);
+                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own,
+                       float largest = std::numeric_limits<float>::infinity());
 
 }  // namespace palpate

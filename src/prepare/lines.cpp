@@ -81,7 +81,7 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return 0;
 }
 
-void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
+bool lies_in_lines(const CellGrid& grid) {
   std::vector<CellGrid::Neighbor> nearest;
   std::size_t lines = 0;
   std::size_t looked = 0;
@@ -89,7 +89,10 @@ void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
     ++looked;
     if (line_at(grid, i, nearest).off < kThin) ++lines;
   });
-  if (looked == 0 || static_cast<float>(lines) < kLines * static_cast<float>(looked)) return;
+  return looked > 0 && static_cast<float>(lines) >= kLines * static_cast<float>(looked);
+}
+
+void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
   std::vector<float> gaps(spacings.size());
   detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Neighbor> found;

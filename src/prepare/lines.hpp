@@ -26,9 +26,12 @@ struct Line {
 [[nodiscard]] float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach,
                                int times, std::vector<std::uint32_t>& near);
 
-/// Where points lie on lines (slices of a volume, the lines of a scanner), whose own points are
-/// nearer than those of the next line, raises their spacings (m) to the way to the next lines on
-/// both sides, so that supports bridge it. Looks for lines up to 30 times as far apart as points.
+/// Do points lie on lines (slices of a volume, the lines of a scanner), whose own points are nearer
+/// than those of the next line?
+[[nodiscard]] bool lies_in_lines(const CellGrid& grid);
+
+/// Raises the spacings (m) of points on lines to the way to the next lines on both sides, so that
+/// supports bridge it. Looks for lines up to 30 times as far apart as points.
 void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings);
 
 }  // namespace palpate

@@ -7,17 +7,9 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/prepare/cloud_facts.hpp"
 
 namespace palpate {
-
-/// The noise of raw points.
-struct Noise {
-  double sigma = 0;  ///< median rms distance from a smooth surface, m
-  /// Factor from sigma_n delta of narrow windows (NoiseMap) to what averaging has to cope with, as
-  /// neighbours err together; 1: they do not.
-  double excess = 1;
-  double shared = 1;  ///< the same factor for sigma alone
-};
 
 /// A window shows a layer of noise as a layer, and not as a ball full of points, where its reach is
 /// at least this many sigma.

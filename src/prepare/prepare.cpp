@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "prepare/assemble.hpp"
+#include "prepare/at_once.hpp"
+#include "prepare/blocks.hpp"
 #include "prepare/gaps.hpp"
 #include "prepare/place.hpp"
 #include "prepare/plane_fits.hpp"
@@ -16,13 +18,8 @@
 
 namespace palpate {
 
-Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
-                 const Eigen::Isometry3d& T_world_sensor) {
-  Prepared::Report report{.points_in = cloud.size()};
-  Stopwatch placing;
-  const Placed placed = place(cloud, options, T_world_sensor);
-  placing.lap(report.seconds_filter);
-
+Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
+                         Prepared::Report report) {
   Sampling sampling = sample(placed, options, report);
 
   Stopwatch watch;
@@ -39,6 +36,20 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
 
   return assemble(std::move(sampling), std::move(radii), std::move(fits), std::move(weights),
                   std::move(sheets), options, report);
+}
+
+Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
+                 const Eigen::Isometry3d& T_world_sensor) {
+  Stopwatch placing;
+  const Placed placed = place(cloud, options, T_world_sensor);
+  Prepared::Report report{.points_in = cloud.size()};
+  placing.lap(report.seconds_filter);
+  if (!goes_by_blocks(placed, options)) return prepare_at_once(placed, options, report);
+  const Blocks blocks(placed, options);
+  const std::vector<Piece> pieces = blocks.prepare_all();
+  std::vector<const Piece*> all;
+  for (const Piece& piece : pieces) all.push_back(&piece);
+  return blocks.join(all);
 }
 
 }  // namespace palpate

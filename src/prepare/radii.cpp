@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -215,31 +216,32 @@ constexpr float kStrayRadius = 2.5f;
 
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
-/// The diagonal of the points' box, m; never 0.
-double extent(const CellGrid& grid) {
-  const CellGrid::Cell& root = grid.cells().front();
-  return std::max(static_cast<double>((root.upper - root.lower).norm()), kLoneSpacing);
-}
-
 /// Where the cloud is noisy, R follows the noise from place to place.
 std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
-  SupportOptions support{.multiple = options.radius_multiple,
-                         .noise = sampling.noise,
-                         .footprint = sampling.voxel > 0 ? sampling.footprint : 0,
-                         .normal_error = options.normal_error,
-                         .minimum = options.minimum_radius,
-                         .finest_shape = extent(sampling.grid) / kFinestShape};
-  if (!support.multiple && sampling.voxel <= 0 && is_irregular(sampling.grid, sampling.spacings)) {
-    support.multiple =
-        std::max(kIrregularMultiple, support_multiple(sampling.noise, sampling.spacing));
-  }
-  if (sampling.local.products.empty()) return support_radii(sampling.spacings, support);
-  support.noise = 0;
-  return noisy_radii(sampling.grid, sampling.local, options.normal_error,
-                     support_radii(sampling.spacings, support));
+  const CloudFacts& facts = sampling.facts;
+  const bool by_place = !sampling.local.products.empty();
+  const double noise = by_place ? 0 : facts.noise.sigma;
+  const double multiple = support_multiple(noise, sampling.spacing);
+  const bool irregular = facts.irregular && sampling.voxel <= 0;
+  const SupportOptions support{
+      .multiple = options.radius_multiple.value_or(
+          irregular ? std::max(kIrregularMultiple, multiple) : multiple),
+      .noise = noise,
+      .footprint = sampling.voxel > 0 ? facts.spacing : 0,
+      .normal_error = options.normal_error,
+      .minimum = options.minimum_radius,
+      .finest_shape = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape};
+  std::vector<float> radii = support_radii(sampling.spacings, support);
+  if (!by_place) return radii;
+  return noisy_radii(sampling.grid, sampling.local, options.normal_error, std::move(radii));
 }
 
 }  // namespace
+
+double largest_radius(const CloudFacts& facts) {
+  constexpr double kMost = 12;  // typical R: as far as halos go; derived
+  return facts.radius > 0 ? kMost * facts.radius : std::numeric_limits<double>::infinity();
+}
 
 Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
   const auto all = [&](double radius) {
@@ -250,6 +252,8 @@ Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
     return all(options.radius_multiple.value_or(kPaperMultiple) * sampling.spacing);
   Radii radii{radii_by_noise(sampling, options), {}};
   limit_growth(sampling.grid, kSlope, radii.values);
+  const auto largest = static_cast<float>(largest_radius(sampling.facts));
+  for (float& radius : radii.values) radius = std::min(radius, largest);
   if (!options.remove_speckle || !options.estimate_normals) return radii;
   radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
   for (std::size_t i = 0; i < radii.strays.size(); ++i) {

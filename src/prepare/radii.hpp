@@ -19,6 +19,10 @@ struct Radii {
   std::vector<std::uint8_t> strays;  ///< 1: one, whose R is small; empty: not looked for
 };
 
+/// No R is larger where the facts tell a typical one, m: what a stray's support reaches beyond that
+/// nobody looks for (Blocks). Infinite where they do not.
+[[nodiscard]] double largest_radius(const CloudFacts& facts);
+
 /// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say
 /// so.
 [[nodiscard]] Radii choose_radii(const Sampling& sampling, const PrepareOptions& options);

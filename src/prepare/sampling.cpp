@@ -8,6 +8,7 @@
 
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/lines.hpp"
+#include "prepare/radii.hpp"
 #include "prepare/stopwatch.hpp"
 
 namespace palpate {
@@ -17,7 +18,8 @@ namespace {
 constexpr double kNoisy = 0.25;
 constexpr double kLeafSpacings = 2;  // edge of a voxel of a noisy cloud; judgement
 
-/// Indices of the first point at each position, in input order.
+}  // namespace
+
 std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
   std::vector<std::uint8_t> later(grid.size());  // 1: another one stands there before it
   for (const CellGrid::Cell& cell : grid.cells()) {
@@ -36,10 +38,29 @@ std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
   return first;
 }
 
+namespace {
+
 void measure_spacings(const PrepareOptions& options, Sampling& sampling) {
-  sampling.spacings = local_spacings(sampling.grid);
-  if (!options.paper && !options.radius) widen_to_lines(sampling.grid, sampling.spacings);
-  sampling.spacing = median(sampling.spacings);
+  const CellGrid& grid = sampling.grid;
+  CloudFacts& facts = sampling.facts;
+  sampling.spacings = local_spacings(grid);
+  if (!options.paper && !options.radius) {
+    if (!options.facts) facts.in_lines = lies_in_lines(grid);
+    if (facts.in_lines) widen_to_lines(grid, sampling.spacings);
+  }
+  sampling.spacing = options.facts ? facts.spacing : median(sampling.spacings);
+}
+
+/// What is measured of all points where nobody knows it.
+void measure_of_all(const PrepareOptions& options, Sampling& sampling) {
+  if (options.facts || options.paper) return;
+  const CellGrid& grid = sampling.grid;
+  sampling.facts.noise = measure_noise(grid, sampling.spacing);
+  if (!options.radius) sampling.facts.irregular = is_irregular(grid, sampling.spacings);
+}
+
+bool is_noisy(const CloudFacts& facts) {
+  return facts.noise.sigma > kNoisy * facts.spacing;
 }
 
 /// Leaves the points at positions of their own.
@@ -59,12 +80,11 @@ void raise_to_voxel(Sampling& sampling) {
 }
 
 /// Replaces the points of each voxel by their mean.
-void thin(const Noise& noise, const PrepareOptions& options, PointCloud& less,
-          const PointCloud*& cloud, Sampling& sampling, Prepared::Report& report) {
+void thin(const PrepareOptions& options, PointCloud& less, const PointCloud*& cloud,
+          Sampling& sampling, Prepared::Report& report) {
   Stopwatch watch;
   std::optional<NoiseMap> map;
-  const bool noisy = noise.sigma > kNoisy * sampling.footprint;
-  if (noisy && !options.radius) map.emplace(sampling.grid, sampling.spacings);
+  if (is_noisy(sampling.facts) && !options.radius) map.emplace(sampling.grid, sampling.spacings);
   watch.lap(report.seconds_spacing);
   std::vector<std::uint32_t> counts;
   less = voxel_downsample(*cloud, sampling.voxel, &counts);
@@ -75,13 +95,18 @@ void thin(const Noise& noise, const PrepareOptions& options, PointCloud& less,
   watch.lap(report.seconds_index);
   measure_spacings(options, sampling);
   raise_to_voxel(sampling);
-  if (map) sampling.local = map->at(sampling.grid.points(), noise);
+  if (map) sampling.local = map->at(sampling.grid.points(), sampling.facts.noise);
   watch.lap(report.seconds_spacing);
+}
+
+/// The tight box of the points, world frame, m.
+Box box_of(const Sampling& sampling) {
+  const CellGrid::Cell& root = sampling.grid.cells().front();
+  return {sampling.origin + root.lower.cast<double>(), sampling.origin + root.upper.cast<double>()};
 }
 
 /// The columns that came with the points.
 void take_columns(const PointCloud& cloud, const PrepareOptions& options, Sampling& sampling) {
-  sampling.origin = cloud.origin;
   sampling.normals = in_grid_order(sampling.grid, cloud.normals);
   sampling.colors = in_grid_order(sampling.grid, cloud.colors);
   if (options.material_from_intensity) {
@@ -94,27 +119,29 @@ void take_columns(const PointCloud& cloud, const PrepareOptions& options, Sampli
 Sampling sample(const Placed& placed, const PrepareOptions& options, Prepared::Report& report) {
   Stopwatch watch;
   Sampling sampling;
+  sampling.facts = options.facts.value_or(CloudFacts{});
   PointCloud less;
   const PointCloud* cloud = &placed.cloud();
+  sampling.origin = cloud->origin;
   sampling.grid = CellGrid(cloud->positions);
   if (!options.paper) drop_duplicates(less, cloud, sampling);
   report.duplicates = placed.cloud().size() - cloud->size();
   watch.lap(report.seconds_index);
   measure_spacings(options, sampling);
-  sampling.footprint = sampling.spacing;
-  const Noise noise = options.paper ? Noise{} : measure_noise(sampling.grid, sampling.footprint);
-  sampling.noise = noise.sigma;
-  const bool noisy = noise.sigma > kNoisy * sampling.footprint;
-  sampling.voxel = options.voxel.value_or(noisy ? kLeafSpacings * sampling.footprint : 0);
+  CloudFacts& facts = sampling.facts;
+  if (!options.facts) facts.spacing = sampling.spacing;
+  measure_of_all(options, sampling);
+  sampling.voxel = options.voxel.value_or(is_noisy(facts) ? kLeafSpacings * facts.spacing : 0);
   watch.lap(report.seconds_spacing);
-  if (sampling.voxel > 0) thin(noise, options, less, cloud, sampling, report);
+  if (sampling.voxel > 0) thin(options, less, cloud, sampling, report);
   if (sampling.local.sigmas.empty()) {
-    sampling.local.sigmas.assign(sampling.grid.size(), static_cast<float>(noise.sigma));
+    sampling.local.sigmas.assign(sampling.grid.size(), static_cast<float>(facts.noise.sigma));
   }
+  if (!options.facts) facts.extent = box_of(sampling);
   if (options.paper && !options.radius) sampling.spacing = mean_spacing(sampling.grid);
   take_columns(*cloud, options, sampling);
   report.spacing = sampling.spacing;
-  report.noise = sampling.noise;
+  report.noise = facts.noise.sigma;
   report.voxel = sampling.voxel;
   return sampling;
 }

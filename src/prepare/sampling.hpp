@@ -24,11 +24,13 @@ struct Sampling {
   std::vector<float> intensities;        ///< empty: not asked for
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty: none
 
-  double spacing = 0;    ///< s: the median of `spacings`, or the paper's, m
-  double footprint = 0;  ///< delta: root of the area per raw point, m
-  double noise = 0;      ///< sigma of the raw points, m
-  double voxel = 0;      ///< leaf of the filter, m; 0: none
+  CloudFacts facts;    ///< of the raw points: given, or measured of these
+  double spacing = 0;  ///< s of those that are kept: a median, or the paper's, m
+  double voxel = 0;    ///< leaf of the filter, m; 0: none
 };
+
+/// Indices of the first point at each position, in input order.
+[[nodiscard]] std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid);
 
 /// Indexes the cloud, drops points at positions of others, measures spacing and noise, and thins
 /// noisy clouds. Writes what it finds and how long it takes into the `report`.

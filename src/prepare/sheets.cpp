@@ -133,7 +133,8 @@ bool is_inside_out(const PartSums& part, const Vector3d& center_of_all) {
 
 /// The sign that each part's normals are to be multiplied by where nothing is known of it.
 std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
-                               const SurfacePoints::Sheets& sheets, std::size_t parts) {
+                               const SurfacePoints::Sheets& sheets, std::size_t parts,
+                               const std::optional<Vector3d>& middle) {
   std::vector<PartSums> sums(parts);
   PartSums all;
   for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
@@ -150,7 +151,8 @@ std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
     all.area += area;
     all.moment += area * p;
   }
-  const Vector3d center = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
+  const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
+  const Vector3d center = middle.value_or(own_middle);
   std::vector<int> signs;
   for (const PartSums& part : sums) signs.push_back(is_inside_out(part, center) ? -1 : 1);
   return signs;
@@ -169,7 +171,8 @@ void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, SurfacePoints::
 /// Makes parts of linked sheets. A link that contradicts what is known of both of its sides is
 /// passed over.
 void join_parts(const SheetInput& input, const std::vector<Link>& links, std::vector<int> known,
-                OwnSheets& own, SurfacePoints::Sheets& sheets) {
+                const std::optional<Vector3d>& middle, OwnSheets& own,
+                SurfacePoints::Sheets& sheets) {
   const std::size_t count = sheets.part.size();
   detail::SignedSets sets(count);
   for (const Link& link : links) {
@@ -196,7 +199,7 @@ void join_parts(const SheetInput& input, const std::vector<Link>& links, std::ve
     signs[k] = sign * (known[root] != 0 ? known[root] : 1);
   }
   turn(signs, own, sheets);
-  const std::vector<int> outward = outward_signs(input, own, sheets, known_parts.size());
+  const std::vector<int> outward = outward_signs(input, own, sheets, known_parts.size(), middle);
   for (std::uint32_t k = 0; k < count; ++k) {
     signs[k] = known_parts[sheets.part[k]] != 0 ? 1 : outward[sheets.part[k]];
   }
@@ -213,7 +216,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   const std::vector<SheetVote> votes = look_around(input, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
   const std::vector<int> signs = known_signs(input, known, own, sheets);
-  join_parts(input, links_of(votes, signs), signs, own, sheets);
+  join_parts(input, links_of(votes, signs), signs, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
 }
@@ -240,6 +243,7 @@ KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
   if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
   const bool given = how == Orientation::automatic || how == Orientation::given;
   if (given && !options.viewpoint) known.given = sampling.normals;
+  if (options.facts) known.middle = options.facts->extent.center() - sampling.origin;
   return known;
 }
 

@@ -194,7 +194,8 @@ Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& su
   auto mask = speckle_mask(sampling.grid, radii.values, sums);
   for (std::size_t i = 0; i < radii.strays.size(); ++i) mask[i] |= radii.strays[i];
   const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
-  if (speckle == mask.size()) return weights;  // a cloud of nothing else is a sparse one
+  // A cloud of nothing else is a sparse one; a part of a cloud is of strays.
+  if (speckle == mask.size() && !options.facts) return weights;
   weights.speckle = speckle;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] != 0) weights.values[i] = 0;

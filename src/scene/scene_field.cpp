@@ -20,7 +20,6 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
 // How far a patch reaches beyond what it is gathered for, at rest and where points move, and how
 // much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
@@ -32,7 +31,6 @@ constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps foll
 // A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
 constexpr double kFastestCloud = 0.5;
 constexpr double kFelt = 2;  // R around a tool; normals beside rims need neighbours (judgement)
-
 }  // namespace
 
 static_assert(Scene::kMaxSources <= simd::kMaxSources);
@@ -210,6 +208,9 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
+  for (const SourceView& view : state.views) {
+    if (view.misses({proxy, state.radius()})) state.notes = state.notes | FieldNote::not_loaded;
+  }
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 

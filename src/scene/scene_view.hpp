@@ -41,6 +41,9 @@ class SourceView {
   /// fade as well: what other sources see there goes over to them gradually.
   [[nodiscard]] ActiveLayer layer(std::size_t k, int source) const noexcept;
 
+  /// Has the source points in the ball that no layer of the current snapshot holds yet?
+  [[nodiscard]] bool misses(const Ball& ball) const noexcept;
+
   /// Snapshot::publication of the newest snapshot that it took; 0: none yet.
   [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
 

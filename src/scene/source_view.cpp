@@ -126,6 +126,14 @@ void SourceView::begin(const Times& before) noexcept {
   catch_up_ = duration * (kCatchUp + kCatchUpMore * lag_);
 }
 
+bool SourceView::misses(const Ball& ball) const noexcept {
+  const Snapshot* const snapshot = current();
+  return snapshot != nullptr && std::ranges::any_of(snapshot->missing, [&](const Box& box) {
+           const Eigen::Vector3d nearest = ball.center.cwiseMax(box.lower).cwiseMin(box.upper);
+           return (ball.center - nearest).squaredNorm() < ball.radius * ball.radius;
+         });
+}
+
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
   const Snapshot::Layer& layer = current_->layers[k];
   const double weight = layer.weight_start + progress_ * (layer.weight_end - layer.weight_start);

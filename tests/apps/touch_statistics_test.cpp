@@ -127,7 +127,7 @@ TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
     each.field_notes = each.field_notes | static_cast<FieldNote>(1u << bit);
   }
   statistics.add(each);
-  EXPECT_EQ(statistics.notes().size(), 15u);
+  EXPECT_EQ(statistics.notes().size(), 16u);
 }
 
 }  // namespace

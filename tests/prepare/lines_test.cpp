@@ -33,7 +33,7 @@ CellGrid lines_of(int lines, float ratio) {
 
 std::vector<float> widened(const CellGrid& grid) {
   std::vector<float> spacings = local_spacings(grid);
-  widen_to_lines(grid, spacings);
+  if (lies_in_lines(grid)) widen_to_lines(grid, spacings);
   return spacings;
 }
 

@@ -85,14 +85,23 @@ void members(auto f, DeviceInfo& o) {
 void members(auto f, Box& o) {
   f({"lower", "upper"}, o.lower, o.upper);
 }
+void members(auto f, Noise& o) {
+  auto& [sigma, excess, shared] = o;
+  f({"sigma", "excess", "shared"}, sigma, excess, shared);
+}
+void members(auto f, CloudFacts& o) {
+  auto& [spacing, noise, irregular, lines, extent, radius] = o;
+  f({"spacing", "noise", "irregular", "in_lines", "extent", "radius"}, spacing, noise, irregular,
+    lines, extent, radius);
+}
 void members(auto f, PrepareOptions& o) {
   auto& [voxel, radius, multiple, least, error, viewpoint, signs, clip, speckle, normals, material,
-         paper, kernel] = o;
+         paper, kernel, facts] = o;
   f({"voxel", "radius", "radius_multiple", "minimum_radius", "normal_error", "viewpoint",
      "orientation", "clip", "remove_speckle", "estimate_normals", "material_from_intensity",
-     "paper", "kernel"},
+     "paper", "kernel", "facts"},
     voxel, radius, multiple, least, error, viewpoint, signs, clip, speckle, normals, material,
-    paper, kernel);
+    paper, kernel, facts);
 }
 void members(auto f, SourceOptions::SoftMaterial& o) {
   auto& [stiffness, friction] = o;

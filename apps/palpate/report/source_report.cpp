@@ -57,6 +57,12 @@ Report cloud_report(const LoadedSource& cloud) {
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
              r.points_in, r.points_out, r.duplicates, r.speckle, cloud.dropped);
+  if (cloud.on_demand) {
+    const double share = cloud.on_demand->share();
+    report.data["prepared_share"] = share;
+    report.row("so far", "[{?}{} % of the cloud when the run ended]", share < 1,
+               std::floor(100 * share));
+  }
   report.row({"units", Mark::warning}, "[{?}{}? {}; {}]", cloud.units.advice, cloud.units.units,
              cloud.units.reason, cloud.units.advice);
   report.row("spacing", "{spacing_m}, noise {noise_m}, voxel [{voxel_m}|none]", r.spacing, r.noise,

@@ -268,33 +268,4 @@ void keep_states(LoadedScene& loaded, const std::vector<StreamState>& states) {
   }
 }
 
-LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Recorder* recorder)
-    : loaded_(loaded), start_(start) {
-  StreamOptions options;
-  options.start = start;
-  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
-    LoadedSource& from = loaded.sources[i];
-    if (!from.camera) continue;
-    Feeding feed = feeding(loaded, i, recorder);
-    streams_.emplace_back(*from.camera, loaded.scene.source(i).name(), std::move(feed.sink), clock,
-                          options, std::move(feed.ended));
-  }
-}
-
-std::vector<StreamState> LiveFeed::states() const {
-  std::vector<StreamState> states;
-  for (const Stream& stream : streams_) states.push_back(stream.state());
-  return states;
-}
-
-void LiveFeed::finish() {
-  std::vector<StreamState> states = this->states();
-  streams_.clear();
-  for (StreamState& state : states) {
-    state.problem_at -= start_;
-    state.last_frame -= start_;
-  }
-  keep_states(loaded_, states);
-}
-
 }  // namespace palpate::app

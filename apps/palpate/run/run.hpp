@@ -3,8 +3,11 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/palpate/options/touch_plan.hpp"
@@ -114,13 +117,25 @@ class LiveFeed {
   /// How each stream fares, in the order of the sources.
   [[nodiscard]] std::vector<StreamState> states() const;
 
+  /// The share of the clouds' blocks that is prepared, 0-1; the least of all. 1: all is there.
+  [[nodiscard]] double prepared() const;
+
+  /// Why a cloud could not be prepared to its end; empty: nothing failed.
+  [[nodiscard]] std::string problem() const;
+
   /// Ends the streams and puts what they were like into `loaded`, times counted from the start.
   void finish();
 
  private:
+  void prepare(std::size_t index, const std::stop_token& stop);
+
   LoadedScene& loaded_;
+  const Clock& clock_;
   double start_;
   std::vector<Stream> streams_;
+  mutable std::mutex mutex_;
+  std::string problem_;
+  std::vector<std::jthread> preparing_;  // last: they use all of the above
 };
 
 }  // namespace palpate::app

@@ -22,7 +22,7 @@ struct Note {
   }
 };
 
-constexpr std::array<Note, 15> kNotes = {{
+constexpr std::array<Note, 16> kNotes = {{
     {"sweep_truncated",
      "the hand moved too far in one step, so the proxy caught up over the next steps; move slower "
      "or use shorter steps",
@@ -77,6 +77,10 @@ constexpr std::array<Note, 15> kNotes = {{
     {"behind",
      "the tool was behind the surface that a camera sees; the unseen side exerts no force",
      ContactNote::none, FieldNote::behind},
+    {"not_loaded",
+     "the tool was where the cloud was not prepared yet, so there was no surface; move more slowly "
+     "until all of it is",
+     ContactNote::none, FieldNote::not_loaded},
 }};
 
 // Simulated steps may be as far apart as the rows of a trajectory: that is no silence.

@@ -276,6 +276,7 @@ void Preparer::prepare(const Preparation& wanted) {
   change_all(wanted);
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
     const LoadedSource& loaded = run_.loaded.sources[i];
+    if (loaded.on_demand) loaded.on_demand->cancel();
     if (loaded.cloud) run_.loaded.scene.source(i).set(*loaded.cloud);
   }
 }

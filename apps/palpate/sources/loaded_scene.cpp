@@ -90,7 +90,19 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
-void add_cloud(Scene& scene, bool keep, LoadedSource& result) {
+// The blocks at the middle of a large cloud are touchable at once; the rest follows in the run.
+const Source& add_on_demand(Scene& scene, LoadedCloud&& loaded, LoadedSource& result) {
+  const SourceOptions& options = result.plan.options;
+  auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
+  result.on_demand = std::make_unique<OnDemand>(cloud, options.prepare, options.T_world_sensor);
+  Source& source = scene.add(loaded.argument.name, options);
+  const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
+  while (is_empty() && !result.on_demand->done()) result.on_demand->advance(source, 0);
+  result.cloud = std::move(cloud);
+  return source;
+}
+
+void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
@@ -107,14 +119,17 @@ void add_cloud(Scene& scene, bool keep, LoadedSource& result) {
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
                                     grouped(loaded.file.cloud.size())));
   const auto start = WallClock::now();
-  const Source& source = scene.add(loaded.argument.name, loaded.file.cloud, plan.options);
+  const bool large = options.on_demand && OnDemand::suits(loaded.file.cloud, plan.options.prepare);
+  const Source& source = large ? add_on_demand(scene, std::move(loaded), result)
+                               : scene.add(loaded.argument.name, loaded.file.cloud, plan.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   result.state = source.state();
   result.depth_image = result.state.depth > 0;
   if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
-  check_place(loaded.argument, *source.points());
-  if (keep) result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
+  check_place(plan.argument, *source.points());
+  if (options.keep_clouds && !large)
+    result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
 }
 
 void check_felt(const Source& source, LoadedSource& result) {
@@ -248,7 +263,7 @@ LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptio
     } else if (is_filtered_image(plan)) {
       add_depth_image(loaded.scene, options.keep_clouds, source);
     } else {
-      add_cloud(loaded.scene, options.keep_clouds, source);
+      add_cloud(loaded.scene, options, source);
     }
   }
   return loaded;

@@ -9,6 +9,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/scene/on_demand.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream.hpp"
@@ -37,8 +38,9 @@ struct LoadedSource {
   std::size_t declared = 0;
   std::size_t dropped = 0;
   double read_seconds = 0;
-  UnitsGuess units;            ///< of a file that was read without --scale
-  double prepare_seconds = 0;  ///< wall time of everything between reading and touching
+  UnitsGuess units;                     ///< of a file that was read without --scale
+  double prepare_seconds = 0;           ///< wall time of everything between reading and touching
+  std::unique_ptr<OnDemand> on_demand;  ///< of a large cloud whose blocks become ready in the run
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
   std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 
@@ -65,6 +67,7 @@ struct LoadedScene {
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
   bool keep_clouds = false;      ///< they may have to be prepared again, or are recorded
+  bool on_demand = false;        ///< large clouds become whole in the run
   const Clock* clock = nullptr;  ///< of cameras, which it outlives; null: simulated time
 };
 

@@ -187,6 +187,7 @@ LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed,
   moment.robot = std::move(robot);
   for (LiveHand& hand : hands) moment.hands.push_back(hand.moment(now));
   moment.streams = feed.states();
+  moment.prepared = feed.prepared();
   return moment;
 }
 
@@ -253,6 +254,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   for (LiveHand& hand : hands) hand.take_steps(each, status);
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
   outcome.interrupted = interruption.asked();
+  if (const std::string problem = feed.problem(); !problem.empty()) status.tell(problem);
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   view.reset();  // it looks at the bridge, and both at what the feed takes down
   bridge.reset();

@@ -79,6 +79,7 @@ std::string in_words(const LiveMoment& moment) {
     }
   }
   for (const StreamState& stream : moment.streams) words += " | " + stream_words(stream);
+  if (moment.prepared < 1) words += fmt::format(" | preparing, {:.0f} %", 100 * moment.prepared);
   if (moment.robot) words += " | " + in_words(*moment.robot);
   return words;
 }

@@ -27,6 +27,7 @@ struct LiveMoment {
   double time = 0;  ///< since the run began, s
   std::vector<HandMoment> hands;
   std::vector<StreamState> streams;
+  double prepared = 1;  ///< share of the clouds
   std::optional<RosBridge::RobotState> robot;
 };
 

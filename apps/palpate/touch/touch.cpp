@@ -158,7 +158,11 @@ struct Start {
         outputs(plan),
         hands(open_hands(plan.devices, plan.motion, plan.time, clock)),
         left(leave_to_servo(plan.time)),
-        loaded(load_sources(plan.sources, {is_explored(), outputs.recorder.has_value(), clock})) {
+        loaded(load_sources(plan.sources,
+                            {.explored = is_explored(),
+                             .keep_clouds = outputs.recorder.has_value(),
+                             .on_demand = clock != nullptr && plan.outputs.record.empty(),
+                             .clock = clock})) {
     check_texture(plan.surface.proxy.texture.amplitude, loaded.scene);
     place_hands(hands, {plan.motion, plan.surface, plan.page}, trajectory, loaded.scene);
     begin_run(loaded, plan.surface.soft_material(hands.front().stiffness));

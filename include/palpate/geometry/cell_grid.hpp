@@ -46,6 +46,17 @@ class CellGrid {
   /// @throws Error when there are more points than that, or one is not finite.
   explicit CellGrid(std::span<const Eigen::Vector3f> positions);
 
+  /// A cube that the Morton curve runs through, in the frame of the points.
+  struct Cube {
+    Eigen::Vector3d lower = Eigen::Vector3d::Zero();  ///< m
+    double edge = 0;                                  ///< m
+  };
+
+  /// The same, sorted along the curve of a given cube and not of the points' own: points that are
+  /// more than a 2048th of it apart have the same order whichever others are there. Those outside
+  /// count as at its faces.
+  CellGrid(std::span<const Eigen::Vector3f> positions, const Cube& cube);
+
   /// Builds the index again, in the memory of the last one, of points that stand along a curve
   /// already, as those of a depth image do: `codes`, which never fall, say where on it, two bits a
   /// level. A cell's points agree in their leading bits; those that agree in all of them stay
@@ -74,6 +85,7 @@ class CellGrid {
   void nearest(const Eigen::Vector3f& center, std::size_t k, std::vector<Neighbor>& found) const;
 
  private:
+  CellGrid(std::span<const Eigen::Vector3f> positions, const Cube* cube);
   void divide(std::size_t cell, std::span<const std::uint32_t> codes);
 
   std::vector<Eigen::Vector3f> points_;

@@ -8,6 +8,7 @@
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/shapes.hpp"
+#include "palpate/prepare/cloud_facts.hpp"
 
 namespace palpate {
 
@@ -39,6 +40,7 @@ struct PrepareOptions {
   bool material_from_intensity = false;  ///< from `intensities`, 0-1 over their range
   bool paper = false;                    ///< the paper's s (mean of k = 3 neighbours), R = 2.5 s
   Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
+  std::optional<CloudFacts> facts = {};  ///< of the whole that the cloud is a part of
 };
 
 /// A cloud as a surface.

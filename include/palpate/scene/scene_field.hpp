@@ -24,8 +24,10 @@ enum class FieldNote : std::uint32_t {
                               ///< surface further than 0.85 R from its points, so it counts for
                               ///< less. Remedy: PrepareOptions::minimum_radius = tool_radius / 0.3
   work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it did not know was solid
-  behind = 1u << 6,  ///< the proxy is behind what a camera sees, on the side that no camera
-                     ///< saw: that holds it from the front alone
+  behind = 1u << 6,      ///< the proxy is behind what a camera sees, on the side that no camera
+                         ///< saw: that holds it from the front alone
+  not_loaded = 1u << 7,  ///< the proxy is where a cloud has points that are not prepared yet: there
+                         ///< is no surface so far (OnDemand)
 };
 
 [[nodiscard]] constexpr FieldNote operator|(FieldNote a, FieldNote b) noexcept {

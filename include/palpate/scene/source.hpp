@@ -12,6 +12,7 @@
 
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/field/surface_points.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/prepare/prepare.hpp"
 
 namespace palpate {
@@ -86,6 +87,9 @@ struct Snapshot {
   /// Counts what a source published of push(), set() and keep(); 0: it came by publish().
   std::uint64_t publication = 0;
   std::vector<Layer> layers;
+  /// Where the source has points that no layer holds yet, m, world frame; no more than some, the
+  /// nearest to the tools.
+  std::vector<Box> missing = {};
 };
 
 /// How far `snapshot` has gone at `time` (s): 0 at its start and before, 1 at its end and after.
@@ -223,6 +227,7 @@ class Source {
   [[nodiscard]] State state() const;
 
  private:
+  friend class OnDemand;
   friend class Scene;
   friend class SceneField;
   friend class SourceTrace;  // of recordings and replays

@@ -1,0 +1,73 @@
+// Feeds the sources of a run in real time: streams, and clouds that are prepared on demand.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "apps/palpate/run/run.hpp"
+
+namespace palpate::app {
+
+LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Recorder* recorder)
+    : loaded_(loaded), clock_(clock), start_(start) {
+  StreamOptions options;
+  options.start = start;
+  for (std::size_t i = 0; i < loaded.sources.size(); ++i) {
+    LoadedSource& from = loaded.sources[i];
+    if (from.on_demand) {
+      preparing_.emplace_back([this, i](const std::stop_token& stop) { prepare(i, stop); });
+    }
+    if (!from.camera) continue;
+    Feeding feed = feeding(loaded, i, recorder);
+    streams_.emplace_back(*from.camera, loaded.scene.source(i).name(), std::move(feed.sink), clock,
+                          options, std::move(feed.ended));
+  }
+}
+
+void LiveFeed::prepare(std::size_t index, const std::stop_token& stop) {
+  OnDemand& cloud = *loaded_.sources[index].on_demand;
+  Source& source = loaded_.scene.source(index);
+  try {
+    while (!cloud.done() && !stop.stop_requested()) cloud.advance(source, clock_.now());
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    problem_ = fmt::format("{}: {}; what is there stays", source.name(), error.what());
+  }
+}
+
+double LiveFeed::prepared() const {
+  double least = 1;
+  for (const LoadedSource& source : loaded_.sources) {
+    if (source.on_demand) least = std::min(least, source.on_demand->share());
+  }
+  return least;
+}
+
+std::string LiveFeed::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
+std::vector<StreamState> LiveFeed::states() const {
+  std::vector<StreamState> states;
+  for (const Stream& stream : streams_) states.push_back(stream.state());
+  return states;
+}
+
+void LiveFeed::finish() {
+  std::vector<StreamState> states = this->states();
+  streams_.clear();
+  preparing_.clear();
+  for (std::size_t i = 0; i < loaded_.sources.size(); ++i) {
+    LoadedSource& source = loaded_.sources[i];
+    if (source.on_demand) source.prepared = loaded_.scene.source(i).report();
+  }
+  for (StreamState& state : states) {
+    state.problem_at -= start_;
+    state.last_frame -= start_;
+  }
+  keep_states(loaded_, states);
+}
+
+}  // namespace palpate::app

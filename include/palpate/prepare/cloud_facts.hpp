@@ -1,0 +1,42 @@
+// What is one for all of a cloud, however little of it is prepared.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/shapes.hpp"
+
+namespace palpate {
+
+struct PrepareOptions;
+
+/// The noise of raw points.
+struct Noise {
+  double sigma = 0;  ///< rms distance from a smooth surface, of the flattest quarter, m
+  /// Factor from sigma_n delta of narrow windows to what averaging has to cope with, as neighbours
+  /// err together; 1: they do not.
+  double excess = 1;
+  double shared = 1;  ///< the same factor for sigma alone
+};
+
+/// What preparation measures of a whole cloud. Where it is given, preparing a part of the cloud
+/// finds what preparing the whole finds there: all else depends on what lies around a point. Up is
+/// +z, always.
+struct CloudFacts {
+  double spacing = 0;      ///< s of the points as given, the median, m
+  Noise noise = {};        ///< of the points as given
+  bool irregular = false;  ///< do they lie so irregularly that gaps need a larger support?
+  bool in_lines = false;   ///< do they lie on lines, nearer to each other than the lines are?
+  Box extent = {};         ///< of all but a few strays, world frame, m
+  double radius = 0;       ///< a typical R, m; 0: not known, and R has no cap
+};
+
+/// Measures the facts of a cloud in places that are drawn, always the same of the same cloud: some
+/// thousand points around each, which takes a few tenths of a second whatever the cloud's size.
+/// Few strays change nothing, and crops of one scan have nearly the same facts.
+/// @throws Error as prepare() does.
+[[nodiscard]] CloudFacts measure_facts(
+    const PointCloud& cloud, const PrepareOptions& options,
+    const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
+
+}  // namespace palpate

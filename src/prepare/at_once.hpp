@@ -1,0 +1,13 @@
+// Prepares a placed cloud at once, all of it together.
+#pragma once
+
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/place.hpp"
+
+namespace palpate {
+
+/// All steps but the first. `report`: what is known so far.
+[[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
+                                       Prepared::Report report);
+
+}  // namespace palpate

@@ -1,0 +1,124 @@
+// Draws places of a cloud and measures there what is one for all of it.
+
+#include "palpate/prepare/cloud_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel.hpp"
+#include "palpate/geometry/spacing.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/place.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr std::size_t kDrawnPlaces = 32;  // places; judgement
+constexpr std::size_t kPointsAround =
+    4096;                                  // points around each: windows of 20 s fit in; judgement
+constexpr std::size_t kRun = 256;          // points that are passed over together; judgement
+constexpr std::size_t kAsked = 1 << 17;    // points that are asked how far that is; judgement
+constexpr std::size_t kOneStrayOf = 1000;  // one in so many may be, at either end; judgement
+
+/// How far from a place `share` of the sampled points lie, m^2.
+float reach(std::span<const Vector3f> sample, const Vector3f& place, double share) {
+  std::vector<float> squares;
+  for (const Vector3f& p : sample) squares.push_back((p - place).squaredNorm());
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(squares.size() - 1));
+  std::nth_element(squares.begin(), squares.begin() + rank, squares.end());
+  return squares[static_cast<std::size_t>(rank)];
+}
+
+std::vector<Vector3f> sample_of(const std::vector<Vector3f>& points) {
+  const std::size_t step = points.size() / kAsked + 1;
+  std::vector<Vector3f> sample;
+  for (std::size_t i = step / 2; i < points.size(); i += step) sample.push_back(points[i]);
+  return sample;
+}
+
+/// The tight box of some points, m.
+struct Bounds {
+  Vector3f lower;
+  Vector3f upper;
+};
+
+/// Scanners write down together what lies together, so that most runs are far from most places.
+std::vector<Bounds> boxes_of_runs(std::span<const Vector3f> points) {
+  std::vector<Bounds> boxes((points.size() + kRun - 1) / kRun);
+  detail::parallel_each(boxes.size(), 64, [&](std::size_t r) {
+    const auto run = points.subspan(r * kRun, std::min(kRun, points.size() - r * kRun));
+    boxes[r] = {run.front(), run.front()};
+    for (const Vector3f& p : run) {
+      boxes[r] = {boxes[r].lower.cwiseMin(p), boxes[r].upper.cwiseMax(p)};
+    }
+  });
+  return boxes;
+}
+
+/// The points around the drawn places; all of a cloud that has no more.
+PointCloud draw(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
+  if (cloud.size() <= kDrawnPlaces * kPointsAround) return cloud;
+  const double share = static_cast<double>(kPointsAround) / static_cast<double>(cloud.size());
+  const std::vector<Bounds> boxes = boxes_of_runs(cloud.positions);
+  std::vector<std::vector<std::uint32_t>> found(kDrawnPlaces);
+  detail::parallel_each(kDrawnPlaces, 1, [&](std::size_t k) {
+    const Vector3f& place = sample[(2 * k + 1) * sample.size() / (2 * kDrawnPlaces)];
+    const float squared = reach(sample, place, share);
+    for (std::size_t r = 0; r < boxes.size(); ++r) {
+      const Vector3f nearest = place.cwiseMax(boxes[r].lower).cwiseMin(boxes[r].upper);
+      if ((place - nearest).squaredNorm() > squared) continue;
+      const std::size_t end = std::min(cloud.size(), (r + 1) * kRun);
+      for (std::size_t i = r * kRun; i < end; ++i) {
+        if ((cloud.positions[i] - place).squaredNorm() > squared) continue;
+        found[k].push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  });
+  std::vector<std::uint32_t> all;
+  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::ranges::sort(all);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return select(cloud, all);
+}
+
+Box extent_of(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
+  std::vector<float> values;
+  Box box;
+  box.lower = box.upper = cloud.origin;
+  const auto strays = static_cast<std::ptrdiff_t>(sample.size() / kOneStrayOf);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (const Vector3f& p : sample) values.push_back(p[axis]);
+    std::ranges::nth_element(values, values.begin() + strays);
+    box.lower[axis] += static_cast<double>(values[static_cast<std::size_t>(strays)]);
+    std::ranges::nth_element(values, values.end() - 1 - strays);
+    box.upper[axis] += static_cast<double>(*(values.end() - 1 - strays));
+  }
+  return box;
+}
+
+}  // namespace
+
+CloudFacts measure_facts(const PointCloud& cloud, const PrepareOptions& options,
+                         const Eigen::Isometry3d& T_world_sensor) {
+  const Placed placed = place(cloud, options, T_world_sensor);
+  const std::vector<Vector3f> sample_points = sample_of(placed.cloud().positions);
+  PrepareOptions alone = options;
+  alone.facts.reset();
+  Prepared::Report report;
+  const PointCloud drawn = draw(placed.cloud(), sample_points);
+  Sampling sampling = sample({drawn, {}, placed.viewpoint}, alone, report);
+  sampling.facts.extent = extent_of(placed.cloud(), sample_points);
+  sampling.facts.radius = median(choose_radii(sampling, alone).values);
+  return sampling.facts;
+}
+
+}  // namespace palpate
