@@ -10,6 +10,7 @@ constexpr double kFaded = 0.01;  // of the stiffness: a spring that is gone
 constexpr double kWaits = 2;     // of R that a hand moves before it is no longer the same press
 constexpr double kHardest = 10;  // N in free air: desktop devices sustain less (judgement)
 constexpr double kFar = 10;      // of R, from the proxy (judgement)
+constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneField)
 
 }  // namespace
 
@@ -54,17 +55,17 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double d
   if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
 }
 
-// Who passed through a surface is not held by it from within. The spring fades in 20 ms.
-void Proxy::Inside::free_trapped(Probe& probe, const Eigen::Vector3d& hip,
-                                 Contact& contact) noexcept {
+// Who passed through a surface is not held by it from within: the spring fades with a time constant
+// of 20 ms. A proxy that moves fast is not asked: what a step saw beyond its patch tells the next
+// one the sides (SceneField), and looking elsewhere would forget it.
+void Proxy::Inside::free_trapped(Probe& probe, const Eigen::Vector3d& before,
+                                 const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (!touching_) return way_out_.wander(probe, position_);
-  if (!is_held() || !way_out_.is_shut_in(probe, position_, normal_, hip)) return;
+  if (!is_held() || (position_ - before).norm() > kFast * step_length_) return;
+  if (!way_out_.is_shut_in(probe, position_, normal_, hip)) return;
   fading_.take(position_, tank_.stiffness());
   release(hip);
-  contact.force.setZero();
-  contact.normal.setZero();
-  contact.stiffness = 0;
-  contact.notes |= ContactNote::freed;
+  contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only

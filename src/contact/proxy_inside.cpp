@@ -58,8 +58,11 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
-  if (changed) way_out_.reset();
-  free_trapped(probe, hip, contact);
+  if (changed) {
+    way_out_.reset();
+  } else {
+    free_trapped(probe, before, hip, contact);
+  }
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;

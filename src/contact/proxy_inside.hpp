@@ -103,7 +103,8 @@ class Proxy::Inside {
              const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  void free_trapped(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
+  void free_trapped(Probe& probe, const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
+                    Contact& contact) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
   [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
                                          const Eigen::Vector3d& hip) const noexcept;

@@ -8,14 +8,14 @@ namespace palpate {
 
 /// Tells, by a few looks a step, that a proxy is shut in by a surface that it passed through.
 ///
-/// A place has a way out if one leads from it straight, or along the first surface that is in the
-/// way, to open air: 256 R away. A proxy that has been in open air cannot come to a place without a
-/// way out, unless a surface let it pass; that surface holds it from within. Asks for no side of
-/// any point but near the proxy. A scene that changes is looked at anew. Real-time.
+/// A place has a way out if one leads from it to open air, 256 R away: straight, or along what is
+/// in the way. A proxy that has been in open air hardly comes to a place without a way out, unless
+/// a surface let it pass; that surface holds it from within. The sides of points do not count but
+/// where there is less than R / 4 of room. Real-time.
 class WayOut {
  public:
   /// What a step spends at most, evaluations.
-  static constexpr int kMostLooks = 16;  // judgement
+  static constexpr int kMostLooks = 16;  // 10 lead from a hand to open air (judgement)
 
   /// The surface has changed, or the proxy was put elsewhere.
   void reset() noexcept { *this = {}; }
@@ -24,7 +24,7 @@ class WayOut {
   void wander(Probe& probe, const Eigen::Vector3d& place) noexcept;
 
   /// A step in which the proxy touches, at `place` (m) with contact normal `normal`, and the hand
-  /// is at `hip` (m). True once: the hand is in open air, the proxy has been there and is shut in.
+  /// is at `hip` (m). True: the hand is in open air, the proxy has been there and is shut in.
   [[nodiscard]] bool is_shut_in(Probe& probe, const Eigen::Vector3d& place,
                                 const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept;
 
@@ -47,16 +47,17 @@ class WayOut {
   /// The most that a step spends on a ray.
   struct Effort {
     int looks = 0;
-    int work = 0;  // Probe::work(); a sample that has begun is finished. 0: none, so that what is
-                   // not free for certain ends the ray
+    int work = 0;  // Probe::work(); a sample that has begun is finished. 0: none, and what is not
+                   // free for certain ends the ray
   };
   enum class End { none, open, blocked };
-  /// Of the proxy: it is free; its way out is looked for, is known, or there is none.
+  /// The proxy is free; its way out is looked for, is known, or there is none.
   enum class State { free, asked, open, shut };
 
   [[nodiscard]] static Ray ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                                double radius) noexcept;
   [[nodiscard]] End walk(Probe& probe, const Effort& effort) noexcept;
+  void ask(const Eigen::Vector3d& place) noexcept;
   void look_around(Probe& probe, const Eigen::Vector3d& place,
                    const Eigen::Vector3d& normal) noexcept;
 
@@ -64,7 +65,7 @@ class WayOut {
   State state_ = State::free;
   int direction_ = 0;                                // of the ray
   bool has_room_ = false;                            // is there any beside the proxy?
-  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // where the proxy's way out was found, m
+  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // where the proxy's way was asked for, m
   bool was_out_ = false;                             // since the last reset
 };
 

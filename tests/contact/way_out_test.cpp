@@ -1,6 +1,7 @@
 // A hand in open air is not held from within by a surface that its proxy passed through.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <vector>
 
@@ -74,6 +75,32 @@ class TwoPlates final : public WallsField {
   }
   double gap_;
   double angle_;
+};
+
+/// An open tube with a bottom, tilted, its walls rough by `rough`.
+class Tube final : public WallsField {
+ public:
+  Tube(double radius, double height, double rough, const Eigen::Matrix3d& R_world_tube)
+      : radius_(radius), height_(height), rough_(rough), R_(R_world_tube) {}
+
+ private:
+  [[nodiscard]] static double plate(double x, double z, double half_x, double half_z) noexcept {
+    const Eigen::Vector2d off(std::abs(x) - half_x, std::abs(z) - half_z);
+    return off.cwiseMax(0).norm() + std::min(0.0, off.maxCoeff());
+  }
+  [[nodiscard]] double wall(const Vector3d& x) const noexcept override {
+    constexpr double kHalf = kThickness / 2;
+    const Vector3d in = R_.transpose() * x;
+    const double aside = in.head<2>().norm();
+    const double side = plate(aside - radius_ - kHalf, in.z() - height_ / 2, kHalf, height_ / 2);
+    const double bottom = plate(aside, in.z() + kHalf, radius_ + kThickness, kHalf);
+    const Vector3d waves = (x / kR * 3).array().sin();
+    return std::min(side, bottom) - rough_ * waves.prod() - rough_;
+  }
+  double radius_;
+  double height_;
+  double rough_;
+  Eigen::Matrix3d R_;
 };
 
 struct Outcome {
@@ -154,6 +181,36 @@ TEST(WayOut, NarrowSlotsAndWedgesHoldAHandThatCameInFromOpenAir) {
     EXPECT_FALSE(out.freed) << degrees;
     EXPECT_GT(out.last.force.norm(), 500 * 0.02) << degrees;
   }
+}
+
+TEST(WayOut, DeepTiltedTubesHoldAHandThatCameInByTheMouth) {
+  int tried = 0;
+  int freed = 0;
+  for (const double radius : {1 * kR, 2 * kR, 4 * kR}) {
+    for (const double tilt : {0.0, 0.6}) {
+      for (const double rough : {0.0, 0.1 * kR}) {
+        for (const double turn : {0.2, 1.3, 2.9}) {
+          const Eigen::Matrix3d R = (Eigen::AngleAxisd(0.4, Vector3d::UnitZ()) *
+                                     Eigen::AngleAxisd(tilt, Vector3d::UnitX()))
+                                        .toRotationMatrix();
+          const Tube tube(radius, 16 * kR, rough, R);
+          const Vector3d above = R * Vector3d(0, 0, 21 * kR);
+          const Vector3d within = R * Vector3d(0, 0, 2 * kR);
+          const Vector3d side = R * Vector3d(std::cos(turn), std::sin(turn), 0);
+          const Vector3d end = within + (radius + 3 * kR) * side;
+          Proxy proxy;
+          proxy.reset(above);
+          Outcome out = go(proxy, tube, {above, within, end}, 0.1);
+          for (int i = 0; i < 400; ++i) {
+            out.freed = out.freed || has(proxy.step(tube, end, kTick).notes, ContactNote::freed);
+          }
+          freed += out.freed ? 1 : 0;
+          ++tried;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(freed, 0) << "of " << tried;
 }
 
 TEST(WayOut, ASurfaceThatCameAroundAProxyHoldsIt) {
