@@ -14,6 +14,7 @@
 #include "prepare/sampling.hpp"
 #include "prepare/sheets.hpp"
 #include "prepare/stopwatch.hpp"
+#include "prepare/strays.hpp"
 #include "prepare/weights.hpp"
 
 namespace palpate {
@@ -32,6 +33,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   watch.lap(report.seconds_weights);
   const KnownSigns known = given_signs(placed, sampling, options);
   Sheets sheets = join_sheets(sampling, radii, weights, known, fits);
+  if (!radii.strays.empty()) drop_strays_off_sheets(sampling, sheets, weights);
   watch.lap(report.seconds_normals);
 
   return assemble(std::move(sampling), std::move(radii), std::move(fits), std::move(weights),

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "geometry/parallel.hpp"
+#include "palpate/geometry/spacing.hpp"
+#include "prepare/lines.hpp"
 #include "prepare/places.hpp"
 
 namespace palpate {
@@ -77,6 +79,32 @@ std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const floa
     strays[i] = edge ? 0 : 1;
   });
   return strays;
+}
+
+void drop_strays_off_sheets(const Sampling& sampling, const Sheets& sheets, Weights& weights) {
+  const std::vector<std::uint32_t>& sheet = sheets.sheets.sheet;
+  std::vector<std::uint32_t> off;
+  std::vector<Eigen::Vector3f> positions;
+  for (std::uint32_t i = 0; i < sheet.size(); ++i) {
+    if (sheet[i] != SurfacePoints::Sheets::kNone || weights.values[i] <= 0) continue;
+    off.push_back(i);
+    positions.push_back(sampling.grid.points()[i]);
+  }
+  if (off.empty()) return;
+  const CellGrid grid(positions);
+  std::vector<float> spacings = local_spacings(grid);
+  widen_to_lines(grid, spacings);
+  const std::vector<std::uint8_t> strays = find_strays(grid, spacings, sampling.spacing);
+  std::vector<CellGrid::Neighbor> places;
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    const std::uint32_t i = off[grid.order()[k]];
+    if (strays[k] == 0) continue;
+    nearest_places(sampling.grid, i, 2, places);
+    const double near = sampling.spacing * sampling.spacing;
+    if (places.size() > 1 && places[1].squared_distance <= near) continue;
+    weights.values[i] = 0;
+    ++weights.speckle;
+  }
 }
 
 }  // namespace palpate

@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
+#include "prepare/sampling.hpp"
+#include "prepare/sheets.hpp"
+#include "prepare/weights.hpp"
 
 namespace palpate {
 
@@ -15,5 +18,10 @@ namespace palpate {
 [[nodiscard]] std::vector<std::uint8_t> find_strays(const CellGrid& grid,
                                                     std::span<const float> spacings,
                                                     double typical);
+
+/// Lets strays beside a surface weigh nothing. Its points are their neighbours, so find_strays() of
+/// all points passes them over; here it looks at the points on no sheet among themselves. A point
+/// with another within the typical spacing stays: tips and ridges are on no sheet either.
+void drop_strays_off_sheets(const Sampling& sampling, const Sheets& sheets, Weights& weights);
 
 }  // namespace palpate

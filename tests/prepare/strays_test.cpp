@@ -7,6 +7,7 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 namespace palpate {
 namespace {
@@ -39,6 +40,19 @@ class Strays : public testing::Test {
     std::pair<int, int> counts{0, 0};
     for (std::size_t i = 0; i < strays.size(); ++i) {
       (grid.order()[i] < first_ ? counts.first : counts.second) += strays[i];
+    }
+    return counts;
+  }
+
+  /// How many of the grid's points and how many of the others weigh nothing once prepared.
+  std::pair<int, int> count_weightless() {
+    PointCloud cloud;
+    cloud.positions = points_;
+    const SurfacePoints prepared = prepare(cloud).points;
+    std::pair<int, int> counts{0, 0};
+    for (std::size_t i = 0; i < prepared.size(); ++i) {
+      if (prepared.density_weights[i] > 0) continue;
+      ++(prepared.grid.order()[i] < first_ ? counts.first : counts.second);
     }
     return counts;
   }
@@ -110,6 +124,24 @@ TEST_F(Strays, AreClustersFarFromTheRest) {
   for (int i = 0; i < 4; ++i) add(200 + 0.4f * static_cast<float>(i), 200, i % 2 == 0 ? 0.f : 0.7f);
   add(-300, 0, 20);
   EXPECT_EQ(count(), std::pair(0, 5));
+}
+
+// The sheet's points are their nearest, so they are strays among what is on no sheet alone.
+TEST_F(Strays, BesideASheetWeighNothing) {
+  for (int i = 0; i < 300; ++i) {
+    const float x = between(3, 57);
+    const float y = between(3, 57);
+    const float z = between(1.3f, 4);
+    add(x, y, i % 2 == 0 ? z : -z);
+  }
+  const auto [own, others] = count_weightless();
+  EXPECT_EQ(own, 0);
+  EXPECT_GE(others, 200);
+}
+
+TEST_F(Strays, AreNoWiresThatBeginAtASheet) {
+  for (int i = 1; i < 25; ++i) add(30.4f, 30.3f, static_cast<float>(i));
+  EXPECT_EQ(count_weightless(), std::pair(0, 0));
 }
 
 }  // namespace
