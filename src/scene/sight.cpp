@@ -25,6 +25,8 @@ constexpr int kStride = 2;  // pixels between windows that look at a ball: what 
 constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
 constexpr double kSpan = 0.1;  // s between frames that tell a speed: noise over less says little
 
+constexpr double kOtherClock = 0.5;  // s; a stamp further ahead is of another clock (docs/ros2.md)
+
 /// A pixel's inverse depth, which is affine in the pixel on planes.
 struct Pixel {
   double u = 0;  // from the place that is asked for, pixels
@@ -262,24 +264,38 @@ void Sight::forget() {
   frames_ = 0;
 }
 
-/// The age up to which a frame counts, s. The newest one came after the last question, so that the
-/// one before is replaced now, unless nobody asked for that either.
-double Sight::lasts(double now, double most) {
+/// If the newest frame came after the last question, the one before is replaced now, unless nobody
+/// asked for that either. Who asks for a time of another clock does not count.
+void Sight::note_question(double now) {
+  if (now < newest_.frame.stamp - kOtherClock) return;
   const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
   const double gap = newest_.frame.stamp - before_.frame.stamp;
   if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
-  const double usual = lifetime_.longest();
-  return usual > 0 && !std::isinf(most) ? std::min(usual, most) : most;
 }
 
-/// Asks the frame before where the newest one measured nothing; there it has to count twice as
-/// long.
-std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
+/// The age up to which a frame counts, s.
+double Sight::lasts(const FrameLimits& limits) const {
+  if (std::isinf(limits.later)) return limits.later;
+  const std::optional<double> usual = lifetime_.longest();
+  return usual ? std::min(*usual, limits.later) : limits.at_first;
+}
+
+/// Does the frame before the newest one count where that one measured nothing? Only if no frame is
+/// missing between them. Until that can be known, it counts as long as if it were the newest.
+bool Sight::before_counts(double now, double lasts) const {
+  if (frames_ < 2) return false;
+  const std::optional<double> interval = lifetime_.interval();
+  if (!interval || std::isinf(lasts)) return now - before_.frame.stamp <= lasts;
+  return newest_.frame.stamp - before_.frame.stamp <= FrameLifetime::kLost * *interval;
+}
+
+std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& limits) {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
-  const double lasts = this->lasts(now, most);
+  note_question(now);
+  const double lasts = this->lasts(limits);
   const auto is_base = [&](const PosedFrame& base, const PosedFrame& frame) {
-    return !std::isinf(most) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
+    return !std::isinf(lasts) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
   };
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
@@ -288,8 +304,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
   if (seen.says == Seen::Says::outside) return seen;
   if (seen.age > lasts) {
     seen.says = Seen::Says::old;
-  } else if (seen.says == Seen::Says::nothing && frames_ > 1 &&
-             now - before_.frame.stamp <= 2 * lasts) {
+  } else if (seen.says == Seen::Says::nothing && before_counts(now, lasts)) {
     seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
   }
   return seen;
