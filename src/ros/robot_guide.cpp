@@ -35,8 +35,10 @@ constexpr Reason kApart = "the tool has to come back to where the robot is";
 // after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:
 // 0.4 s)
 constexpr double kFreeFor = 0.5;
-constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
-constexpr double kJoin = 0.02;      // m; a hand finds a place again to that (judgement)
+// m from the robot to the first checked position of its way, and between them; a finger is thicker
+// (judgement)
+constexpr double kWayStep = 0.005;
+constexpr double kJoin = 0.02;  // m; a hand finds a place again to that (judgement)
 // m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
 constexpr double kJump = 0.01;
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
@@ -114,13 +116,15 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
 }
 
 // Is the straight way from the robot to the target seen to be free? A surface may have come over
-// the robot in one frame, as far as it does slowly.
+// the robot in one frame, as far as it does slowly: as near to it the way may be so deep in it.
 bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
   if (!robot_.place) return true;
   const Vector3d way = target - *robot_.place;
   Memory memory = robot_.memory;
-  for (double gone = kJump; gone < way.norm(); gone += kWayStep) {
-    if (!judge(*robot_.place + gone * way.normalized(), now, memory).free()) return false;
+  for (double gone = kWayStep; gone < way.norm(); gone += kWayStep) {
+    const Place place = judge(*robot_.place + gone * way.normalized(), now, memory);
+    const bool leaves = gone <= kJump && place.solid() && place.seen.behind <= kJump;
+    if (!place.free() && !leaves) return false;
   }
   return true;
 }

@@ -135,6 +135,21 @@ TEST_F(ARobot, GoesNoWayThatIsNotSeenFree) {
   EXPECT_TRUE(look_at({0.05, 0, 0.05}).target) << "a way that was gone is not asked for";
 }
 
+// A rod of 4 mm stands between places 9 mm apart, higher than a surface comes slowly.
+TEST_F(ARobot, GoesNoShortWayThroughWhatIsHigh) {
+  Source& source = scene_.add("camera", {.T_world_sensor = looking_down()});
+  starts();
+  const auto sees = [](double x, double) { return std::abs(x) < 0.005 ? 0.4 : 0.5; };
+  const auto look_at = [&](const Vector3d& place) {
+    (void)source.push(frame_of(small_camera(), now_, sees), [this] { return now_ + 0.01; });
+    tool_at(place);
+    now_ += kFrame;
+    return guide_->look(state_, now_, false);
+  };
+  ASSERT_TRUE(look_at({-0.0049, 0, 0.05}).target);
+  EXPECT_EQ(look_at({0.0049, 0, 0.05}).why, "the way to the tool is not seen free");
+}
+
 TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
   PointCloud cloud;
   for (int i = 0; i < 400; ++i) {
