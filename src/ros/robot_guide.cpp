@@ -29,6 +29,7 @@ constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 constexpr Reason kMoved = "a surface moved over the tool";
 constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
+constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
 // s that hand and tool are free before it starts, so that a hand that passes does not start it;
@@ -49,6 +50,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 // Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.
 Reason broken_way(const ServoState& state) {
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
+  if (has(state.field_notes, FieldNote::not_loaded)) return kNotLoaded;
   if (has(state.field_notes, FieldNote::behind)) return kBehind;
   if (has(state.contact.notes, ContactNote::lost | ContactNote::fell | ContactNote::freed))
     return "the surface let the tool go";
@@ -138,6 +140,11 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   }
   const Place proxy = judge(state.contact.proxy, now, tool_);
   if (proxy.source == nullptr) return without_view(state, now, pressed);
+  // What a cloud has there may hold the tool later, whatever a camera sees.
+  if (has(state.field_notes, FieldNote::not_loaded)) {
+    pause();
+    return {.reason = kNotLoaded, .why = std::string(kNotLoaded)};
+  }
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = robot_.place && (follows_ || now - followed_ <= kFreeFor);

@@ -178,6 +178,30 @@ TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
   EXPECT_TRUE(runs(kLook).target);
 }
 
+TEST_F(ARobot, WaitsWhereACloudIsNotPreparedYet) {
+  PointCloud cloud;
+  for (int i = 0; i < 400; ++i) {
+    cloud.positions.emplace_back(1e-2f * static_cast<float>(i % 20),
+                                 1e-2f * static_cast<float>(i / 20), 0.f);
+  }
+  scene_.add("cloud", cloud);
+  for (const bool seen : {false, true}) {
+    if (seen) camera("camera", at_rest);
+    starts();
+    state_.field_notes = FieldNote::none;
+    tool_at({0, 0, 0.1});
+    ASSERT_TRUE(runs(1).target) << seen;
+    state_.field_notes = FieldNote::not_loaded;
+    EXPECT_EQ(runs(kLook).why, "the cloud is not prepared yet where the tool is") << seen;
+    tool_at({0, 0, 0.13});
+    EXPECT_FALSE(runs(kLook, true).target) << "nor when the button is pressed anew";
+    state_.field_notes = FieldNote::none;
+    EXPECT_EQ(runs(1).target.has_value(), seen) << "only a camera sees that the way is free";
+    tool_at({0, 0, 0.1});
+    EXPECT_TRUE(runs(1).target) << seen;
+  }
+}
+
 TEST_F(ARobot, WaitsForACameraThatHasShownNothingYet) {
   camera("one", at_rest);
   camera("two", at_rest);
