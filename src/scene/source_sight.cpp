@@ -26,7 +26,7 @@ void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_wo
 
 /// The ages up to which a frame can say what is free.
 FrameLimits Source::Inside::frame_limits() const {
-  constexpr double kEver = std::numeric_limits<double>::infinity();
+  constexpr double kEver = std::numeric_limits<double>::infinity();  // s: a file does not age
   if (stays) return {.at_first = kEver, .later = kEver};
   const std::lock_guard lock(mutex);
   const double silence = options.policy.silence;
