@@ -29,14 +29,17 @@ constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 constexpr Reason kMoved = "a surface moved over the tool";
 constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
+constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
 // s that hand and tool are free before it starts, so that a hand that passes does not start it;
 // after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:
 // 0.4 s)
 constexpr double kFreeFor = 0.5;
-constexpr double kWayStep = 0.005;  // m between checked positions; a finger is thicker (judgement)
-constexpr double kJoin = 0.02;      // m; a hand finds a place again to that (judgement)
+// m from the robot to the first checked position of its way, and between them; a finger is thicker
+// (judgement)
+constexpr double kWayStep = 0.005;
+constexpr double kJoin = 0.02;  // m; a hand finds a place again to that (judgement)
 // m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
 constexpr double kJump = 0.01;
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
@@ -47,6 +50,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 // Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.
 Reason broken_way(const ServoState& state) {
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
+  if (has(state.field_notes, FieldNote::not_loaded)) return kNotLoaded;
   if (has(state.field_notes, FieldNote::behind)) return kBehind;
   if (has(state.contact.notes, ContactNote::lost | ContactNote::fell | ContactNote::freed))
     return "the surface let the tool go";
@@ -114,13 +118,15 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
 }
 
 // Is the straight way from the robot to the target seen to be free? A surface may have come over
-// the robot in one frame, as far as it does slowly.
+// the robot in one frame, as far as it does slowly: as near to it the way may be so deep in it.
 bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
   if (!robot_.place) return true;
   const Vector3d way = target - *robot_.place;
   Memory memory = robot_.memory;
-  for (double gone = kJump; gone < way.norm(); gone += kWayStep) {
-    if (!judge(*robot_.place + gone * way.normalized(), now, memory).free()) return false;
+  for (double gone = kWayStep; gone < way.norm(); gone += kWayStep) {
+    const Place place = judge(*robot_.place + gone * way.normalized(), now, memory);
+    const bool leaves = gone <= kJump && place.solid() && place.seen.behind <= kJump;
+    if (!place.free() && !leaves) return false;
   }
   return true;
 }
@@ -134,6 +140,11 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   }
   const Place proxy = judge(state.contact.proxy, now, tool_);
   if (proxy.source == nullptr) return without_view(state, now, pressed);
+  // What a cloud has there may hold the tool later, whatever a camera sees.
+  if (has(state.field_notes, FieldNote::not_loaded)) {
+    pause();
+    return {.reason = kNotLoaded, .why = std::string(kNotLoaded)};
+  }
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = robot_.place && (follows_ || now - followed_ <= kFreeFor);

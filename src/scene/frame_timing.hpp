@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 namespace palpate {
 
@@ -74,20 +75,26 @@ class FrameLifetime {
   /// A frame was replaced at this age by one whose stamp is so much later, s.
   void add(double gap, double age) { ends_[count_++ % kFrames] = {gap, age}; }
 
-  /// The age that no frame exceeds while none is lost: the mean and three deviations of the last
-  /// ones, s. 0: too few have come.
-  [[nodiscard]] double longest() const {
+  /// Between stamps where no frame is lost, s. Nothing: too few have come.
+  [[nodiscard]] std::optional<double> interval() const {
     const std::size_t known = std::min(count_, kFrames);
-    if (known < kFrames / 2) return 0;
+    if (known < kFrames / 2) return std::nullopt;
     std::array<End, kFrames> ends = ends_;
-    const auto end = ends.begin() + static_cast<std::ptrdiff_t>(known);
     const auto quarter = ends.begin() + static_cast<std::ptrdiff_t>(known / 4);
-    std::nth_element(ends.begin(), quarter, end,
+    std::nth_element(ends.begin(), quarter, ends.begin() + static_cast<std::ptrdiff_t>(known),
                      [](const End& a, const End& b) { return a.gap < b.gap; });
-    const double interval = quarter->gap;
+    return quarter->gap;
+  }
+
+  /// The age that no frame exceeds while none is lost: the mean and three deviations of the last
+  /// ones, s; below 0 where the camera's clock is ahead. Nothing: too few have come.
+  [[nodiscard]] std::optional<double> longest() const {
+    const std::optional<double> interval = this->interval();
+    if (!interval) return std::nullopt;
+    const auto end = ends_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kFrames));
     double count = 0, sum = 0, squares = 0;
-    for (auto i = ends.begin(); i != end; ++i) {
-      if (i->gap > kLost * interval) continue;
+    for (auto i = ends_.begin(); i != end; ++i) {
+      if (i->gap > kLost * *interval) continue;
       const double before = count > 0 ? sum / count : 0;
       sum += i->age;
       count += 1;
@@ -95,6 +102,9 @@ class FrameLifetime {
     }
     return sum / count + kDeviations * std::sqrt(squares / std::max(count - 1, 1.0));
   }
+
+  /// Intervals: a longer gap has lost frames. Half way from one to the two of one that is lost.
+  static constexpr double kLost = 1.5;
 
  private:
   // The end of a frame's time.
@@ -105,8 +115,6 @@ class FrameLifetime {
 
   // Frames: their deviation is known to a sixth, 1 / sqrt(2 n).
   static constexpr std::size_t kFrames = 16;
-  // Intervals: half way from one, which a lost frame makes two.
-  static constexpr double kLost = 1.5;
   static constexpr double kDeviations = 3;  // as many as noise is allowed (Sight)
 
   std::array<End, kFrames> ends_;

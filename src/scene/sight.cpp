@@ -1,15 +1,12 @@
 // A plane through 5 x 5 raw pixels on each ray says how far what is seen lies beyond a ball.
 #include "scene/sight.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <span>
 #include <utility>
 
 #include "depth/input.hpp"
+#include "scene/pixel_plane.hpp"
 
 namespace palpate {
 namespace {
@@ -17,90 +14,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kHalf = 2;        // pixels: a window of 5 x 5 averages most noise and bends little
 constexpr double kSure = 3;     // deviations: noise feigns more once in 700 frames, and by little
 constexpr double kNoPlane = 2;  // sigma of residual: two surfaces are in the window (judgement)
-constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
 constexpr int kStride = 2;  // pixels between windows that look at a ball: what is as wide is seen
 constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
 constexpr double kSpan = 0.1;  // s between frames that tell a speed: noise over less says little
 
-/// A pixel's inverse depth, which is affine in the pixel on planes.
-struct Pixel {
-  double u = 0;  // from the place that is asked for, pixels
-  double v = 0;
-  double inverse = 0;  // 1/m
-};
-
-struct Pixels {
-  std::array<Pixel, (2 * kHalf + 1) * (2 * kHalf + 1)> all;
-  std::size_t count = 0;
-
-  [[nodiscard]] std::span<Pixel> span() { return {all.data(), count}; }
-};
-
-Pixels window_of(const DepthFrame& frame, double u, double v) {
-  Pixels found;
-  const int across = static_cast<int>(std::lround(u));
-  const int down = static_cast<int>(std::lround(v));
-  for (int y = std::max(down - kHalf, 0); y <= std::min(down + kHalf, frame.camera.height - 1);
-       ++y) {
-    for (int x = std::max(across - kHalf, 0); x <= std::min(across + kHalf, frame.camera.width - 1);
-         ++x) {
-      const float z = frame.depth[static_cast<std::size_t>(y) * frame.camera.width + x];
-      if (!(z > 0 && std::isfinite(z))) continue;
-      found.all[found.count++] = {x - u, y - v, 1 / static_cast<double>(z)};
-    }
-  }
-  return found;
-}
-
-/// A plane through pixels: its inverse depth at the place that is asked for.
-struct Plane {
-  double inverse = 0;
-  double leverage = std::numeric_limits<double>::infinity();  // its variance over a pixel's
-  double residual = 0;                                        // rms, 1/m
-
-  [[nodiscard]] bool told() const { return leverage <= kMostLeverage && inverse > 0; }
-};
-
-Plane plane_of(std::span<const Pixel> pixels) {
-  double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
-  Vector3d right = Vector3d::Zero();
-  double squares = 0;
-  for (const Pixel& pixel : pixels) {
-    u += pixel.u;
-    v += pixel.v;
-    uu += pixel.u * pixel.u;
-    uv += pixel.u * pixel.v;
-    vv += pixel.v * pixel.v;
-    right += pixel.inverse * Vector3d(1, pixel.u, pixel.v);
-    squares += pixel.inverse * pixel.inverse;
-  }
-  const auto count = static_cast<double>(pixels.size());
-  const Matrix3d normal{{count, u, v}, {u, uu, uv}, {v, uv, vv}};
-  Matrix3d inverse;
-  bool solved = false;
-  normal.computeInverseWithCheck(inverse, solved);
-  if (!solved) return {};
-  const Vector3d plane = inverse * right;
-  const double rest = std::max(squares - plane.dot(right), 0.0);  // of the squares
-  return {plane.x(), inverse(0, 0), std::sqrt(rest / std::max(count - 3, 1.0))};
-}
-
-/// The pixels on one side of the widest gap between depths: the side of the pixel that is nearest
-/// to the place.
-std::span<Pixel> own_surface(std::span<Pixel> pixels) {
-  const auto distance = [](const Pixel& p) { return p.u * p.u + p.v * p.v; };
-  const double own = std::ranges::min(pixels, {}, distance).inverse;
-  std::ranges::sort(pixels, {}, &Pixel::inverse);
-  std::size_t cut = 1;
-  for (std::size_t i = 2; i < pixels.size(); ++i) {
-    if (pixels[i].inverse - pixels[i - 1].inverse > pixels[cut].inverse - pixels[cut - 1].inverse)
-      cut = i;
-  }
-  return own < pixels[cut].inverse ? pixels.first(cut) : pixels.subspan(cut);
-}
+constexpr double kOtherClock = 0.5;  // s; a stamp further ahead is of another clock (docs/ros2.md)
 
 /// Where the ball's far side is along a unit ray from the camera, m.
 double reach_along(const Vector3d& ray, const Vector3d& center, double radius) {
@@ -135,11 +55,11 @@ struct Gap {
 /// its length for one metre of depth.
 std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, double stretch,
                           double reach) {
-  Pixels window = window_of(view.frame, at.x(), at.y());
-  const auto sigma_of = [&](const Plane& plane) {  // 1/m
+  PixelWindow window = window_of(view.frame, at.x(), at.y());
+  const auto sigma_of = [&](const PixelPlane& plane) {  // 1/m
     return view.noise.sigma(1 / plane.inverse) * plane.inverse * plane.inverse;
   };
-  Plane plane = plane_of(window.span());
+  PixelPlane plane = plane_of(window.span());
   if (!plane.told()) return std::nullopt;
   const bool whole = plane.residual <= kNoPlane * sigma_of(plane);
   if (!whole) plane = plane_of(own_surface(window.span()));
@@ -262,24 +182,38 @@ void Sight::forget() {
   frames_ = 0;
 }
 
-/// The age up to which a frame counts, s. The newest one came after the last question, so that the
-/// one before is replaced now, unless nobody asked for that either.
-double Sight::lasts(double now, double most) {
+/// If the newest frame came after the last question, the one before is replaced now, unless nobody
+/// asked for that either. Who asks for a time of another clock does not count.
+void Sight::note_question(double now) {
+  if (now < newest_.frame.stamp - kOtherClock) return;
   const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
   const double gap = newest_.frame.stamp - before_.frame.stamp;
   if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
-  const double usual = lifetime_.longest();
-  return usual > 0 && !std::isinf(most) ? std::min(usual, most) : most;
 }
 
-/// Asks the frame before where the newest one measured nothing; there it has to count twice as
-/// long.
-std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
+/// The age up to which a frame counts, s.
+double Sight::lasts(const FrameLimits& limits) const {
+  if (std::isinf(limits.later)) return limits.later;
+  const std::optional<double> usual = lifetime_.longest();
+  return usual ? std::min(*usual, limits.later) : limits.at_first;
+}
+
+/// Does the frame before the newest one count where that one measured nothing? Only if no frame is
+/// missing between them. Until that can be known, it counts as long as if it were the newest.
+bool Sight::before_counts(double now, double lasts) const {
+  if (frames_ < 2) return false;
+  const std::optional<double> interval = lifetime_.interval();
+  if (!interval || std::isinf(lasts)) return now - before_.frame.stamp <= lasts;
+  return newest_.frame.stamp - before_.frame.stamp <= FrameLifetime::kLost * *interval;
+}
+
+std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& limits) {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
-  const double lasts = this->lasts(now, most);
+  note_question(now);
+  const double lasts = this->lasts(limits);
   const auto is_base = [&](const PosedFrame& base, const PosedFrame& frame) {
-    return !std::isinf(most) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
+    return !std::isinf(lasts) && frame.frame.stamp - base.frame.stamp >= kSpan / 2;
   };
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
@@ -288,8 +222,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, double most) {
   if (seen.says == Seen::Says::outside) return seen;
   if (seen.age > lasts) {
     seen.says = Seen::Says::old;
-  } else if (seen.says == Seen::Says::nothing && frames_ > 1 &&
-             now - before_.frame.stamp <= 2 * lasts) {
+  } else if (seen.says == Seen::Says::nothing && before_counts(now, lasts)) {
     seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
   }
   return seen;

@@ -17,6 +17,12 @@ struct PosedFrame {
   NoiseModel noise;
 };
 
+/// Ages up to which a frame counts at most, s; infinite: it stays.
+struct FrameLimits {
+  double at_first = 0;  ///< while it is not known when frames are due
+  double later = 0;     ///< however late they are due then
+};
+
 /// Says whether places are free, from a depth camera's newest raw frames alone. The surface takes
 /// no part in it. One thread shows it frames, any thread asks.
 class Sight {
@@ -31,13 +37,14 @@ class Sight {
   void forget();
 
   /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until
-  /// the next one is due, and until it is `most` old (s); infinite: it stays. Who asks often lets
-  /// it know when frames are due: it measures how old they are when they are first asked for.
-  /// Nothing: no frame has come.
-  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, double most);
+  /// the next one is due, and no longer than `limits`. Who asks often lets it know when frames are
+  /// due: it measures how old they are when they are first asked for. Nothing: no frame has come.
+  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, const FrameLimits& limits);
 
  private:
-  [[nodiscard]] double lasts(double now, double most);
+  void note_question(double now);
+  [[nodiscard]] double lasts(const FrameLimits& limits) const;
+  [[nodiscard]] bool before_counts(double now, double lasts) const;
 
   std::mutex mutex_;  // of what follows
   PosedFrame newest_;

@@ -135,7 +135,7 @@ struct Source::Inside {
   void note(const SnapshotBuilder& made);
   void compare(const Source& source);
   void show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
-  [[nodiscard]] double lasts_at_most() const;
+  [[nodiscard]] FrameLimits frame_limits() const;
 
   std::string name;
   mutable std::mutex mutex;  // of what follows: those who draw, and the preparing thread

@@ -135,6 +135,21 @@ TEST_F(ARobot, GoesNoWayThatIsNotSeenFree) {
   EXPECT_TRUE(look_at({0.05, 0, 0.05}).target) << "a way that was gone is not asked for";
 }
 
+// A rod of 4 mm stands between places 9 mm apart, higher than a surface comes slowly.
+TEST_F(ARobot, GoesNoShortWayThroughWhatIsHigh) {
+  Source& source = scene_.add("camera", {.T_world_sensor = looking_down()});
+  starts();
+  const auto sees = [](double x, double) { return std::abs(x) < 0.005 ? 0.4 : 0.5; };
+  const auto look_at = [&](const Vector3d& place) {
+    (void)source.push(frame_of(small_camera(), now_, sees), [this] { return now_ + 0.01; });
+    tool_at(place);
+    now_ += kFrame;
+    return guide_->look(state_, now_, false);
+  };
+  ASSERT_TRUE(look_at({-0.0049, 0, 0.05}).target);
+  EXPECT_EQ(look_at({0.0049, 0, 0.05}).why, "the way to the tool is not seen free");
+}
+
 TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
   PointCloud cloud;
   for (int i = 0; i < 400; ++i) {
@@ -161,6 +176,30 @@ TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
   EXPECT_THAT(runs(1).why, HasSubstr("come back to where the robot is"));
   tool_at({0, 0, 0.11});
   EXPECT_TRUE(runs(kLook).target);
+}
+
+TEST_F(ARobot, WaitsWhereACloudIsNotPreparedYet) {
+  PointCloud cloud;
+  for (int i = 0; i < 400; ++i) {
+    cloud.positions.emplace_back(1e-2f * static_cast<float>(i % 20),
+                                 1e-2f * static_cast<float>(i / 20), 0.f);
+  }
+  scene_.add("cloud", cloud);
+  for (const bool seen : {false, true}) {
+    if (seen) camera("camera", at_rest);
+    starts();
+    state_.field_notes = FieldNote::none;
+    tool_at({0, 0, 0.1});
+    ASSERT_TRUE(runs(1).target) << seen;
+    state_.field_notes = FieldNote::not_loaded;
+    EXPECT_EQ(runs(kLook).why, "the cloud is not prepared yet where the tool is") << seen;
+    tool_at({0, 0, 0.13});
+    EXPECT_FALSE(runs(kLook, true).target) << "nor when the button is pressed anew";
+    state_.field_notes = FieldNote::none;
+    EXPECT_EQ(runs(1).target.has_value(), seen) << "only a camera sees that the way is free";
+    tool_at({0, 0, 0.1});
+    EXPECT_TRUE(runs(1).target) << seen;
+  }
 }
 
 TEST_F(ARobot, WaitsForACameraThatHasShownNothingYet) {

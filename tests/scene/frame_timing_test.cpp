@@ -87,18 +87,18 @@ FrameLifetime after(int frames, double jitter, double lost) {
 }
 
 TEST(FrameLifetime, IsUnknownAtFirst) {
-  EXPECT_EQ(after(8, 0, 0).longest(), 0);
-  EXPECT_NEAR(after(9, 0, 0).longest(), kInterval + kDelay, 1e-9);
+  EXPECT_FALSE(after(8, 0, 0).longest());
+  EXPECT_NEAR(after(9, 0, 0).longest().value(), kInterval + kDelay, 1e-9);
 }
 
 TEST(FrameLifetime, IsNoLongerWhereFramesAreLost) {
-  EXPECT_NEAR(after(200, 0, 0.4).longest(), kInterval + kDelay, 1e-9);
+  EXPECT_NEAR(after(200, 0, 0.4).longest().value(), kInterval + kDelay, 1e-9);
 }
 
 TEST(FrameLifetime, LastsAsLongAsFramesThatComeLate) {
   constexpr double kJitter = 0.01;  // s
   for (const double lost : {0., 0.4}) {
-    const double longest = after(200, kJitter, lost).longest();
+    const double longest = after(200, kJitter, lost).longest().value();
     EXPECT_GT(longest, kInterval + kDelay + 1.5 * kJitter) << lost;
     EXPECT_LT(longest, kInterval + kDelay + 4 * kJitter) << lost;
   }
@@ -107,9 +107,16 @@ TEST(FrameLifetime, LastsAsLongAsFramesThatComeLate) {
 TEST(FrameLifetime, FollowsAnotherRate) {
   FrameLifetime lifetime;
   for (int k = 0; k < 30; ++k) lifetime.add(1. / 60, 1. / 60);
-  EXPECT_NEAR(lifetime.longest(), 1. / 60, 1e-9);
+  EXPECT_NEAR(lifetime.longest().value(), 1. / 60, 1e-9);
   for (int k = 0; k < 16; ++k) lifetime.add(0.2, 0.2);
-  EXPECT_NEAR(lifetime.longest(), 0.2, 1e-9);
+  EXPECT_NEAR(lifetime.longest().value(), 0.2, 1e-9);
+}
+
+TEST(FrameLifetime, IsNegativeWhereTheCamerasClockIsAhead) {
+  FrameLifetime lifetime;
+  for (int k = 0; k < 16; ++k) lifetime.add(0.1, -0.2);
+  EXPECT_NEAR(lifetime.longest().value(), -0.2, 1e-9);
+  EXPECT_NEAR(lifetime.interval().value(), 0.1, 1e-9);
 }
 
 }  // namespace

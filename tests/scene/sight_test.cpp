@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "palpate/scene/scene.hpp"
 #include "support/depth_frames.hpp"
 
 namespace palpate {
@@ -20,6 +19,7 @@ using Says = Seen::Says;
 constexpr double kPixelSigma = 1e-3;   // m
 constexpr double kFramePeriod = 0.03;  // s
 constexpr double kFrameLasts = 0.1;    // s
+constexpr FrameLimits kLimits = {kFrameLasts, kFrameLasts};
 const NoiseModel kPixelNoise{{kPixelSigma, 0, 0}, 1};
 
 // Frames of what a camera at the origin sees along +z, kFramePeriod apart.
@@ -31,7 +31,7 @@ class ASight : public ::testing::Test {
                kPixelNoise);
   }
   [[nodiscard]] Seen at(const Vector3d& place, double radius = 0, double later = 0) {
-    return *sight_.at({place, radius}, stamp_ + later, kFrameLasts);
+    return *sight_.at({place, radius}, stamp_ + later, kLimits);
   }
 
   Sight sight_;
@@ -39,7 +39,7 @@ class ASight : public ::testing::Test {
 };
 
 TEST_F(ASight, SaysNothingBeforeAFrameHasCome) {
-  EXPECT_FALSE(sight_.at({}, 0, kFrameLasts));
+  EXPECT_FALSE(sight_.at({}, 0, kLimits));
 }
 
 TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
@@ -55,9 +55,7 @@ TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
 TEST_F(ASight, TellsAllOfTheWayToWhatIsMeasuredWhereThatIsFar) {
   const NoiseModel patches{{kPixelSigma, 0, 0}, 5};  // a window errs as one pixel
   sight_.see(frame_of(small_camera(), 0, wall(0.5)), Eigen::Isometry3d::Identity(), patches);
-  const auto lift = [&](double way) {
-    return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kFrameLasts)->lift;
-  };
+  const auto lift = [&](double way) { return sight_.at({{0, 0, 0.5 + way}, 0}, 0, kLimits)->lift; };
   EXPECT_EQ(lift(2.9 * kPixelSigma), 0);
   EXPECT_LT(lift(3.1 * kPixelSigma), 0.3 * kPixelSigma) << "nothing jumps where it begins";
   EXPECT_NEAR(lift(20 * kPixelSigma), 20 * kPixelSigma, 0.5 * kPixelSigma);
@@ -100,12 +98,45 @@ TEST_F(ASight, BridgesOneFrameThatMeasuresNothing) {
   EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
 }
 
+// Frames are asked for when they are kDelay old, after `lost` others that never came.
 TEST_F(ASight, AsksTheFrameBeforeForOneMoreFrame) {
-  sees(wall(0.5));
-  sees([](double, double) { return 0; });
-  const double later = kFrameLasts - 1e-3;  // the frame before is a period older
-  EXPECT_EQ(at({0, 0, 0.4}, 0, later).says, Says::free);
-  EXPECT_EQ(at({0, 0, 0.4}, 0, kFrameLasts + 1e-3).says, Says::old);
+  constexpr double kDelay = 0.1;  // s
+  constexpr FrameLimits kLong = {1, 1};
+  const auto says = [&](double later) {
+    return sight_.at({{0, 0, 0.4}, 0}, stamp_ + later, kLong)->says;
+  };
+  for (const int lost : {0, 1, 3}) {
+    for (int k = 0; k < 20; ++k) {
+      sees(wall(0.5));
+      EXPECT_EQ(says(kDelay), Says::free);
+    }
+    stamp_ += lost * kFramePeriod;
+    sees([](double, double) { return 0; });
+    EXPECT_EQ(says(kDelay), lost == 0 ? Says::free : Says::nothing) << lost;
+    EXPECT_EQ(says(kDelay + kFramePeriod - 1e-3), lost == 0 ? Says::free : Says::nothing) << lost;
+    EXPECT_EQ(says(kDelay + kFramePeriod + 1e-3), Says::old) << lost;
+  }
+}
+
+TEST_F(ASight, KnowsWhenFramesAreDueOfACameraWhoseClockIsAhead) {
+  constexpr double kAhead = 0.2;  // s
+  for (int k = 0; k < 20; ++k) {
+    sees(wall(0.5));
+    EXPECT_EQ(at({0, 0, 0.4}, 0, -kAhead).says, Says::free);
+  }
+  EXPECT_EQ(at({0, 0, 0.4}, 0, kFramePeriod - kAhead - 1e-3).says, Says::free);
+  EXPECT_EQ(at({0, 0, 0.4}, 0, kFramePeriod - kAhead + 1e-3).says, Says::old);
+}
+
+// As the guide of a second robot does before it knows the time.
+TEST_F(ASight, LearnsNothingFromWhoAsksForATimeOfAnotherClock) {
+  stamp_ = 1000;
+  for (int k = 0; k < 20; ++k) {
+    sees(wall(0.5));
+    if (k == 17) (void)sight_.at({}, 0, kLimits);
+    EXPECT_EQ(at({0, 0, 0.4}).says, Says::free);
+  }
+  EXPECT_EQ(at({0, 0, 0.4}, 0, kFramePeriod + 1e-3).says, Says::old);
 }
 
 TEST_F(ASight, IsTooOldAfterAWhile) {
@@ -177,7 +208,7 @@ TEST_F(ASight, DoesNotForeseeWhatStays) {
   sees(wall(0.5));
   sees(wall(0.48));
   const double ever = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(sight_.at({{0, 0, 0.4}, 0}, stamp_ + 1000, ever)->says, Says::free);
+  EXPECT_EQ(sight_.at({{0, 0, 0.4}, 0}, stamp_ + 1000, {ever, ever})->says, Says::free);
 }
 
 TEST_F(ASight, LooksAtAllOfABall) {
@@ -197,87 +228,6 @@ TEST_F(ASight, IsNotAlarmedByNoise) {
     EXPECT_EQ(at({0.01, -0.01, 0.5}, 0, kFramePeriod).says, Says::free) << seed;
     EXPECT_EQ(at({0.01, -0.01, 0.508}, 0, kFramePeriod).says, Says::solid) << seed;
   }
-}
-
-TEST(Seen, IsThereFromTheFirstQuestionOn) {
-  Scene scene;
-  Source& source = scene.add("camera");
-  const auto push = [&](double stamp) {
-    return source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp + 0.02; });
-  };
-  const Ball ball{{0, 0, 0.4}, 0};
-  EXPECT_FALSE(source.seen(ball, 0));
-  ASSERT_TRUE(push(0));
-  EXPECT_EQ(source.seen(ball, 0.01)->says, Says::free);
-  ASSERT_TRUE(push(0.03));
-  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old);
-}
-
-TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
-  constexpr double kDelay = 0.02;  // s
-  Scene scene;
-  Source& source = scene.add("camera");
-  const Ball ball{{0, 0, 0.4}, 0};
-  (void)source.seen(ball, 0);  // asks for frames
-  double stamp = 0;
-  for (int k = 0; k < 100; ++k) {
-    if (k % 5 == 1 || k % 5 == 3) continue;
-    stamp = k * kFramePeriod;
-    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + 1; }));
-    EXPECT_EQ(source.seen(ball, stamp + kDelay)->says, Says::free);
-  }
-  const double due = kFramePeriod + kDelay;
-  EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->says, Says::old);
-}
-
-TEST(Seen, LastsNoLongerAfterNobodyAskedForAWhile) {
-  Scene scene;
-  Source& source = scene.add("camera");
-  const Ball ball{{0, 0, 0.4}, 0};
-  (void)source.seen(ball, 0);  // asks for frames
-  double stamp = 0;
-  for (int k = 0; k < 60; ++k) {
-    stamp = k * kFramePeriod;
-    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp; }));
-    if (k < 30 || k > 50) (void)source.seen(ball, stamp);
-    if (k == 50) (void)source.seen(ball, stamp + 0.9 * kFramePeriod);
-  }
-  EXPECT_EQ(source.seen(ball, stamp + kFramePeriod + 1e-3)->says, Says::old);
-}
-
-TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
-  Scene scene;
-  Source& source = scene.add("camera");
-  const Ball ball{{0, 0, 0.4}, 0};
-  (void)source.seen(ball, 0);  // asks for frames
-  for (const double stamp : {0., 0.03}) {
-    ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp; }));
-  }
-  source.keep();
-  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old) << "what is felt stays";
-}
-
-TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
-  Scene scene;
-  Source& source = scene.add("image");
-  source.set(frame_of(small_camera(), 0, wall(0.5)));
-  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
-  EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->says, Says::solid);
-  source.keep();
-  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
-}
-
-TEST(Seen, IsNothingOfClouds) {
-  Scene scene;
-  PointCloud cloud;
-  for (int i = 0; i < 400; ++i) {
-    cloud.positions.emplace_back(0.01f * static_cast<float>(i % 20),
-                                 0.01f * static_cast<float>(i / 20), 0);
-  }
-  EXPECT_FALSE(scene.add("cloud", cloud).seen({}, 0));
 }
 
 }  // namespace

@@ -213,10 +213,10 @@ class Source {
   /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
   /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
   /// once the next one should have replaced it: at the age at which the last 16 frames were
-  /// replaced, three deviations allowed, lost frames left out; after fewer than nine frames, and at
-  /// the latest, PolicyOptions::silence after it came. So is the last one before keep(); one of
-  /// set() never is. From raw depths, not from the surface. Nothing for clouds, and until a frame
-  /// is pushed after the first call. Any thread but a servo's.
+  /// replaced, three deviations allowed, lost frames left out; of the first nine 2.5 mean intervals
+  /// after it came; at the latest PolicyOptions::silence after that. So is the last one before
+  /// keep(); one of set() never is. From raw depths, not from the surface. Nothing for clouds, and
+  /// until a frame is pushed after the first call. Any thread but a servo's.
   [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
   /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a

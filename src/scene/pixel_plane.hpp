@@ -1,0 +1,49 @@
+// A plane through the pixels around a place of a depth image.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "palpate/depth/depth_filter.hpp"
+
+namespace palpate {
+
+inline constexpr int kHalfWindow =
+    2;  // pixels: a window of 5 x 5 averages most noise and bends little
+inline constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
+
+/// A pixel's inverse depth, which is affine in the pixel on planes.
+struct Pixel {
+  double u = 0;  // from the place that is asked for, pixels
+  double v = 0;
+  double inverse = 0;  // 1/m
+};
+
+struct PixelWindow {
+  std::array<Pixel, (2 * kHalfWindow + 1) * (2 * kHalfWindow + 1)> all;
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<Pixel> span() { return {all.data(), count}; }
+};
+
+/// A plane through pixels: its inverse depth at the place that is asked for.
+struct PixelPlane {
+  double inverse = 0;
+  double leverage = std::numeric_limits<double>::infinity();  // its variance over a pixel's
+  double residual = 0;                                        // rms, 1/m
+
+  [[nodiscard]] bool told() const { return leverage <= kMostLeverage && inverse > 0; }
+};
+
+/// The pixels around a place of the image that measured something.
+[[nodiscard]] PixelWindow window_of(const DepthFrame& frame, double u, double v);
+
+[[nodiscard]] PixelPlane plane_of(std::span<const Pixel> pixels);
+
+/// The pixels on one side of the widest gap between depths: the side of the pixel that is nearest
+/// to the place.
+[[nodiscard]] std::span<Pixel> own_surface(std::span<Pixel> pixels);
+
+}  // namespace palpate
