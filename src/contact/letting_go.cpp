@@ -37,42 +37,54 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
   contact.normal = normal_;
   if (!cut_short_) {
     contact.notes |= ContactNote::lost;
-    lost_time_ += dt;
+    since_.lost += dt;
   }
   pull(hip, 0, dt, contact);
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
-// No hand is held hard in free air for long. The inside of a scanned body is free air, too.
-void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt,
-                              Contact& contact) noexcept {
+namespace {
+
+/// Does a proxy that does not move fast touch where it is shut in? Fast ones are not asked: what a
+/// step saw beyond its patch tells the next one the sides (SceneField), and looking elsewhere would
+/// forget it.
+bool is_trapped(WayOut& way_out, Probe& probe, const Eigen::Vector3d& moved,
+                const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+                const Eigen::Vector3d& hip) noexcept {
+  return moved.norm() <= kFast * probe.step_length() &&
+         way_out.is_shut_in(probe, place, normal, hip);
+}
+
+}  // namespace
+
+// Who passed through a surface is not held by it from within: the spring fades with a time constant
+// of 20 ms. And no hand is held hard in free air for long; the inside of a scanned body is free
+// air, too.
+void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
+                              const Eigen::Vector3d& hip, double dt, Contact& contact,
+                              bool changed) noexcept {
+  if (changed) way_out_.reset();
+  if (!changed && !touching_) way_out_.wander(probe, position_);
+  if (!changed && is_held() &&
+      is_trapped(way_out_, probe, position_ - before, position_, normal_, hip)) {
+    fading_.take(position_, tank_.stiffness());
+    release(hip);
+    contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};
+  }
   const double stretch = (hip - position_).norm();
   const bool hard =
       touching_ && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
-  away_time_ = hard && probe.is_free({hip, 0}) ? away_time_ + dt : 0;
-  if (away_time_ < kAwayTime) return;
+  since_.away = hard && probe.is_free({hip, 0}) ? since_.away + dt : 0;
+  if (since_.away < kAwayTime) return;
   contact.notes |= ContactNote::freed;
   if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
-}
-
-// Who passed through a surface is not held by it from within: the spring fades with a time constant
-// of 20 ms. A proxy that moves fast is not asked: what a step saw beyond its patch tells the next
-// one the sides (SceneField), and looking elsewhere would forget it.
-void Proxy::Inside::free_trapped(Probe& probe, const Eigen::Vector3d& before,
-                                 const Eigen::Vector3d& hip, Contact& contact) noexcept {
-  if (!touching_) return way_out_.wander(probe, position_);
-  if (!is_held() || (position_ - before).norm() > kFast * step_length_) return;
-  if (!way_out_.is_shut_in(probe, position_, normal_, hip)) return;
-  fading_.take(position_, tank_.stiffness());
-  release(hip);
-  contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};
 }
 
 // Never through what cannot be found: from a free place to the first contact; from inside, only
 // when the hand has come out again in front of where it went in. Until then the proxy waits there,
 // without force.
 void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
-  if (lost_time_ <= kKeepLost) return;
+  if (since_.lost <= kKeepLost) return;
   if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);
   if ((hip - position_).dot(normal_) >= 0 && !probe.inside(hip)) release(hip);
 }

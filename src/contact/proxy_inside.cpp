@@ -54,15 +54,10 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (!touching_) follow(probe, hip, contact);
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   await(probe, before, side, held ? hand_ : pressed_, hip);
-  free_hand(probe, hip, dt, contact);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // since a reset, which may be into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
-  if (changed) {
-    way_out_.reset();
-  } else {
-    free_trapped(probe, before, hip, contact);
-  }
+  free_hand(probe, before, hip, dt, contact, changed);
   revision_ = probe.traits().revision;
   field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
@@ -145,8 +140,8 @@ void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
 void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   position_ = place;
   normal_.setZero();
-  lost_time_ = 0;
-  away_time_ = 0;
+  since_.lost = 0;
+  since_.away = 0;
   touching_ = false;
   sliding_ = false;
   cut_short_ = false;
@@ -167,7 +162,7 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
     return;
   }
   waiting_ = false;
-  lost_time_ = 0;
+  since_.lost = 0;
   const FrictionLaw law =
       friction_law(options_.friction, factor(surface_.friction_factor), tank_.stiffness(), dt);
   const SlideOptions options{.method = options_.method,
@@ -241,10 +236,10 @@ void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double d
 }
 
 double Proxy::Inside::wanted_stiffness() const noexcept {
-  if (lost_time_ > kKeepLost) return 0;
+  if (since_.lost > kKeepLost) return 0;
   const double wanted =
       options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
-  const double left = factor(1 - (away_time_ - kAwayTime) / kFreeing);
+  const double left = factor(1 - (since_.away - kAwayTime) / kFreeing);
   return std::max(0.0, left * wanted - fading_.stiffness());
 }
 

@@ -88,6 +88,11 @@ class Proxy::Inside {
   static constexpr double kKeepLost = 0.02;  // s, for which the spring of a lost contact stays
   static constexpr double kAwayTime = 1;  // s in free air, after which a hand is let go (judgement)
 
+  struct Times {
+    double lost = 0;  // s since the surface was lost
+    double away = 0;  // s that the hand has been in free air, far from the proxy
+  };
+
   [[nodiscard]] bool is_held() const noexcept { return touching_ && !waiting_; }
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
@@ -102,9 +107,8 @@ class Proxy::Inside {
   void await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
-  void free_hand(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  void free_trapped(Probe& probe, const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
-                    Contact& contact) noexcept;
+  void free_hand(Probe& probe, const Eigen::Vector3d& before, const Eigen::Vector3d& hip, double dt,
+                 Contact& contact, bool changed) noexcept;
   [[nodiscard]] double wanted_stiffness() const noexcept;
   [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
                                          const Eigen::Vector3d& hip) const noexcept;
@@ -123,8 +127,7 @@ class Proxy::Inside {
   Eigen::Vector3d hand_ = Eigen::Vector3d::Zero();     // that the proxy last caught up with
   Eigen::Vector3d pressed_ = Eigen::Vector3d::Zero();  // the hand, when its surface vanished
   double step_length_ = 0;                             // R where it was last known, m
-  double lost_time_ = 0;                               // s since the surface was lost
-  double away_time_ = 0;  // s that the hand has been in free air, far from the proxy
+  Times since_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;
   bool touching_ = false;
