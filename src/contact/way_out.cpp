@@ -22,8 +22,8 @@ constexpr double kStride = 0.3;      // of R (derived): single sheets are solid 
 constexpr double kClear = 0.1;       // of R (judgement): roughness below it bars no way
 constexpr double kDeep = 1;          // of R (judgement), from the proxy: less is not held hard
 constexpr double kElsewhere = 1;     // of R that a proxy moves before it is asked anew (judgement)
-// Times that a way turns. Measured: tilted tubes 1 to 4 R wide, up to 20 R deep, smooth or rough by
-// 0.1 R, are left with 12 at most, with 6 by all but 2 of 144 (tests/contact/way_out_test.cpp).
+// Times that a way turns. Measured: of 288 hands in tilted tubes 1 to 4 R in radius, up to 20 R
+// deep, smooth or rough by 0.1 R, 94 are let go with 2, two with 6, none with 12.
 constexpr int kTurns = 12;
 constexpr double kLeastTurn = 0.2;  // sine (12 degrees) of what is left of a way (judgement)
 constexpr int kAround = 8;          // slanting directions, 45 degrees apart (judgement)
