@@ -69,6 +69,11 @@ std::size_t bytes_for(std::size_t n) {
 
 }  // namespace
 
+void require_finite(std::span<const Eigen::Vector3f> positions) {
+  const auto is_finite = [](const Eigen::Vector3f& p) { return p.allFinite(); };
+  if (!std::ranges::all_of(positions, is_finite)) refuse_not_finite(positions);
+}
+
 CellBuilder::CellBuilder(std::span<const Eigen::Vector3f> positions, const CellGrid::Cube* cube)
     : positions_(positions),
       memory_(bytes_for(positions.size())),

@@ -11,6 +11,9 @@
 
 namespace palpate::detail {
 
+/// @throws Error naming the first position that is not finite.
+void require_finite(std::span<const Eigen::Vector3f> positions);
+
 /// Sorts points along a Morton curve and cuts them into cells.
 ///
 /// Keys have a few levels only, in a cube around the points or one that is given; cells that stay

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "geometry/cell_builder.hpp"
 #include "geometry/parallel.hpp"
 #include "prepare/assemble.hpp"
 #include "prepare/at_once.hpp"
@@ -126,7 +127,8 @@ bool goes_by_blocks(const Placed& placed, const PrepareOptions& options) {
 Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
     : cloud_(placed.cloud()), viewpoint_(placed.viewpoint), options_(options) {
   options_.clip.reset();
-  options_.viewpoint = viewpoint_;
+  if (options_.viewpoint) options_.viewpoint = viewpoint_;  // given normals count beside a file's
+  detail::require_finite(cloud_.positions);
   if (!options_.facts) options_.facts = measure_facts(cloud_, options_);
   facts_ = *options_.facts;
   edge_ = kBlockEdge * facts_.radius;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/cell_builder.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/prepare/prepare.hpp"
@@ -110,6 +111,7 @@ Box extent_of(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
 CloudFacts measure_facts(const PointCloud& cloud, const PrepareOptions& options,
                          const Eigen::Isometry3d& T_world_sensor) {
   const Placed placed = place(cloud, options, T_world_sensor);
+  detail::require_finite(placed.cloud().positions);
   const std::vector<Vector3f> sample_points = sample_of(placed.cloud().positions);
   PrepareOptions alone = options;
   alone.facts.reset();

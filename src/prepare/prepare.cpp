@@ -51,7 +51,10 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
   const std::vector<Piece> pieces = blocks.prepare_all();
   std::vector<const Piece*> all;
   for (const Piece& piece : pieces) all.push_back(&piece);
-  return blocks.join(all);
+  Prepared prepared = blocks.join(all);
+  prepared.report.points_in = report.points_in;
+  prepared.report.seconds_filter += report.seconds_filter;
+  return prepared;
 }
 
 }  // namespace palpate

@@ -12,8 +12,10 @@
 #include <map>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 
 namespace palpate {
@@ -185,6 +187,56 @@ TEST(Blocks, AnyOrderGivesTheSame) {
     if (all.points.grid.points()[i] == one.grid.points()[at]) ++at;
   }
   EXPECT_EQ(at, one.size());
+}
+
+TEST(Blocks, GivenNormalsSayWhereOutwardIsBesideAViewpointOfTheFile) {
+  PointCloud cloud = made_clouds()[0];
+  cloud.normals.assign(cloud.size(), -Vector3f::UnitZ());
+  cloud.viewpoint = Vector3d(0.5, 0.5, 2);  // on the other side
+  PrepareOptions options;
+  const auto point_down = [&] {
+    const SurfacePoints points = prepare(cloud, options).points;
+    return std::ranges::all_of(points.normals, [](const Vector3f& n) { return n.z() < 0; });
+  };
+  EXPECT_TRUE(point_down());
+  options.facts = measure_facts(cloud, {});
+  EXPECT_TRUE(point_down());
+  options.viewpoint = cloud.viewpoint;  // one that is asked for is believed
+  EXPECT_FALSE(point_down());
+}
+
+TEST(Blocks, PointsThatAClipLeavesOutWereRead) {
+  const PointCloud cloud = made_clouds()[0];
+  PrepareOptions options;
+  options.clip = bounds_of(cloud);
+  options.clip->upper.x() = options.clip->center().x();
+  const Prepared::Report at_once = prepare(cloud, options).report;
+  options.facts = measure_facts(cloud, options);
+  const Prepared::Report by_blocks = prepare(cloud, options).report;
+  EXPECT_EQ(by_blocks.points_in, at_once.points_in);
+  EXPECT_EQ(by_blocks.points_out, at_once.points_out);
+  EXPECT_GT(by_blocks.seconds_filter, 0);
+}
+
+TEST(Blocks, PointsThatAreNotFiniteAreErrors) {
+  PointCloud cloud = made_clouds()[0];
+  PrepareOptions options;
+  options.facts = measure_facts(cloud, {});
+  options.facts->radius /= 3;  // several blocks: the point has another number in each
+  cloud.positions[777].x() = std::nanf("");
+  const auto words = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string expected = "point 777 of 62500 is not finite";
+  for (const std::string& told : {words([&] { std::ignore = prepare(cloud, options); }),
+                                  words([&] { std::ignore = measure_facts(cloud, {}); })}) {
+    EXPECT_NE(told.find(expected), std::string::npos) << told;
+  }
 }
 
 }  // namespace
