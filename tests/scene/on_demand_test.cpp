@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <random>
+#include <thread>
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -21,15 +23,15 @@ double height(double x, double y) {
   return 0.03 * std::sin(9 * x) * std::cos(7 * y);
 }
 
-/// 90 000 points of hills over the unit square.
-std::shared_ptr<const PointCloud> hills() {
+/// Hills over the unit square, `side` points along each of its sides.
+std::shared_ptr<const PointCloud> hills(int side = 300) {
   std::mt19937 random(5);
   std::normal_distribution<double> error(0, 1);
   auto cloud = std::make_shared<PointCloud>();
-  for (int i = 0; i < 300; ++i) {
-    for (int j = 0; j < 300; ++j) {
-      const double x = (i + 0.1 * error(random)) / 300;
-      const double y = (j + 0.1 * error(random)) / 300;
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const double x = (i + 0.1 * error(random)) / side;
+      const double y = (j + 0.1 * error(random)) / side;
       cloud->positions.push_back(Vector3d(x, y, height(x, y)).cast<float>());
     }
   }
@@ -71,6 +73,8 @@ Contact press(SceneField& field, const Vector3d& place, double depth, double tim
 TEST(OnDemand, ForcesAreThoseOfTheWholeWhereTheBlockIs) {
   Hills hills;
   EXPECT_LT(hills.demand->share(), 1);
+  EXPECT_EQ(hills.some->report().points_in, hills.cloud->size());
+  EXPECT_LT(hills.some->report().points_out, hills.cloud->size());
   const Box there = hills.some->points()->bounds();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0.1, 0.9);
@@ -164,6 +168,91 @@ TEST(OnDemand, NothingIsPublishedOnceItIsCancelled) {
   for (int k = 0; k < 40; ++k) hills.demand->advance(*hills.some, 1);
   EXPECT_TRUE(hills.demand->done());
   EXPECT_EQ(hills.some->points(), before);
+}
+
+TEST(OnDemand, WhatIsMissingSaysSoHoweverFarAwayItIs) {
+  const auto cloud = hills();
+  SourceOptions options;
+  options.prepare.facts = measure_facts(*cloud, {});
+  options.prepare.facts->radius = 0.05 / 96;  // some four hundred blocks
+  OnDemand demand(cloud, options.prepare);
+  Scene scene;
+  Source& source = scene.add("hills", options);
+  while (!source.points()) demand.advance(source, 0);
+  SceneField field(scene);
+  double time = 1;
+  for (const double x : {0.02, 0.2, 0.8, 0.98}) {
+    const Vector3d place(x, x, height(x, x));
+    field.update(time += 1e-3, place, place);
+    EXPECT_TRUE(has(field.notes(), FieldNote::not_loaded)) << x;
+  }
+}
+
+TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
+  const auto cloud = hills(950);  // 225 000 points a block: two fill what is shown at most
+  SourceOptions options;
+  options.prepare.estimate_normals = false;  // that is faster, and says as much
+  options.prepare.facts = measure_facts(*cloud, {});
+  options.prepare.facts->radius = 0.5 / 96;
+  OnDemand demand(cloud, options.prepare);
+  Scene scene;
+  Source& source = scene.add("hills", options);
+  while (!source.points()) demand.advance(source, 0);
+  SceneField field(scene);
+  double time = 1;
+  const auto stay = [&](double y, double seconds) {
+    const Vector3d hip(0.36, y, height(0.36, y) + 2e-3);
+    for (const double end = time + seconds; time < end; time += 1e-3) field.update(time, hip, hip);
+  };
+  stay(0.02, 0.03);
+  for (int k = 0; k < 3; ++k) {
+    demand.advance(source, time);
+    stay(0.02, 0.15);
+  }
+  // Then to where three blocks are near, one of which the tool can reach.
+  for (double y = 0.02; y < 0.36; y += 1e-4) stay(y, 1e-3);
+  for (int k = 0; k < 40 && !demand.done(); ++k) {
+    demand.advance(source, time);
+    stay(0.36, 0.15);
+  }
+  EXPECT_TRUE(demand.done());
+}
+
+TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
+  const auto cloud = hills(750);
+  PrepareOptions options;
+  EXPECT_TRUE(OnDemand::suits(*cloud, options));
+  options.clip = Box{{0.4, 0.4, -1}, {0.6, 0.6, 1}};
+  EXPECT_FALSE(OnDemand::suits(*cloud, options));
+}
+
+TEST(OnDemand, IsPreparedBesideAHandUntilSomebodyElseSetsTheSource) {
+  Hills hills;
+  SceneField field(hills.part);
+  std::atomic<double> time{1};
+  std::jthread preparing([&] {
+    while (!hills.demand->done()) hills.demand->advance(*hills.some, time);
+  });
+  std::jthread other([&] {
+    while (hills.demand->share() < 0.5) std::this_thread::yield();
+    hills.demand->cancel();
+    hills.some->set(*hills.cloud);
+  });
+  Proxy proxy;
+  proxy.reset({0.5, 0.5, 0.1});
+  const auto step = [&](double x) {
+    const Vector3d hip(x, 0.5, height(x, 0.5) - 2e-3);
+    field.update(time, hip, proxy.position());
+    EXPECT_TRUE(proxy.step(field, hip, 1e-3).force.allFinite());
+    time = time + 1e-3;
+  };
+  for (int k = 0; k < 2000; ++k) step(0.1 + 4e-4 * k);
+  preparing.join();
+  other.join();
+  EXPECT_EQ(hills.demand->share(), 1);
+  EXPECT_EQ(hills.some->points()->size(), hills.whole.source(0).points()->size());
+  step(0.5);
+  EXPECT_FALSE(has(field.notes(), FieldNote::not_loaded));
 }
 
 }  // namespace
