@@ -219,7 +219,7 @@ TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
 }
 
 TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
-  const auto cloud = hills(750);
+  const auto cloud = hills(2100);
   PrepareOptions options;
   EXPECT_TRUE(OnDemand::suits(*cloud, options));
   options.clip = Box{{0.4, 0.4, -1}, {0.6, 0.6, 1}};
