@@ -23,8 +23,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Points that two cores prepare in some 15 s, which people may wait for (judgement). By blocks, parts
-// are not felt that are sampled more than some 12 times as sparsely as most (docs/preparation.md).
+// Points that two cores prepare in some 15 s, which people may wait for (judgement). By blocks,
+// parts are not felt that are sampled more than some 12 times as sparsely as most
+// (docs/preparation.md).
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 22;
 
 // R: edge of a block. On a surface it has 60 000 to 140 000 points, half a second's work of a core
