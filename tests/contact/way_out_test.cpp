@@ -80,8 +80,8 @@ class TwoPlates final : public WallsField {
 /// An open tube with a bottom, tilted, its walls rough by `rough`.
 class Tube final : public WallsField {
  public:
-  Tube(double radius, double height, double rough, const Eigen::Matrix3d& R_world_tube)
-      : radius_(radius), height_(height), rough_(rough), R_(R_world_tube) {}
+  Tube(double radius, double height, double rough, const Eigen::Matrix3d& rotation)
+      : radius_(radius), height_(height), rough_(rough), R_(rotation) {}
 
  private:
   [[nodiscard]] static double plate(double x, double z, double half_x, double half_z) noexcept {

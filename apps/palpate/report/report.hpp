@@ -22,6 +22,7 @@ class Report {
     // NOLINTNEXTLINE(google-explicit-constructor)
     Label(std::string of_line, Mark its_mark = Mark::plain)
         : text(std::move(of_line)), mark(its_mark) {}
+    // NOLINTNEXTLINE(google-explicit-constructor)
     Label(const char* of_line, Mark its_mark = Mark::plain) : text(of_line), mark(its_mark) {}
     std::string text;
     Mark mark;

@@ -91,14 +91,13 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
 }
 
 // The blocks at the middle of a large cloud are touchable at once; the rest follows in the run.
-const Source& add_on_demand(Scene& scene, LoadedCloud&& loaded, LoadedSource& result) {
+const Source& add_on_demand(Scene& scene, const std::string& name,
+                            const std::shared_ptr<const PointCloud>& cloud, LoadedSource& result) {
   const SourceOptions& options = result.plan.options;
-  auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   result.on_demand = std::make_unique<OnDemand>(cloud, options.prepare, options.T_world_sensor);
-  Source& source = scene.add(loaded.argument.name, options);
+  Source& source = scene.add(name, options);
   const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
   while (is_empty() && !result.on_demand->done()) result.on_demand->advance(source, 0);
-  result.cloud = std::move(cloud);
   return source;
 }
 
@@ -110,26 +109,24 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
   result.read_seconds = loaded.seconds;
-  if (plan.reading.scale == 1) {
-    result.units = guess_units(core_of(loaded.file.cloud), loaded.file.format);
-  }
+  const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
+  if (plan.reading.scale == 1) result.units = guess_units(core_of(*cloud), result.format);
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
-    check_radius(loaded.argument, prepare, CellGrid(loaded.file.cloud.positions));
+    check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
   }
   const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
-                                    grouped(loaded.file.cloud.size())));
+                                    grouped(cloud->size())));
   const auto start = WallClock::now();
-  const bool large = options.on_demand && OnDemand::suits(loaded.file.cloud, plan.options.prepare);
-  const Source& source = large ? add_on_demand(scene, std::move(loaded), result)
-                               : scene.add(loaded.argument.name, loaded.file.cloud, plan.options);
+  const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
+  const Source& source = large ? add_on_demand(scene, loaded.argument.name, cloud, result)
+                               : scene.add(loaded.argument.name, *cloud, plan.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   result.state = source.state();
   result.depth_image = result.state.depth > 0;
-  if (result.depth_image) result.lens = depth_frame_of(loaded.file.cloud).frame->camera;
+  if (result.depth_image) result.lens = depth_frame_of(*cloud).frame->camera;
   check_place(plan.argument, *source.points());
-  if (options.keep_clouds && !large)
-    result.cloud = std::make_shared<PointCloud>(std::move(loaded.file.cloud));
+  if (options.keep_clouds || large) result.cloud = cloud;
 }
 
 void check_felt(const Source& source, LoadedSource& result) {
