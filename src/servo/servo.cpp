@@ -132,7 +132,7 @@ const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
 
 void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   const bool goes_on = started && std::isfinite(state.time);
-  state.dt = goes_on ? now - state.time : first_step(device.info());
+  state.dt = goes_on || !std::isfinite(now) ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
   basis.device = read;
