@@ -19,8 +19,6 @@ using Eigen::Vector3f;
 // Both are above 1 R, where weights end. Labels are settled later, when more is known.
 constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
-constexpr float kLift = 0.3f;   // R above the surface that a touching tool looks from; judgement
-constexpr float kView = 1.2f;   // R beyond the nearest point, within which points vote; judgement
 
 constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
@@ -37,12 +35,14 @@ Facing::Facing(std::size_t capacity) {
 }
 
 void Facing::forget() noexcept {
-  now_.clear();
+  now_.clear_sheets();
+  for (Part& part : std::span(now_.parts).first(now_.part_count)) part.sign = 0;
   remembered_.clear();
 }
 
 void Facing::follow(const Facing& other) noexcept {
   follows_ = true;
+  touched_ = other.touched_;
   was_behind_ = other.was_behind_;
   if (other.now_.sheet_count == 0) return;
   now_ = other.now_;
@@ -54,17 +54,23 @@ std::uint32_t Facing::part_of(Part part) noexcept {
   for (std::uint32_t k = now_.part_count; k-- > 0;) {
     if (now_.parts[k].key == part.key) return k;
   }
-  for (std::uint32_t k = 0; k < before_.part_count; ++k) {
-    if (before_.parts[k].key == part.key) part.sign = before_.parts[k].sign;
+  for (const Part& before : std::span(before_.parts).first(before_.part_count)) {
+    if (before.key != part.key) continue;
+    part.sign = before.sign;
+    if (before.weighs) part.seen = before.seen;
   }
   now_.parts[now_.part_count] = part;
   return now_.part_count++;
 }
 
-void Facing::Table::clear() noexcept {
-  part_count = 0;
+void Facing::Table::clear_sheets() noexcept {
   sheet_count = 0;
   slots.fill(kMost);
+}
+
+void Facing::Table::clear() noexcept {
+  part_count = 0;
+  clear_sheets();
 }
 
 std::uint8_t* Facing::Table::find(const Key& key) noexcept {
@@ -120,6 +126,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
     Part& part = now_.parts[s.part];
     // A part that all points share keeps its side until free space.
     part.near |= own.empty() || part.key == kOneSided || distance <= kHolds * point.radius;
+    part.weighs |= distance <= point.radius;
     if (own.empty() || distance <= kMeets * point.radius) s.near = true;
     ++s.count;
   }
@@ -143,7 +150,7 @@ void Facing::list(const Points& points, const Stance& stance) noexcept {
 /// label of a sheet that has moved away.
 void Facing::let_go(const Stance& stance) noexcept {
   for (Part& part : std::span(now_.parts).first(now_.part_count)) {
-    if (!part.near || (is_absent(part) && !stance.touches())) part.sign = 0;
+    if (!part.near || (part.is_absent() && !stance.touches())) part.sign = 0;
   }
   for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (!sheet.near) sheet.label = kOpen;
@@ -164,42 +171,14 @@ void Facing::group() noexcept {
   }
 }
 
-/// The tool looks from where it is or, where it touches, from a little above; between two sheets
-/// from no further than halfway.
-void Facing::choose_eye(const Stance& stance) noexcept {
-  const Vector3f normal = stance.normal.cast<float>();
-  float lift = stance.touches() ? kLift * radius_ : 0;
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const Point& point : points_) {
-    const Sheet& sheet = now_.sheets[point.sheet];
-    const int sign = sign_of(now_.parts[sheet.part]);
-    const float squared = point.place.squaredNorm();
-    if (!stance.touches() || sheet.label == kOpen || sign == 0 || squared >= nearest) continue;
-    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
-    nearest = squared;
-    lift = std::min(kLift * radius_, 0.5f * (sign > 0 ? point.above : point.below));
-  }
-  eye_ = lift * normal;
-  float closest = std::numeric_limits<float>::infinity();
-  float closest_seen = closest;
-  for (const Point& point : points_) {
-    const float squared = (point.place - eye_).squaredNorm();
-    closest = std::min(closest, squared);
-    if (!is_one_sided(point) || squared >= closest_seen) continue;
-    closest_seen = squared;
-    beside_ = point.normal;
-  }
-  view_ = std::sqrt(closest) + kView * radius_;
-}
-
 void Facing::add_references(const Sheet& sheet) noexcept {
   const Part& part = now_.parts[sheet.part];
-  const int sign = sign_of(part);
+  const int sign = part.factor();
   if (sheet.label == kOpen || sign == 0) return;
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
     const Point& p = points_[order_[sheet.begin + k]];
     if (references_.size() == references_.capacity()) return;
-    if (is_absent(part) && !is_above(p)) continue;
+    if (part.is_absent() && !is_above(p)) continue;
     references_.push_back(
         {p.place, static_cast<float>(sign) * p.normal, p.confidence, p.residual, sheet.label});
   }
@@ -237,7 +216,7 @@ bool Facing::write(const Points& points) const noexcept {
       sign = static_cast<std::int8_t>(part.sign);
       unsure = part.unsure;
       label = now_.sheets[slot].label;
-      if (is_absent(part)) sign = is_above(points_[next]) ? 1 : 0;
+      if (part.is_absent()) sign = is_above(points_[next]) ? 1 : 0;
       ++next;
     }
     if (unsure && was_behind_) sign = 0;
@@ -266,6 +245,10 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   if (!std::exchange(follows_, false)) let_go(stance);
   group();
   choose_eye(stance);
+  see(stance);
+  const bool begins = stance.touches() && !touched_;
+  touched_ = stance.touches();
+  if (begins) turn_by(stance.normal.cast<float>());
   const auto older = static_cast<std::ptrdiff_t>(remembered_.size());
   const bool vanished = list_references(stance);
   decide_signs(stance.touches() || vanished);

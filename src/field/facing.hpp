@@ -67,8 +67,8 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
-  /// The proxy is where no point has weight: what it sees of sheets next, it sees for the first
-  /// time.
+  /// The proxy is where nothing is solid: all is decided anew. What was seen on the way still
+  /// counts.
   void forget() noexcept;
 
   /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point
@@ -95,7 +95,13 @@ class Facing {
     bool known = false;   // do its normals point outward for sure?
     bool unsure = false;  // was it seen in one view that does not tell its side?
     bool near = false;    // has one of its points weight at the proxy, or nearly?
-    double seen = 0;
+    bool weighs = false;  // has one of them weight there?
+    double seen = 0;      // what speaks for the side of its normals, less what speaks against it
+
+    // Is it seen from behind, the side that no sensor saw?
+    [[nodiscard]] bool is_absent() const noexcept { return key == kOneSided && sign < 0; }
+    // The factor for its normals, 1 or -1; 0: not decided. One-sided parts are never turned.
+    [[nodiscard]] int factor() const noexcept { return is_absent() ? 1 : sign; }
   };
   struct Sheet {
     Key key;
@@ -115,6 +121,7 @@ class Facing {
     std::uint32_t sheet_count = 0;
     std::array<std::uint8_t, 256> slots;  // of sheets, by their keys' hashes and what follows
 
+    void clear_sheets() noexcept;
     void clear() noexcept;
     /// Where the sheet is in `slots`, or would be.
     [[nodiscard]] std::uint8_t* find(const Key& key) noexcept;
@@ -139,6 +146,13 @@ class Facing {
     std::uint8_t label;
   };
 
+  // Where the tool looks from.
+  struct Eye {
+    Eigen::Vector3f place = Eigen::Vector3f::Zero();   // free, from the proxy, m
+    Eigen::Vector3f beside = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
+    float view = 0;                                    // how far from here what is seen counts, m
+  };
+
   std::uint32_t part_of(Part part) noexcept;
   std::uint32_t sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept;
   void list(const Points& points, const Stance& stance) noexcept;
@@ -148,18 +162,18 @@ class Facing {
   void group() noexcept;
   void choose_eye(const Stance& stance) noexcept;
   [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept;
-  [[nodiscard]] static bool is_absent(const Part& part) noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
   [[nodiscard]] float height_over(const Point& point) const noexcept;
   [[nodiscard]] float rise_of(const Point& point) const noexcept;
   [[nodiscard]] bool is_above(const Point& point) const noexcept;
-  [[nodiscard]] static int sign_of(const Part& part) noexcept;
   [[nodiscard]] bool list_references(const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void add_references(const Sheet& sheet) noexcept;
   template <class Visit>
-  void each_meeting(const Sheet& sheet, float reach, const Visit& visit) noexcept;
+  void each_meeting(const Sheet& sheet, const Visit& visit) noexcept;
+  void see(const Stance& stance) noexcept;
   void decide_signs(bool continued) noexcept;
+  void turn_by(const Eigen::Vector3f& normal) noexcept;
   [[nodiscard]] double across(std::uint32_t part) noexcept;
   void decide_labels() noexcept;
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
@@ -177,11 +191,10 @@ class Facing {
   std::vector<Reference> references_;
   std::vector<Reference> remembered_;                          // of the last call
   Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then
-  Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();              // a free place, from the proxy, m
-  Eigen::Vector3f beside_ = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
-  float radius_ = 0;                                  // R around the tool, m
-  float view_ = 0;                                    // how far from the eye what is seen counts, m
+  Eye eye_;
+  float radius_ = 0;  // R around the tool, m
   Rise rise_;
+  bool touched_ = false;     // at the last call
   bool was_behind_ = false;  // when there was last something to see; absent points do not show it
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared

@@ -1,7 +1,9 @@
 // Decides the signs of parts that come into view, and the labels of their sheets.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "field/facing.hpp"
@@ -14,12 +16,15 @@ namespace {
 using Eigen::Vector3f;
 
 // Signs (docs/method.md 2.7); all are judgement.
-constexpr float kUnsharp = 2;         // residuals that a height has to exceed to tell a side
-constexpr float kAcrossReach = 0.9f;  // R within which decided points tell signs
-constexpr double kLeastVote = 1e-3;   // sum of weights times agreements: less is no vote
+constexpr float kLift = 0.3f;        // R above the surface that a touching tool looks from
+constexpr float kView = 1.2f;        // R beyond the nearest point, within which points tell
+constexpr float kUnsharp = 2;        // residuals that a height has to exceed to tell a side
+constexpr double kFades = 1;         // R of way on which what was seen fades to a third
+constexpr double kAgainst = 0.5;     // share of the agreement with a contact that turns a part
+constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;      // R within which sheets meet
+constexpr float kMeetReach = 1.3f;      // R within which sheets meet and parts tell signs
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do not meet
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
@@ -42,16 +47,16 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
 }  // namespace
 
 /// Calls visit(p, q, way, w) for points p of the sheet and decided ones q that are near it: the way
-/// from q to p and how much it counts, which ends at `reach` of p's R.
+/// from q to p and how much it counts.
 template <class Visit>
-void Facing::each_meeting(const Sheet& sheet, float reach, const Visit& visit) noexcept {
+void Facing::each_meeting(const Sheet& sheet, const Visit& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
   const std::uint32_t skip = stride_for(sheet.count, kTried);
   for (std::uint32_t k = 0; k < sheet.count; k += skip) {
     const Point& p = points_[order_[sheet.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
       const Vector3f way = p.place - references_[r].place;
-      const double w = weight(way.squaredNorm(), reach * p.radius);
+      const double w = weight(way.squaredNorm(), kMeetReach * p.radius);
       if (w > 0) visit(p, references_[r], way, w);
     }
   }
@@ -62,12 +67,10 @@ double Facing::across(std::uint32_t part) noexcept {
   double sum = 0;
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (sheet.part != part) continue;
-    each_meeting(sheet, kAcrossReach,
-                 [&sum](const Point& p, const Reference& q, const Vector3f& way, double w) {
-                   const float a =
-                       agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
-                   sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
-                 });
+    each_meeting(sheet, [&sum](const Point& p, const Reference& q, const Vector3f& way, double w) {
+      const float a = agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+      sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
+    });
   }
   return sum;
 }
@@ -77,13 +80,8 @@ Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
   return points.one_sided ? kOneSided : Key{};
 }
 
-/// Is the part seen from behind, the side that no sensor saw?
-bool Facing::is_absent(const Part& part) noexcept {
-  return part.key == kOneSided && part.sign < 0;
-}
-
 bool Facing::sees_from_behind() const noexcept {
-  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), is_absent);
+  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), &Part::is_absent);
 }
 
 bool Facing::is_hidden(const Point& point, float height) const noexcept {
@@ -104,43 +102,99 @@ bool Facing::is_above(const Point& point) const noexcept {
   return height_over(point) >= rise_of(point);
 }
 
-/// The factor for a part's normals, 1 or -1; 0: not decided. One-sided parts are never turned.
-int Facing::sign_of(const Part& part) noexcept {
-  return is_absent(part) ? 1 : part.sign;
-}
-
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
 /// of what the closest point says keeps these down.
 float Facing::height_over(const Point& point) const noexcept {
-  const Vector3f way = eye_ - point.place;
+  const Vector3f way = eye_.place - point.place;
   const float height = point.normal.dot(way);
-  const bool bent = is_one_sided(point) && point.normal.dot(beside_) > 0.5f;
-  return bent ? 0.5f * (height + beside_.dot(way)) : height;
+  const bool bent = is_one_sided(point) && point.normal.dot(eye_.beside) > 0.5f;
+  return bent ? 0.5f * (height + eye_.beside.dot(way)) : height;
 }
 
-/// `continued`: take a part's sign from its decided neighbours, not from visibility, which decides
-/// where they do not. One-sided parts always use visibility.
-void Facing::decide_signs(bool continued) noexcept {
+/// The tool looks from where it is or, where it touches, from a little above; between two sheets
+/// from no further than halfway.
+void Facing::choose_eye(const Stance& stance) noexcept {
+  const Vector3f normal = stance.normal.cast<float>();
+  float lift = stance.touches() ? kLift * radius_ : 0;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const Point& point : points_) {
+    const Sheet& sheet = now_.sheets[point.sheet];
+    const int sign = now_.parts[sheet.part].factor();
+    const float squared = point.place.squaredNorm();
+    if (!stance.touches() || sheet.label == kOpen || sign == 0 || squared >= nearest) continue;
+    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
+    nearest = squared;
+    lift = std::min(kLift * radius_, 0.5f * (sign > 0 ? point.above : point.below));
+  }
+  eye_.place = lift * normal;
+  float closest = std::numeric_limits<float>::infinity();
+  float closest_seen = closest;
+  for (const Point& point : points_) {
+    const float squared = (point.place - eye_.place).squaredNorm();
+    closest = std::min(closest, squared);
+    if (!is_one_sided(point) || squared >= closest_seen) continue;
+    closest_seen = squared;
+    eye_.beside = point.normal;
+  }
+  eye_.view = std::sqrt(closest) + kView * radius_;
+}
+
+/// What speaks for the sides that the eye sees. What was seen on the way here fades with it: close
+/// to a sparse bend few points tell, and the planes of some are wrong.
+void Facing::see(const Stance& stance) noexcept {
+  const double way = (stance.proxy - remembered_from_).norm();
+  const double kept = std::exp(-way / (kFades * static_cast<double>(radius_)));
+  std::array<double, kMost> seen{};
   for (const Point& p : points_) {
     Sheet& sheet = now_.sheets[p.sheet];
-    const Vector3f way = eye_ - p.place;
-    const float squared = way.squaredNorm();
+    const Vector3f back = eye_.place - p.place;
+    const float squared = back.squaredNorm();
     const float height = height_over(p);
     const bool hidden = is_hidden(p, height);
     if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
       sheet.all += w;
       if (hidden) sheet.hidden += w;
     }
-    if (squared >= view_ * view_) continue;
-    const double w = static_cast<double>(p.confidence) * weight(squared, view_);
+    if (squared >= eye_.view * eye_.view) continue;
+    const double w = static_cast<double>(p.confidence) * weight(squared, eye_.view);
     sheet.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);
     // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    if (!hidden) now_.parts[sheet.part].seen += w * sharp * (over < 0 ? -1 : 1);
+    if (!hidden) seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
   }
+  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
+    double& so_far = now_.parts[k].seen;
+    so_far = so_far == 0 ? seen[k] : kept * so_far + (1 - kept) * seen[k];
+  }
+}
+
+/// What the proxy begins to touch is in front of it: turns parts whose points say the opposite.
+void Facing::turn_by(const Vector3f& normal) noexcept {
+  std::array<double, kMost> agreed{};
+  std::array<double, kMost> all{};
+  for (const Point& p : points_) {
+    const double w = static_cast<double>(p.confidence) * weight(p.place.squaredNorm(), p.radius);
+    const std::uint32_t part = now_.sheets[p.sheet].part;
+    const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
+    agreed[part] += w * static_cast<double>(a * std::abs(a)) * now_.parts[part].sign;
+    all[part] += w;
+  }
+  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
+    Part& part = now_.parts[k];
+    if (part.key == kOneSided || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
+    part.sign = -part.sign;
+    for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+      if (sheet.part == k) sheet.label = kOpen;
+    }
+  }
+}
+
+/// `continued`: take a part's sign from its decided neighbours, not from visibility, which decides
+/// where they do not. One-sided parts always use visibility.
+void Facing::decide_signs(bool continued) noexcept {
   int beside = 0;  // of parts whose normals point outward, as they are seen
   for (const Part& part : std::span(now_.parts).first(now_.part_count)) {
     if (part.known) beside += part.sign;
@@ -159,21 +213,20 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double parallel[simd::kLabels] = {};
   double above[simd::kLabels] = {};
   double all[simd::kLabels] = {};
-  const auto sign = static_cast<float>(sign_of(now_.parts[sheet.part]));
+  const auto sign = static_cast<float>(now_.parts[sheet.part].factor());
   double planes[simd::kLabels] = {};
   double beyond = 0;  // of what is in front: where it goes on beyond the sheet's plane
-  each_meeting(
-      sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-        const float length = way.norm();
-        if (!(length > kSamePlace * p.radius)) return;
-        parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
-        planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
-        above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
-        all[q.label] += w;
-        const float unsharp = kUnsharp * std::max(p.residual, q.residual);
-        const bool passes = -sign * p.normal.dot(way) > kBeyond * p.radius + unsharp;
-        if (q.label == kInFront && passes) beyond += w;
-      });
+  each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+    const float length = way.norm();
+    if (!(length > kSamePlace * p.radius)) return;
+    parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
+    planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
+    above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+    all[q.label] += w;
+    const float unsharp = kUnsharp * std::max(p.residual, q.residual);
+    const bool passes = -sign * p.normal.dot(way) > kBeyond * p.radius + unsharp;
+    if (q.label == kInFront && passes) beyond += w;
+  });
   int same = -1;
   for (int k = 0; k < simd::kLabels; ++k) {
     const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&

@@ -78,6 +78,83 @@ TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
   EXPECT_FALSE(patch.behind());
 }
 
+/// How much of the normals in the patch points along z, as they are turned.
+double turned_up(const Patch& patch) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < patch.columns().end(); ++i) sum += patch.columns().normal[2][i];
+  return sum;
+}
+
+TEST(Facing, WhatWasSeenOnTheWayCountsWhereNormalsAreWrong) {
+  std::unique_ptr<SurfacePoints> plane = sheet_at(0, 1);
+  for (std::size_t i = 0; i < plane->size(); ++i) {  // 30 degrees too far out
+    const Eigen::Vector3f out = plane->grid.points()[i] + plane->origin.cast<float>();
+    plane->normals[i] = (0.866F * Eigen::Vector3f::UnitZ() + 0.5F * out.normalized()).normalized();
+  }
+  const std::vector<ActiveLayer> layers = {{.points = plane.get()}};
+  const auto come_down_from = [&](double height) {
+    Patch patch(2048);
+    for (double z = height; z > 0.5e-3; z -= 0.75e-3) {
+      patch.forget_sides();
+      const Stance stance{{0, 0, z}, Vector3d::Zero()};
+      patch.gather(layers, 1, stance.proxy, 1e-3, {.stance = &stance});
+    }
+    return turned_up(patch);
+  };
+  EXPECT_LT(come_down_from(0.75e-3), 0);  // what can be seen from there alone is wrong
+  EXPECT_GT(come_down_from(4.5e-3), 0);
+}
+
+TEST(Facing, AProxyThatWentAroundAnEdgeSeesTheOtherSide) {
+  const std::unique_ptr<SurfacePoints> plane = sheet_at(0, 1);
+  const std::vector<ActiveLayer> layers = {{.points = plane.get()}};
+  Patch patch(2048);
+  const auto go = [&](double x, double z) {
+    patch.forget_sides();
+    const Stance stance{{x, 0, z}, Vector3d::Zero()};
+    patch.gather(layers, 1, stance.proxy, 1e-3, {.stance = &stance});
+  };
+  for (double x = 15e-3; x < 23e-3; x += 1e-3) go(x, 3e-3);
+  EXPECT_GT(turned_up(patch), 0);
+  for (double z = 3e-3; z > -3e-3; z -= 1e-3) go(23e-3, z);
+  for (double x = 23e-3; x > 20e-3; x -= 1e-3) go(x, -3e-3);
+  EXPECT_LT(turned_up(patch), 0);
+}
+
+TEST(Facing, WhatAToolBeginsToTouchTurnsItsFlanksOutward) {
+  std::vector<test::TestPoint> flanks;  // of a wall 3 mm thick, whose rim has no normals
+  for (int j = -10; j <= 10; ++j) {
+    for (int k = 1; k <= 8; ++k) {
+      for (const double side : {-1., 1.}) {
+        flanks.push_back({{1.5e-3 * side, 2e-3 * j, -2e-3 * k}, side * Vector3d::UnitX(), 5e-3, 1});
+      }
+    }
+  }
+  SurfacePoints points = test::make_points(flanks);
+  const std::vector<float> none(points.size(), std::numeric_limits<float>::infinity());
+  points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
+                   .part = {0, 0},
+                   .known = {0},
+                   .residual = std::vector<float>(points.size(), 0),
+                   .above = none,
+                   .below = none};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points.sheets.sheet[i] = points.normals[i].x() > 0 ? 1 : 0;
+  }
+  Patch patch(2048);
+  const auto outward = [&](const Stance& stance) {
+    patch.gather(std::vector<ActiveLayer>{{.points = &points}}, 1, stance.proxy, 1e-3,
+                 {.stance = &stance});
+    double sum = 0;
+    for (std::uint32_t i = 0; i < patch.columns().end(); ++i) {
+      sum += patch.columns().normal[0][i] * patch.columns().position[0][i];
+    }
+    return sum;
+  };
+  EXPECT_LT(outward({{0, 0, 1e-3}, Vector3d::Zero()}), 0);  // seen from between their planes
+  EXPECT_GT(outward({{0, 0, 0.5e-3}, Vector3d::UnitZ()}), 0);
+}
+
 /// A face in z = 0 as far as x = `end`, and beneath it a wall in x = 0 that faces along x; m.
 std::unique_ptr<SurfacePoints> face_over_wall(double end) {
   std::vector<test::TestPoint> all;
