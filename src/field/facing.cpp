@@ -35,6 +35,11 @@ Facing::Facing(std::size_t capacity) {
 }
 
 void Facing::forget() noexcept {
+  now_.clear();
+  remembered_.clear();
+}
+
+void Facing::reopen() noexcept {
   now_.clear_sheets();
   for (Part& part : std::span(now_.parts).first(now_.part_count)) part.sign = 0;
   remembered_.clear();
@@ -44,7 +49,7 @@ void Facing::follow(const Facing& other) noexcept {
   follows_ = true;
   touched_ = other.touched_;
   was_behind_ = other.was_behind_;
-  if (other.now_.sheet_count == 0) return;
+  if (other.now_.part_count == 0) return;
   now_ = other.now_;
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;

@@ -67,8 +67,10 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
-  /// The proxy is where nothing is solid: all is decided anew. What was seen on the way still
-  /// counts.
+  /// The proxy is where nothing is solid: all is decided anew, and what was seen on the way counts.
+  void reopen() noexcept;
+
+  /// Nothing was seen before.
   void forget() noexcept;
 
   /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point

@@ -166,8 +166,9 @@ void Facing::see(const Stance& stance) noexcept {
     if (!hidden) seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
   }
   for (std::uint32_t k = 0; k < now_.part_count; ++k) {
-    double& so_far = now_.parts[k].seen;
-    so_far = so_far == 0 ? seen[k] : kept * so_far + (1 - kept) * seen[k];
+    Part& part = now_.parts[k];
+    const bool fades = part.seen != 0 && part.key != kOneSided;
+    part.seen = fades ? kept * part.seen + (1 - kept) * seen[k] : seen[k];
   }
 }
 

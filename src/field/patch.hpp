@@ -47,12 +47,9 @@ class Patch {
 
   /// Turns points to the tool where it is now and sorts them by how their sheets meet.
   void face(const Stance& stance) noexcept;
-  /// Forgets the decided signs and labels: the next face() decides from scratch.
-  void forget_sides() noexcept { facing_.forget(); }
-  /// Is the tool behind points that hold it from the other side alone?
-  [[nodiscard]] bool behind() const noexcept { return facing_.behind(); }
-  /// Takes over what another has decided.
-  void follow_sides(const Patch& other) noexcept { facing_.follow(other.facing_); }
+  /// What is decided of the sheets; holds from the next face() on.
+  [[nodiscard]] Facing& sides() noexcept { return facing_; }
+  [[nodiscard]] const Facing& sides() const noexcept { return facing_; }
 
   /// Gathers again at the same place after advance() was refused, and looks for points in those
   /// layers alone that are others. False as gather() says it.

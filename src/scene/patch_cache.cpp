@@ -31,12 +31,12 @@ void PatchCache::set_tool(const Vector3d& proxy) noexcept {
   const Ball here{tool_.proxy, 0};
   const bool covered = near_.patch.covers(here);
   // A step that went beyond the near patch knows from which side it came.
-  if (!covered && step_.far.patch.covers(here)) near_.patch.follow_sides(step_.far.patch);
+  if (!covered && step_.far.patch.covers(here)) near_.patch.sides().follow(step_.far.patch.sides());
   step_.far.patch.clear();
-  step_.far.patch.forget_sides();
+  step_.far.patch.sides().forget();
   const bool free =
       !tool_.touches() && (covered ? is_free(*surface_, near_.patch, here) : walk_is_free(here));
-  if (free) near_.patch.forget_sides();
+  if (free) near_.patch.sides().reopen();
   near_.stale = covered;
 }
 
@@ -46,7 +46,7 @@ void PatchCache::face_near() noexcept {
 
 void PatchCache::forget() noexcept {
   near_.patch.clear();
-  near_.patch.forget_sides();
+  near_.patch.sides().forget();
   step_.far.patch.clear();
   radius_ = 0;
 }
@@ -98,8 +98,8 @@ const Patch* PatchCache::find(const Ball& ball, double margin) const noexcept {
   }
   step_.far.stale = false;
   if (!step_.running)
-    step_.far.patch.forget_sides();  // what a step has seen once, it sees so to its end
-  step_.far.patch.follow_sides(near_.patch);
+    step_.far.patch.sides().forget();  // what a step has seen once, it sees so to its end
+  step_.far.patch.sides().follow(near_.patch.sides());
   int alone = kGatherVisits;
   int& left = step_.running ? step_.gather_visits : alone;
   return gather(step_.far.patch, ball.center, std::max(margin, ball.radius), left)

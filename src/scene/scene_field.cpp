@@ -144,7 +144,7 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
-  if (near.points() > 0 && near.behind()) found = found | FieldNote::behind;
+  if (near.points() > 0 && near.sides().behind()) found = found | FieldNote::behind;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
   const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
   if (near.points() > 0 && surface.options.tool_radius > tool * near.smallest_radius()) {

@@ -66,16 +66,16 @@ TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
     ASSERT_GT(patch.points(), 10u);
   };
   stand(-15e-3, -2e-3);
-  EXPECT_TRUE(patch.behind());
+  EXPECT_TRUE(patch.sides().behind());
   stand(0, -2e-3);
   stand(15e-3, -2e-3);  // no other points in reach
-  EXPECT_TRUE(patch.behind());
+  EXPECT_TRUE(patch.sides().behind());
   stand(15e-3, 2e-3);
-  EXPECT_TRUE(patch.behind());
+  EXPECT_TRUE(patch.sides().behind());
   stand(0, 4e-3);
-  EXPECT_FALSE(patch.behind());
+  EXPECT_FALSE(patch.sides().behind());
   stand(15e-3, 2e-3);
-  EXPECT_FALSE(patch.behind());
+  EXPECT_FALSE(patch.sides().behind());
 }
 
 /// How much of the normals in the patch points along z, as they are turned.
@@ -95,7 +95,7 @@ TEST(Facing, WhatWasSeenOnTheWayCountsWhereNormalsAreWrong) {
   const auto come_down_from = [&](double height) {
     Patch patch(2048);
     for (double z = height; z > 0.5e-3; z -= 0.75e-3) {
-      patch.forget_sides();
+      patch.sides().reopen();
       const Stance stance{{0, 0, z}, Vector3d::Zero()};
       patch.gather(layers, 1, stance.proxy, 1e-3, {.stance = &stance});
     }
@@ -110,7 +110,7 @@ TEST(Facing, AProxyThatWentAroundAnEdgeSeesTheOtherSide) {
   const std::vector<ActiveLayer> layers = {{.points = plane.get()}};
   Patch patch(2048);
   const auto go = [&](double x, double z) {
-    patch.forget_sides();
+    patch.sides().reopen();
     const Stance stance{{x, 0, z}, Vector3d::Zero()};
     patch.gather(layers, 1, stance.proxy, 1e-3, {.stance = &stance});
   };

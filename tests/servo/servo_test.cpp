@@ -147,18 +147,6 @@ TEST(Servo, LatchesWhatIsNotFiniteAndForgetsItWhenTold) {
   }
 }
 
-TEST(Servo, ATimeThatIsNoNumberIsAFaultAfterAnotherOneToo) {
-  Scene scene;
-  test::add_sheet(scene);
-  FreeDevice device({0, 0, 5e-3});
-  Servo servo(device, scene, test::first_links());
-  servo.tick(0);
-  servo.tick(kNan);
-  servo.reset();
-  servo.tick(kNan);
-  EXPECT_NE(servo.state().guard.fault, Guard::Fault::none);
-}
-
 TEST(Servo, SaysThatADeviceFailed) {
   Scene scene;
   test::add_sheet(scene);
