@@ -177,7 +177,9 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
   std::array<double, kMost> agreed{};
   std::array<double, kMost> all{};
   for (const Point& p : points_) {
-    const double w = static_cast<double>(p.confidence) * weight(p.place.squaredNorm(), p.radius);
+    const float squared = p.place.squaredNorm();
+    if (squared >= p.radius * p.radius) continue;
+    const double w = static_cast<double>(p.confidence) * weight(squared, p.radius);
     const std::uint32_t part = now_.sheets[p.sheet].part;
     const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
     agreed[part] += w * static_cast<double>(a * std::abs(a)) * now_.parts[part].sign;
