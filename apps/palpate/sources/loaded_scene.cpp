@@ -114,8 +114,8 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
     check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
   }
-  const Waiting waiting(fmt::format("preparing {} ({} points)", loaded.argument.name,
-                                    grouped(cloud->size())));
+  const Waiting waiting(
+      fmt::format("preparing {} ({} points)", loaded.argument.name, grouped(cloud->size())));
   const auto start = WallClock::now();
   const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
   const Source& source = large ? add_on_demand(scene, loaded.argument.name, cloud, result)
