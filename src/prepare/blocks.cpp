@@ -121,17 +121,20 @@ void share_out(double seconds, std::span<Piece> pieces) {
 
 }  // namespace
 
-bool goes_by_blocks(const Placed& placed, const PrepareOptions& options) {
+bool goes_by_blocks(std::size_t points, const PrepareOptions& options) {
   if (options.paper || options.material_from_intensity) return false;  // both are of all points
-  return options.facts ? options.facts->radius > 0 : placed.cloud().size() > kMostAtOnce;
+  return options.facts ? options.facts->radius > 0 : points > kMostAtOnce;
 }
 
 Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
     : cloud_(placed.cloud()), viewpoint_(placed.viewpoint), options_(options) {
   options_.clip.reset();
   if (options_.viewpoint) options_.viewpoint = viewpoint_;  // given normals count beside a file's
-  detail::require_finite(cloud_.positions);
-  if (!options_.facts) options_.facts = measure_facts(cloud_, options_);
+  if (options_.facts) {
+    detail::require_finite(cloud_.positions);
+  } else {
+    options_.facts = measure_facts(cloud_, options_);
+  }
   facts_ = *options_.facts;
   edge_ = kBlockEdge * facts_.radius;
   divide();

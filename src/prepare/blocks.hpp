@@ -18,8 +18,8 @@
 
 namespace palpate {
 
-/// Is it prepared in blocks? A large cloud is, and one whose facts are given.
-[[nodiscard]] bool goes_by_blocks(const Placed& placed, const PrepareOptions& options);
+/// Is a cloud of so many points prepared in blocks? A large one is, and one whose facts are given.
+[[nodiscard]] bool goes_by_blocks(std::size_t points, const PrepareOptions& options);
 
 /// What came of one block: columns of its own points alone, which are not indexed yet.
 struct Piece {

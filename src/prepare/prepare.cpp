@@ -46,7 +46,8 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
   const Placed placed = place(cloud, options, T_world_sensor);
   Prepared::Report report{.points_in = cloud.size()};
   placing.lap(report.seconds_filter);
-  if (!goes_by_blocks(placed, options)) return prepare_at_once(placed, options, report);
+  if (!goes_by_blocks(placed.cloud().size(), options))
+    return prepare_at_once(placed, options, report);
   const Blocks blocks(placed, options);
   const std::vector<Piece> pieces = blocks.prepare_all();
   std::vector<const Piece*> all;

@@ -196,9 +196,11 @@ void OnDemand::Inside::publish(Source& to, std::span<const Piece* const> shown, 
 
 bool OnDemand::suits(const PointCloud& cloud, const PrepareOptions& options) {
   if (cloud.width != 0) return false;
-  Placed placed{cloud, {}, {}};
-  if (options.clip) placed.moved = clip(cloud, *options.clip);
-  return goes_by_blocks(placed, options);
+  std::size_t kept = options.clip ? 0 : cloud.size();
+  for (std::size_t i = 0; options.clip && i < cloud.size(); ++i) {
+    kept += options.clip->contains(cloud.point(i)) ? 1 : 0;
+  }
+  return goes_by_blocks(kept, options);
 }
 
 OnDemand::OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,

@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -38,23 +39,30 @@ std::shared_ptr<const PointCloud> hills(int side = 300) {
   return cloud;
 }
 
-/// The same cloud in two scenes: whole, and on demand in blocks a quarter of it wide.
-struct Hills {
-  Hills() {
+/// A cloud on demand in blocks that are `wide`, m, as far as it comes at first.
+struct Begun {
+  Begun(const std::shared_ptr<const PointCloud>& cloud, double wide, SourceOptions given = {})
+      : options(std::move(given)) {
     options.prepare.facts = measure_facts(*cloud, {});
-    options.prepare.facts->radius = 0.25 / 96;
-    whole.add("whole", *cloud, options);
+    options.prepare.facts->radius = wide / 96;
     demand = std::make_unique<OnDemand>(cloud, options.prepare);
-    some = &part.add("part", options);
-    while (!some->points()) demand->advance(*some, 0);
+    source = &scene.add("part", options);
+    while (!source->points()) demand->advance(*source, 0);
   }
 
-  std::shared_ptr<const PointCloud> cloud = hills();
   SourceOptions options;
-  Scene whole;
-  Scene part;
-  Source* some = nullptr;
+  Scene scene;
+  Source* source = nullptr;
   std::unique_ptr<OnDemand> demand;
+};
+
+/// The same cloud in two scenes: whole, and on demand in blocks a quarter of it wide.
+struct Hills {
+  Hills() { whole.add("whole", *cloud, part.options); }
+
+  std::shared_ptr<const PointCloud> cloud = hills();
+  Begun part{cloud, 0.25};
+  Scene whole;
 };
 
 /// Lets a hand press at a place for 20 ms.
@@ -72,10 +80,10 @@ Contact press(SceneField& field, const Vector3d& place, double depth, double tim
 
 TEST(OnDemand, ForcesAreThoseOfTheWholeWhereTheBlockIs) {
   Hills hills;
-  EXPECT_LT(hills.demand->share(), 1);
-  EXPECT_EQ(hills.some->report().points_in, hills.cloud->size());
-  EXPECT_LT(hills.some->report().points_out, hills.cloud->size());
-  const Box there = hills.some->points()->bounds();
+  EXPECT_LT(hills.part.demand->share(), 1);
+  EXPECT_EQ(hills.part.source->report().points_in, hills.cloud->size());
+  EXPECT_LT(hills.part.source->report().points_out, hills.cloud->size());
+  const Box there = hills.part.source->points()->bounds();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0.1, 0.9);
   for (int k = 0; k < 40; ++k) {
@@ -83,7 +91,7 @@ TEST(OnDemand, ForcesAreThoseOfTheWholeWhereTheBlockIs) {
     const double y = there.lower.y() + share(random) * there.size().y();
     const Vector3d place(x, y, height(x, y));
     SceneField all(hills.whole);
-    SceneField some(hills.part);
+    SceneField some(hills.part.scene);
     const Contact expected = press(all, place, 2e-3, 1);
     EXPECT_TRUE(expected.touching);
     EXPECT_EQ(press(some, place, 2e-3, 1).force, expected.force) << place.transpose();
@@ -93,7 +101,7 @@ TEST(OnDemand, ForcesAreThoseOfTheWholeWhereTheBlockIs) {
 
 TEST(OnDemand, WhatIsMissingIsFreeAndSaysSo) {
   Hills hills;
-  SceneField field(hills.part);
+  SceneField field(hills.part.scene);
   const Contact contact = press(field, {0.05, 0.05, height(0.05, 0.05)}, 2e-3, 1);
   EXPECT_FALSE(contact.touching);
   EXPECT_TRUE(has(field.notes(), FieldNote::not_loaded));
@@ -101,7 +109,7 @@ TEST(OnDemand, WhatIsMissingIsFreeAndSaysSo) {
 
 TEST(OnDemand, WhatToolsComeNearComesFirstAndPushesNobody) {
   Hills hills;
-  SceneField field(hills.part);
+  SceneField field(hills.part.scene);
   const double x = 0.05;
   const Vector3d hip(x, x, height(x, x) - 3e-3);  // under what is not there yet
   Proxy proxy;
@@ -113,17 +121,17 @@ TEST(OnDemand, WhatToolsComeNearComesFirstAndPushesNobody) {
     field.update(time, hip, proxy.position());
     largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
     came = came || !has(field.notes(), FieldNote::not_loaded);
-    if (k % 20 == 0 && !came) hills.demand->advance(*hills.some, time);
+    if (k % 20 == 0 && !came) hills.part.demand->advance(*hills.part.source, time);
   }
   EXPECT_TRUE(came);
-  EXPECT_LT(hills.demand->share(), 0.7);
+  EXPECT_LT(hills.part.demand->share(), 0.7);
   EXPECT_LT(largest, 0.05);  // N
 }
 
 TEST(OnDemand, AHandThatPressesFeelsNothingOfWhatArrives) {
   Hills hills;
-  SceneField field(hills.part);
-  const Vector3d place = hills.some->points()->bounds().center();
+  SceneField field(hills.part.scene);
+  const Vector3d place = hills.part.source->points()->bounds().center();
   const Vector3d hip(place.x(), place.y(), height(place.x(), place.y()) - 2e-3);
   Proxy proxy;
   proxy.reset(hip + Vector3d(0, 0, 0.01));
@@ -136,26 +144,26 @@ TEST(OnDemand, AHandThatPressesFeelsNothingOfWhatArrives) {
     const Vector3d force = proxy.step(field, hip + Vector3d(0, 0, lift), 1e-3).force;
     if (k == 500) held = force;
     if (k > 500) largest = std::max(largest, (force - held).norm());
-    if (k > 500 && k % 20 == 0) hills.demand->advance(*hills.some, time);
+    if (k > 500 && k % 20 == 0) hills.part.demand->advance(*hills.part.source, time);
   }
-  EXPECT_TRUE(hills.demand->done());
+  EXPECT_TRUE(hills.part.demand->done());
   EXPECT_GT(held.norm(), 0.5);
   EXPECT_LT(largest, 1e-6);
 }
 
 TEST(OnDemand, BecomesTheWhole) {
   Hills hills;
-  while (!hills.demand->done()) hills.demand->advance(*hills.some, 1);
-  EXPECT_EQ(hills.demand->share(), 1);
-  const SurfacePoints& some = *hills.some->points();
+  while (!hills.part.demand->done()) hills.part.demand->advance(*hills.part.source, 1);
+  EXPECT_EQ(hills.part.demand->share(), 1);
+  const SurfacePoints& some = *hills.part.source->points();
   const SurfacePoints& all = *hills.whole.source(0).points();
   EXPECT_TRUE(std::ranges::equal(some.grid.points(), all.grid.points()));
   EXPECT_EQ(some.normals, all.normals);
   EXPECT_EQ(some.radii, all.radii);
   EXPECT_EQ(some.density_weights, all.density_weights);
   EXPECT_EQ(some.sheets.sheet, all.sheets.sheet);
-  EXPECT_EQ(hills.some->report().points_out, hills.whole.source(0).report().points_out);
-  SceneField field(hills.part);
+  EXPECT_EQ(hills.part.source->report().points_out, hills.whole.source(0).report().points_out);
+  SceneField field(hills.part.scene);
   const Contact contact = press(field, {0.05, 0.05, height(0.05, 0.05)}, 2e-3, 1);
   EXPECT_TRUE(contact.touching);
   EXPECT_FALSE(has(field.notes(), FieldNote::not_loaded));
@@ -163,23 +171,16 @@ TEST(OnDemand, BecomesTheWhole) {
 
 TEST(OnDemand, NothingIsPublishedOnceItIsCancelled) {
   Hills hills;
-  const auto before = hills.some->points();
-  hills.demand->cancel();
-  for (int k = 0; k < 40; ++k) hills.demand->advance(*hills.some, 1);
-  EXPECT_TRUE(hills.demand->done());
-  EXPECT_EQ(hills.some->points(), before);
+  const auto before = hills.part.source->points();
+  hills.part.demand->cancel();
+  for (int k = 0; k < 40; ++k) hills.part.demand->advance(*hills.part.source, 1);
+  EXPECT_TRUE(hills.part.demand->done());
+  EXPECT_EQ(hills.part.source->points(), before);
 }
 
 TEST(OnDemand, WhatIsMissingSaysSoHoweverFarAwayItIs) {
-  const auto cloud = hills();
-  SourceOptions options;
-  options.prepare.facts = measure_facts(*cloud, {});
-  options.prepare.facts->radius = 0.05 / 96;  // some four hundred blocks
-  OnDemand demand(cloud, options.prepare);
-  Scene scene;
-  Source& source = scene.add("hills", options);
-  while (!source.points()) demand.advance(source, 0);
-  SceneField field(scene);
+  Begun begun(hills(), 0.05);  // some four hundred blocks
+  SceneField field(begun.scene);
   double time = 1;
   for (const double x : {0.02, 0.2, 0.8, 0.98}) {
     const Vector3d place(x, x, height(x, x));
@@ -189,16 +190,11 @@ TEST(OnDemand, WhatIsMissingSaysSoHoweverFarAwayItIs) {
 }
 
 TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
-  const auto cloud = hills(950);  // 225 000 points a block: two fill what is shown at most
   SourceOptions options;
   options.prepare.estimate_normals = false;  // that is faster, and says as much
-  options.prepare.facts = measure_facts(*cloud, {});
-  options.prepare.facts->radius = 0.5 / 96;
-  OnDemand demand(cloud, options.prepare);
-  Scene scene;
-  Source& source = scene.add("hills", options);
-  while (!source.points()) demand.advance(source, 0);
-  SceneField field(scene);
+  // 225 000 points a block: two fill what is shown at most.
+  Begun begun(hills(950), 0.5, options);
+  SceneField field(begun.scene);
   double time = 1;
   const auto stay = [&](double y, double seconds) {
     const Vector3d hip(0.36, y, height(0.36, y) + 2e-3);
@@ -206,16 +202,16 @@ TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
   };
   stay(0.02, 0.03);
   for (int k = 0; k < 3; ++k) {
-    demand.advance(source, time);
+    begun.demand->advance(*begun.source, time);
     stay(0.02, 0.15);
   }
   // Then to where three blocks are near, one of which the tool can reach.
   for (double y = 0.02; y < 0.36; y += 1e-4) stay(y, 1e-3);
-  for (int k = 0; k < 40 && !demand.done(); ++k) {
-    demand.advance(source, time);
+  for (int k = 0; k < 40 && !begun.demand->done(); ++k) {
+    begun.demand->advance(*begun.source, time);
     stay(0.36, 0.15);
   }
-  EXPECT_TRUE(demand.done());
+  EXPECT_TRUE(begun.demand->done());
 }
 
 TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
@@ -228,15 +224,15 @@ TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
 
 TEST(OnDemand, IsPreparedBesideAHandUntilSomebodyElseSetsTheSource) {
   Hills hills;
-  SceneField field(hills.part);
+  SceneField field(hills.part.scene);
   std::atomic<double> time{1};
   std::jthread preparing([&] {
-    while (!hills.demand->done()) hills.demand->advance(*hills.some, time);
+    while (!hills.part.demand->done()) hills.part.demand->advance(*hills.part.source, time);
   });
   std::jthread other([&] {
-    while (hills.demand->share() < 0.5) std::this_thread::yield();
-    hills.demand->cancel();
-    hills.some->set(*hills.cloud);
+    while (hills.part.demand->share() < 0.5) std::this_thread::yield();
+    hills.part.demand->cancel();
+    hills.part.source->set(*hills.cloud);
   });
   Proxy proxy;
   proxy.reset({0.5, 0.5, 0.1});
@@ -249,8 +245,8 @@ TEST(OnDemand, IsPreparedBesideAHandUntilSomebodyElseSetsTheSource) {
   for (int k = 0; k < 2000; ++k) step(0.1 + 4e-4 * k);
   preparing.join();
   other.join();
-  EXPECT_EQ(hills.demand->share(), 1);
-  EXPECT_EQ(hills.some->points()->size(), hills.whole.source(0).points()->size());
+  EXPECT_EQ(hills.part.demand->share(), 1);
+  EXPECT_EQ(hills.part.source->points()->size(), hills.whole.source(0).points()->size());
   step(0.5);
   EXPECT_FALSE(has(field.notes(), FieldNote::not_loaded));
 }
