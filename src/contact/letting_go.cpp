@@ -43,30 +43,17 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
-namespace {
-
-/// Does a proxy that does not move fast touch where it is shut in? Fast ones are not asked: what a
-/// step saw beyond its patch tells the next one the sides (SceneField), and looking elsewhere would
-/// forget it.
-bool is_trapped(WayOut& way_out, Probe& probe, const Eigen::Vector3d& moved,
-                const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-                const Eigen::Vector3d& hip) noexcept {
-  return moved.norm() <= kFast * probe.step_length() &&
-         way_out.is_shut_in(probe, place, normal, hip);
-}
-
-}  // namespace
-
 // Who passed through a surface is not held by it from within: the spring fades with a time constant
-// of 20 ms. And no hand is held hard in free air for long; the inside of a scanned body is free
-// air, too.
+// of 20 ms. A proxy that moves fast is not asked: what a step saw beyond its patch tells the next
+// one the sides (SceneField), and looking elsewhere would forget it. And no hand is held hard in
+// free air for long; the inside of a scanned body is free air, too.
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
                               const Eigen::Vector3d& hip, double dt, Contact& contact,
                               bool changed) noexcept {
   if (changed) way_out_.reset();
   if (!changed && !touching_) way_out_.wander(probe, position_);
-  if (!changed && is_held() &&
-      is_trapped(way_out_, probe, position_ - before, position_, normal_, hip)) {
+  const bool slow = (position_ - before).norm() <= kFast * probe.step_length();
+  if (!changed && slow && is_held() && way_out_.is_shut_in(probe, position_, normal_, hip)) {
     fading_.take(position_, tank_.stiffness());
     release(hip);
     contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};

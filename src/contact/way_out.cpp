@@ -21,7 +21,7 @@ constexpr double kLeastBall = 0.25;  // of R (judgement): with less room the fie
 constexpr double kStride = 0.3;      // of R (derived): single sheets are solid for over half an R
 constexpr double kClear = 0.1;       // of R (judgement): roughness below it bars no way
 constexpr double kDeep = 1;          // of R (judgement), from the proxy: less is not held hard
-constexpr double kElsewhere = 1;     // of R that a proxy moves before it is asked anew (judgement)
+constexpr double kElsewhere = 1;     // of R that a proxy moves before it is asked again (judgement)
 // Times that a way turns. Measured: of 288 hands in tilted tubes 1 to 4 R in radius, up to 20 R
 // deep, smooth or rough by 0.1 R, 94 are let go with 2, two with 6, none with 12.
 constexpr int kTurns = 12;
