@@ -67,7 +67,8 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
-  /// The proxy is where nothing is solid: all is decided anew, and what was seen on the way counts.
+  /// The proxy is where nothing is solid: all is decided again, and what was seen on the way
+  /// counts.
   void reopen() noexcept;
 
   /// Nothing was seen before.

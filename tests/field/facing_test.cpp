@@ -4,6 +4,8 @@
 
 #include <limits>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "field/evaluate.hpp"
 #include "field/patch.hpp"
@@ -14,6 +16,17 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// Puts all points on the first of these sheets, whose parts know no side; none hides another.
+void put_on_sheets(SurfacePoints& points, std::vector<std::uint32_t> parts) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
+                   .part = std::move(parts),
+                   .known = {0},
+                   .residual = std::vector<float>(points.size(), 0),
+                   .above = std::vector<float>(points.size(), infinity),
+                   .below = std::vector<float>(points.size(), infinity)};
+}
+
 /// A plane at the height z as preparation makes it, m: one sheet, whose normals point this way.
 std::unique_ptr<SurfacePoints> sheet_at(double z, double sign) {
   std::vector<test::TestPoint> plane;
@@ -23,13 +36,7 @@ std::unique_ptr<SurfacePoints> sheet_at(double z, double sign) {
     }
   }
   auto points = std::make_unique<SurfacePoints>(test::make_points(plane));
-  const float infinity = std::numeric_limits<float>::infinity();
-  points->sheets = {.sheet = std::vector<std::uint32_t>(points->size(), 0),
-                    .part = {0},
-                    .known = {0},
-                    .residual = std::vector<float>(points->size(), 0),
-                    .above = std::vector<float>(points->size(), infinity),
-                    .below = std::vector<float>(points->size(), infinity)};
+  put_on_sheets(*points, {0});
   return points;
 }
 
@@ -131,13 +138,7 @@ TEST(Facing, WhatAToolBeginsToTouchTurnsItsFlanksOutward) {
     }
   }
   SurfacePoints points = test::make_points(flanks);
-  const std::vector<float> none(points.size(), std::numeric_limits<float>::infinity());
-  points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
-                   .part = {0, 0},
-                   .known = {0},
-                   .residual = std::vector<float>(points.size(), 0),
-                   .above = none,
-                   .below = none};
+  put_on_sheets(points, {0, 0});
   for (std::size_t i = 0; i < points.size(); ++i) {
     points.sheets.sheet[i] = points.normals[i].x() > 0 ? 1 : 0;
   }
@@ -167,13 +168,7 @@ std::unique_ptr<SurfacePoints> face_over_wall(double end) {
     }
   }
   auto points = std::make_unique<SurfacePoints>(test::make_points(all));
-  const float infinity = std::numeric_limits<float>::infinity();
-  points->sheets = {.sheet = std::vector<std::uint32_t>(points->size(), 0),
-                    .part = {0, 0},
-                    .known = {0, 0},
-                    .residual = std::vector<float>(points->size(), 0),
-                    .above = std::vector<float>(points->size(), infinity),
-                    .below = std::vector<float>(points->size(), infinity)};
+  put_on_sheets(*points, {0, 0});
   for (std::size_t i = 0; i < points->size(); ++i) {
     points->sheets.sheet[i] = points->grid.points()[i].z() < -1e-3F ? 1 : 0;
   }

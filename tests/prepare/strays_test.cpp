@@ -44,6 +44,17 @@ class Strays : public testing::Test {
     return counts;
   }
 
+  /// Adds points over and under the sheet, no nearer to its border than `inside` and at heights
+  /// from `low` to `high`.
+  void scatter(int count, float inside, float low, float high) {
+    for (int i = 0; i < count; ++i) {
+      const float x = between(inside, 60 - inside);
+      const float y = between(inside, 60 - inside);
+      const float z = between(low, high);
+      add(x, y, i % 2 == 0 ? z : -z);
+    }
+  }
+
   /// How many of the grid's points and how many of the others weigh nothing once prepared.
   std::pair<int, int> count_weightless() {
     PointCloud cloud;
@@ -63,12 +74,7 @@ class Strays : public testing::Test {
 };
 
 TEST_F(Strays, AreWhatLiesEverywhereAroundASheet) {
-  for (int i = 0; i < 500; ++i) {
-    const float x = between(0, 60);
-    const float y = between(0, 60);
-    const float z = between(5, 30);
-    add(x, y, i % 2 == 0 ? z : -z);
-  }
+  scatter(500, 0, 5, 30);
   const auto [own, others] = count();
   EXPECT_EQ(own, 0);
   EXPECT_GT(others, 400);
@@ -128,12 +134,7 @@ TEST_F(Strays, AreClustersFarFromTheRest) {
 
 // The sheet's points are their nearest, so they are strays among what is on no sheet alone.
 TEST_F(Strays, BesideASheetWeighNothing) {
-  for (int i = 0; i < 300; ++i) {
-    const float x = between(3, 57);
-    const float y = between(3, 57);
-    const float z = between(1.3f, 4);
-    add(x, y, i % 2 == 0 ? z : -z);
-  }
+  scatter(300, 3, 1.3f, 4);
   const auto [own, others] = count_weightless();
   EXPECT_EQ(own, 0);
   EXPECT_GE(others, 200);
