@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace palpate {
@@ -18,10 +19,12 @@ constexpr int kMostWork = 8000;  // points, a step on the other ways: some 25 us
 constexpr double kOpenAir = 256;     // of R (judgement): who has so much room is in no body
 constexpr double kFirstBall = 0.5;   // of R (judgement); later ones double where there is room
 constexpr double kLeastBall = 0.25;  // of R (judgement): with less room the field is asked
-constexpr double kStride = 0.3;      // of R (derived): single sheets are solid for over half an R
-constexpr double kClear = 0.1;       // of R (judgement): roughness below it bars no way
-constexpr double kDeep = 1;          // of R (judgement), from the proxy: less is not held hard
-constexpr double kElsewhere = 1;     // of R that a proxy moves before it is asked again (judgement)
+constexpr double kInAir = 0.3;       // of W: where surfaces end (FieldOptions::minimum_support)
+constexpr double kAir = std::numeric_limits<double>::infinity();  // a field as high as no sheet's
+constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
+constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
+constexpr double kDeep = 1;       // of R (judgement), from the proxy: less is not held hard
+constexpr double kElsewhere = 1;  // of R that a proxy moves before it is asked again (judgement)
 // Times that a way turns. Measured: of 288 hands in tilted tubes 1 to 4 R in radius, up to 20 R
 // deep, smooth or rough by 0.1 R, 94 are let go with 2, two with 6, none with 12.
 constexpr int kTurns = 12;
@@ -42,6 +45,17 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& normal, int k) noexcept {
 WayOut::Ray WayOut::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
                         double radius) noexcept {
   return {.from = from, .along = along, .radius = radius, .ball = kFirstBall * radius};
+}
+
+/// May the way go on over this place? It leaves the surface that it begins at while the field does
+/// not fall again. Once it is in air, every sheet is in its way, whatever its sides: one that let
+/// the proxy pass would let the way pass, too.
+bool WayOut::Ray::passes(const Sample& here) noexcept {
+  if (here.support < kInAir) highest = kAir;
+  if (highest == kAir) return here.support < kInAir;
+  if (!(here.value > std::max(0.0, highest - kClear * radius))) return false;
+  highest = std::max(highest, here.value);
+  return true;
 }
 
 void WayOut::Ray::go(double stride) noexcept {
@@ -70,6 +84,7 @@ WayOut::End WayOut::walk(Probe& probe, const Effort& effort) noexcept {
   for (int look = 0; look < effort.looks; ++look) {
     const Eigen::Vector3d x = ray_.from + ray_.gone * ray_.along;
     if (probe.is_free({x, ray_.ball})) {
+      ray_.highest = kAir;
       ray_.go(ray_.ball);
       ray_.ball *= 2;
       if (ray_.gone > kOpenAir * ray_.radius) return End::open;
@@ -79,7 +94,7 @@ WayOut::End WayOut::walk(Probe& probe, const Effort& effort) noexcept {
       return End::blocked;
     } else {
       const Sample here = probe.sample(x);
-      if (here.value > 0) {
+      if (ray_.passes(here)) {
         ray_.go(kStride * ray_.radius);
       } else if (!ray_.turn(here.gradient)) {
         return End::blocked;
@@ -126,8 +141,8 @@ void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
   if (!ray_.any()) {
     ray_ = ray(place + kClear * radius * normal, direction_from(normal, direction_), radius);
   }
-  const Effort effort =
-      direction_ == 0 ? Effort{kFirstLooks, kFirstWork} : Effort{kMostLooks - 1, kMostWork};
+  const bool first = direction_ == 0 && ray_.turns == 0;
+  const Effort effort = first ? Effort{kFirstLooks, kFirstWork} : Effort{kMostLooks - 1, kMostWork};
   const End end = walk(probe, effort);
   if (end == End::none) return;
   has_room_ = has_room_ || ray_.room >= kStride * radius;
@@ -142,13 +157,14 @@ void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
 bool WayOut::is_shut_in(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                         const Eigen::Vector3d& hip) noexcept {
   const double radius = probe.step_length();
-  if (state_ == State::free || (place - known_).norm() >= kElsewhere * radius) ask(place);
+  const bool moved = (place - known_).norm() >= kElsewhere * radius;
+  if (state_ == State::free || (state_ == State::open && moved)) ask(place);
   if (!was_out_ || state_ == State::open || (place - hip).norm() < kDeep * radius) return false;
-  if (!probe.is_free({hip, kLeastBall * radius})) return false;
   if (state_ != State::shut) {
     look_around(probe, place, normal);
     return false;
   }
+  if (!probe.is_free({hip, kLeastBall * radius})) return false;
   ray_ = ray(hip, (hip - place).normalized(), radius);
   return walk(probe, {kMostLooks - 1, 0}) == End::open;
 }

@@ -11,7 +11,7 @@ namespace palpate {
 /// A place has a way out if one leads from it to open air, 256 R away: straight, or along what is
 /// in the way. A proxy that has been in open air hardly comes to a place without a way out, unless
 /// a surface let it pass; that surface holds it from within. The sides of points do not count but
-/// where there is less than R / 4 of room. Real-time.
+/// near where a way begins. Real-time.
 class WayOut {
  public:
   /// What a step spends at most, evaluations.
@@ -38,9 +38,11 @@ class WayOut {
     double before = 0;                                // gone, a stride ago, m
     double ball = 0;                                  // radius of the next, m
     int turns = 0;
-    double room = 0;  // from the beginning to the first turn, m
+    double room = 0;     // from the beginning to the first turn, m
+    double highest = 0;  // the field on the way so far, m; kAir: it has been in air
 
     [[nodiscard]] bool any() const noexcept { return !along.isZero(0); }
+    [[nodiscard]] bool passes(const Sample& here) noexcept;
     void go(double stride) noexcept;
     [[nodiscard]] bool turn(const Eigen::Vector3d& gradient) noexcept;
   };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -54,6 +55,26 @@ class HollowBall final : public WallsField {
   [[nodiscard]] double wall(const Vector3d& x) const noexcept override {
     return std::abs(x.norm() - kOuter + kThickness / 2) - kThickness / 2;
   }
+};
+
+/// A hollow ball whose wall is free around its top, as where points have wrong normals, though they
+/// weigh there what they weigh anywhere else.
+class BallOfWrongNormals final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    Sample sample = ball_.sample(x);
+    sample.support = std::clamp(1 - sample.value / (0.6 * kR), 0.0, 1.0);
+    if (x.z() > 0.8 * x.norm()) sample.value = std::abs(sample.value) + 0.1 * kR;
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return ball_.is_free({ball.center, ball.radius + 0.4 * kR});
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override { return ball_.traits(); }
+
+ private:
+  HollowBall ball_;
 };
 
 /// Two square plates that face each other across a gap, or meet at an edge.
@@ -136,6 +157,18 @@ TEST(WayOut, WhoCameThroughALeakIsLetGoOnTheWayOut) {
   EXPECT_LT(out.most, 500 * 3 * kR);  // 3 R beyond the wall, and not 9
   EXPECT_EQ(out.last.force.norm(), 0);
   EXPECT_EQ(proxy.position(), kOutside);
+}
+
+TEST(WayOut, AWallThatLetTheProxyPassIsNoWayOut) {
+  const BallOfWrongNormals ball;
+  Proxy proxy;
+  const Vector3d above(0.001, 0.002, 0.15);
+  proxy.reset(above);
+  ASSERT_EQ(go(proxy, ball, {above, kWithin}, 0.1).most, 0);
+  const Outcome out = go(proxy, ball, {kWithin, {0.01, 0, -0.15}}, 0.1);
+  EXPECT_TRUE(out.freed);
+  EXPECT_LT(out.most, 500 * 4 * kR);
+  EXPECT_EQ(out.last.force.norm(), 0);
 }
 
 TEST(WayOut, WhoWasNeverOutsideIsHeldByTheWallsOfARoom) {
