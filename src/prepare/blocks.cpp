@@ -23,8 +23,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Points that two cores prepare in some 15 s, which people may wait for; judgement.
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 22;
+// Points that two cores prepare in some 2 s. The first block of a smaller cloud would be a third of
+// it, which is not worth the halos; judgement.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;
 
 // Typical R of its level: the halo of a block. Measured: of 2, 3 and 5 all leave blocks alike
 // (docs/preparation.md).
