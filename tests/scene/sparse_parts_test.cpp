@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/prepare/prepare.hpp"
+#include "palpate/scene/on_demand.hpp"
 #include "palpate/scene/scene_field.hpp"
 
 namespace palpate {
@@ -89,6 +91,29 @@ TEST(SparseParts, AreFeltAsWhereAllIsPreparedTogether) {
     SCOPED_TRACE(sparser);
     expect_same(sparser);
   }
+}
+
+TEST(SparseParts, ArePreparedOnDemandWhereAToolComesNear) {
+  constexpr double kSparser = 30;
+  const auto cloud = std::make_shared<const PointCloud>(floor_around_patch(kSparser));
+  SourceOptions options;
+  options.prepare.facts = measure_facts(*cloud, {});
+  Scene whole;
+  whole.add("cloud", *cloud, options);
+  Scene some;
+  Source& source = some.add("cloud", options);
+  OnDemand demand(cloud, options.prepare);
+  const Vector3d place(kSide / 2 + 10.5 * kSparser * kFine, 0.1, 0);
+  SceneField field(some);
+  double time = 1;
+  while (!source.points()) demand.advance(source, time);
+  do {
+    demand.advance(source, time);
+    for (int k = 0; k < 200; ++k) field.update(time += 1e-3, place, place);
+  } while (has(field.notes(), FieldNote::not_loaded));
+  EXPECT_GT(press(some, place.x(), place.y()), 2);
+  while (!demand.done()) demand.advance(source, time);
+  EXPECT_EQ(press(some, place.x(), place.y()), press(whole, place.x(), place.y()));
 }
 
 }  // namespace
