@@ -23,23 +23,16 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Points that two cores prepare in some 15 s, which people may wait for (judgement). By blocks,
-// parts are not felt that are sampled more than some 12 times as sparsely as most
+// Points that two cores prepare in some 2 s. The first block of a smaller cloud would be a third of
+// it, which is not worth the halos; judgement.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;
+
+// Typical R of its level: the halo of a block. Measured: of 2, 3 and 5 all leave blocks alike
 // (docs/preparation.md).
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 22;
-
-// R: edge of a block. On a surface it has 60 000 to 140 000 points, half a second's work of a core
-// at most, and the halo adds an eighth; half the edge would add a quarter.
-constexpr double kBlockEdge = 96;  // judgement
-
-// R: the halo of a block as dense as the typical place. Measured: of 2, 3 and 5 all leave blocks
-// alike (docs/preparation.md).
 constexpr double kHalo = 3;
-// Times that where points are sparser, at most: few strays are not worth all that is around them.
-constexpr double kSparsest = 4;  // judgement
+// The same on further levels, where R is 1.5 to 6 of these; there it costs little; judgement.
+constexpr double kSparseHalo = 12;
 
-constexpr double kMostPlaces =
-    1 << 20;                       // of blocks along an axis either way; derived: 21 bits each
 constexpr int kMostHalvings = 11;  // derived: levels of a CellGrid's curve
 
 /// The elements of a column at `kept`; empty of an empty one.
@@ -126,98 +119,43 @@ bool goes_by_blocks(std::size_t points, const PrepareOptions& options) {
   return options.facts ? options.facts->radius > 0 : points > kMostAtOnce;
 }
 
-Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
-    : cloud_(placed.cloud()), viewpoint_(placed.viewpoint), options_(options) {
-  options_.clip.reset();
-  if (options_.viewpoint) options_.viewpoint = viewpoint_;  // given normals count beside a file's
-  if (options_.facts) {
-    detail::require_finite(cloud_.positions);
+namespace {
+
+PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
+  options.clip.reset();
+  // Given normals count beside a file's viewpoint.
+  if (options.viewpoint) options.viewpoint = placed.viewpoint;
+  if (options.facts) {
+    detail::require_finite(placed.cloud().positions);
   } else {
-    options_.facts = measure_facts(cloud_, options_);
+    options.facts = measure_facts(placed.cloud(), options);
   }
-  facts_ = *options_.facts;
-  edge_ = kBlockEdge * facts_.radius;
-  divide();
+  return options;
 }
 
-Blocks::Place Blocks::place_of(const Vector3d& point) const {
-  const Vector3d at = (point - facts_.extent.lower) / edge_;
-  Place place;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double cube = std::clamp(std::floor(at[axis]), -kMostPlaces, kMostPlaces - 1);
-    place[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(cube);
-  }
-  return place;
-}
+}  // namespace
 
-void Blocks::divide() {
-  std::unordered_map<std::uint64_t, std::size_t> known;
-  Place last{};
-  std::size_t block = 0;
-  for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
-    const Place at = place_of(cloud_.point(i));
-    if (i == 0 || at != last) {
-      std::uint64_t key = 0;
-      for (const std::int32_t cube : at) {
-        key = key << 21 | static_cast<std::uint64_t>(cube + static_cast<std::int32_t>(kMostPlaces));
-      }
-      const auto [found, is_new] = known.try_emplace(key, blocks_.size());
-      if (is_new) blocks_.push_back({at, {}});
-      block = found->second;
-      last = at;
-    }
-    blocks_[block].points.push_back(i);
-  }
-  std::ranges::sort(blocks_, {}, &Block::at);
-}
-
-const Blocks::Block* Blocks::find(const Place& at) const {
-  const auto found = std::ranges::lower_bound(blocks_, at, {}, &Block::at);
-  return found != blocks_.end() && found->at == at ? &*found : nullptr;
-}
-
-Vector3d Blocks::corner_of(const Place& at) const {
-  return facts_.extent.lower + edge_ * Vector3d(at[0], at[1], at[2]);
-}
-
-Box Blocks::box(std::size_t block) const {
-  const Vector3d corner = corner_of(blocks_[block].at);
-  return {corner, corner + Vector3d::Constant(edge_)};
-}
+Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
+    : cloud_(placed.cloud()),
+      options_(of_one_block(placed, options)),
+      viewpoint_(placed.viewpoint),
+      facts_(*options_.facts),
+      division_(cloud_, facts_) {}
 
 double Blocks::halo(std::size_t block) const {
-  const double usual = edge_ / facts_.spacing;  // points along an edge
-  const double sparse = usual / std::sqrt(static_cast<double>(blocks_[block].points.size()));
-  return kHalo * facts_.radius * std::clamp(sparse, 1., kSparsest);
-}
-
-std::vector<std::uint32_t> Blocks::with_halo(std::size_t number) const {
-  const Block& block = blocks_[number];
-  const double reach = halo(number);
-  std::vector<std::uint32_t> near = block.points;
-  const Vector3d corner = corner_of(block.at);
-  for (int k = 0; k < 27; ++k) {
-    const Place at{block.at[0] + k % 3 - 1, block.at[1] + k / 3 % 3 - 1, block.at[2] + k / 9 - 1};
-    const Block* const other = at == block.at ? nullptr : find(at);
-    if (other == nullptr) continue;
-    for (const std::uint32_t i : other->points) {
-      const Vector3d way = cloud_.point(i) - corner;
-      const Vector3d off = way - way.cwiseMax(0).cwiseMin(edge_);
-      if (off.cwiseAbs().maxCoeff() <= reach) near.push_back(i);
-    }
-  }
-  std::ranges::sort(near);
-  return near;
+  const double radius = division_.radius(block);
+  return (radius > facts_.radius ? kSparseHalo : kHalo) * radius;
 }
 
 Piece Blocks::prepare(std::size_t number) const {
-  const Block& block = blocks_[number];
-  const PointCloud near = select(cloud_, with_halo(number));
+  const PointCloud near = select(cloud_, division_.around(number, halo(number)));
   const Placed part{near, {}, viewpoint_};
-  Prepared all = prepare_at_once(part, options_, {});
+  PrepareOptions options = options_;
+  options.facts->radius = division_.radius(number);
+  Prepared all = prepare_at_once(part, options, {});
   SurfacePoints& points = all.points;
   const auto is_own = [&](std::uint32_t i) {
-    return place_of(points.origin + points.grid.points()[i].cast<double>()) == block.at;
+    return division_.owns(number, points.origin + points.grid.points()[i].cast<double>());
   };
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -229,7 +167,7 @@ Piece Blocks::prepare(std::size_t number) const {
   each_column([&](const auto& from, auto& to) { to = some_of(from, kept); }, points, piece.columns);
   renumber(points.sheets, piece.columns.sheets);
   piece.report = all.report;
-  piece.report.points_in = block.points.size();
+  piece.report.points_in = division_.points(number);
   piece.report.points_out = piece.report.speckle = piece.report.duplicates = 0;
   std::vector<std::uint8_t> first(points.size());  // a twin stands at its point's place
   for (const std::uint32_t i : first_of_each_place(points.grid)) first[i] = 1;
@@ -238,14 +176,15 @@ Piece Blocks::prepare(std::size_t number) const {
     ++(points.density_weights[i] > 0 ? piece.report.points_out : piece.report.speckle);
   }
   if (!(all.report.voxel > 0)) {
-    piece.report.duplicates = block.points.size() - piece.report.points_out - piece.report.speckle;
+    piece.report.duplicates =
+        piece.report.points_in - piece.report.points_out - piece.report.speckle;
   }
   return piece;
 }
 
 std::vector<Piece> Blocks::prepare_all() const {
   Stopwatch watch;
-  std::vector<Piece> pieces(blocks_.size());
+  std::vector<Piece> pieces(size());
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
     // A thread that waits for parts of this block is not to begin another one.
     tbb::this_task_arena::isolate([&] { pieces[k] = prepare(k); });
@@ -276,7 +215,7 @@ Prepared Blocks::join(std::span<const Piece* const> pieces) const {
   }
   points.kernel = options_.kernel;
   points.origin = cloud_.origin;
-  CellGrid::Cube cube{facts_.extent.lower - points.origin, edge_};
+  CellGrid::Cube cube{facts_.extent.lower - points.origin, Division::kBlockEdge * facts_.radius};
   const double longest = facts_.extent.size().maxCoeff();
   for (int k = 0; k < kMostHalvings && cube.edge < longest; ++k) cube.edge *= 2;
   points.grid = CellGrid(positions, cube);

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "palpate/prepare/prepare.hpp"
+#include "prepare/division.hpp"
 #include "prepare/place.hpp"
 
 namespace palpate {
@@ -28,22 +27,21 @@ struct Piece {
   Prepared::Report report;                 ///< of the block's own points
 };
 
-/// A cloud cut into the cubes of a fixed grid. What a block becomes depends on the facts, on its
-/// own points and on those within the halo around it, so it is the same whenever and with whatever
-/// others it is prepared; sheets and parts end at its faces. All but construction may be called by
-/// several threads.
+/// The blocks of a cloud. What a block becomes depends on the facts, on its own points and on those
+/// that lie near, so it is the same whenever and with whatever others it is prepared; sheets and
+/// parts end at its faces. All but construction may be called by several threads.
 class Blocks {
  public:
   /// Measures the facts where the options give none. `placed` has to outlive it.
   Blocks(const Placed& placed, const PrepareOptions& options);
 
   [[nodiscard]] const CloudFacts& facts() const { return facts_; }
-  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+  [[nodiscard]] std::size_t size() const { return division_.size(); }
 
-  /// The cube of a block, world frame, m.
-  [[nodiscard]] Box box(std::size_t block) const;
+  /// The box of a block's points, world frame, m.
+  [[nodiscard]] const Box& box(std::size_t block) const { return division_.box(block); }
 
-  /// How far around a block points count for it, m: more where they are sparse.
+  /// How far around that points count for it, m.
   [[nodiscard]] double halo(std::size_t block) const;
 
   [[nodiscard]] Piece prepare(std::size_t block) const;
@@ -53,24 +51,11 @@ class Blocks {
   [[nodiscard]] Prepared join(std::span<const Piece* const> pieces) const;
 
  private:
-  using Place = std::array<std::int32_t, 3>;  // of a cube in the grid
-  struct Block {
-    Place at;
-    std::vector<std::uint32_t> points;  // in the cloud, rising
-  };
-
-  [[nodiscard]] Place place_of(const Eigen::Vector3d& point) const;
-  [[nodiscard]] const Block* find(const Place& at) const;
-  [[nodiscard]] Eigen::Vector3d corner_of(const Place& at) const;
-  [[nodiscard]] std::vector<std::uint32_t> with_halo(std::size_t number) const;
-  void divide();
-
   const PointCloud& cloud_;
-  std::optional<Eigen::Vector3d> viewpoint_;
   PrepareOptions options_;  // of one block
+  std::optional<Eigen::Vector3d> viewpoint_;
   CloudFacts facts_;
-  double edge_ = 0;            // of a block, m
-  std::vector<Block> blocks_;  // by place
+  Division division_;
 };
 
 }  // namespace palpate

@@ -239,7 +239,8 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
 }  // namespace
 
 double largest_radius(const CloudFacts& facts) {
-  constexpr double kMost = 12;  // typical R: as far as halos go; derived
+  // Typical R: twice those of the sparsest points of a level (Division), as gaps ask for; derived.
+  constexpr double kMost = 12;
   return facts.radius > 0 ? kMost * facts.radius : std::numeric_limits<double>::infinity();
 }
 

@@ -93,15 +93,19 @@ Box draw_crop(const Box& all, std::mt19937& random) {
   return crop;
 }
 
-/// The blocks of which the crop has all points of the whole, and of their halos.
-std::vector<Box> whole_blocks(const Blocks& blocks, const Box& all, const Box& crop) {
-  std::vector<Box> found;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const Box block = blocks.box(k);
-    const double halo = blocks.halo(k);
-    const Vector3d lower = (block.lower.array() - halo).max(all.lower.array());
-    const Vector3d upper = (block.upper.array() + halo).min(all.upper.array());
-    if (crop.contains(lower) && crop.contains(upper)) found.push_back(block);
+/// The blocks of which the crop has all points of the whole, and all that tell what they become. On
+/// a level beyond the first the whole cube tells: a crop may make more points in it sparse.
+std::vector<std::size_t> whole_blocks(const Division& division, double typical, const Box& all,
+                                      const Box& crop) {
+  constexpr double kKnown = 16;  // R: a halo of 12, and whether the cells in it are settled
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < division.size(); ++k) {
+    const Box& block = division.box(k);
+    const double radius = division.radius(k);
+    const double around = (radius > typical ? kKnown + Division::kBlockEdge : kKnown) * radius;
+    const Vector3d lower = (block.lower.array() - around).max(all.lower.array());
+    const Vector3d upper = (block.upper.array() + around).min(all.upper.array());
+    if (crop.contains(lower) && crop.contains(upper)) found.push_back(k);
   }
   return found;
 }
@@ -113,8 +117,7 @@ std::size_t compare_crops(const PointCloud& cloud, int crops, unsigned seed) {
   // Blocks of a third of the cloud at most: what is equal must be so for any.
   const double third = options.facts->extent.size().head<2>().minCoeff() / 3;
   options.facts->radius = std::min(options.facts->radius / 3, third / 96);
-  const Placed placed{cloud, {}, {}};
-  const Blocks blocks(placed, options);
+  const Division division(cloud, *options.facts);
   const SurfacePoints whole = prepare(cloud, options).points;
   Places places;
   for (std::uint32_t i = 0; i < whole.size(); ++i) places.emplace(whole.grid.points()[i], i);
@@ -124,13 +127,10 @@ std::size_t compare_crops(const PointCloud& cloud, int crops, unsigned seed) {
   for (int k = 0; k < crops; ++k) {
     const Box crop = draw_crop(all, random);
     const SurfacePoints part = prepare(clip(cloud, crop), options).points;
-    const std::vector<Box> known = whole_blocks(blocks, all, crop);
+    const std::vector<std::size_t> known = whole_blocks(division, options.facts->radius, all, crop);
     for (std::uint32_t i = 0; i < part.size(); ++i) {
       const Vector3d at = part.origin + part.grid.points()[i].cast<double>();
-      const auto is_inside = [&](const Box& block) {  // not at a face, where rounding decides
-        return ((at - block.lower).array() > 1e-6).all() &&
-               ((block.upper - at).array() > 1e-6).all();
-      };
+      const auto is_inside = [&](std::size_t block) { return division.owns(block, at); };
       if (std::ranges::none_of(known, is_inside)) continue;
       const auto [begin, end] = places.equal_range(part.grid.points()[i]);
       const auto is_same = [&](const auto& p) { return same_columns(part, i, whole, p.second); };

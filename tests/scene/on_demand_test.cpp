@@ -215,8 +215,9 @@ TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
 }
 
 TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
-  const auto cloud = hills(2100);
   PrepareOptions options;
+  EXPECT_FALSE(OnDemand::suits(*hills(700), options));
+  const auto cloud = hills(750);
   EXPECT_TRUE(OnDemand::suits(*cloud, options));
   options.clip = Box{{0.4, 0.4, -1}, {0.6, 0.6, 1}};
   EXPECT_FALSE(OnDemand::suits(*cloud, options));

@@ -1,0 +1,89 @@
+// Divides a cloud into blocks: cubes of a fixed grid, larger ones where points are sparser.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/prepare/cloud_facts.hpp"
+
+namespace palpate {
+
+/// A cloud on several levels. Level 0 holds all points; on each further one lengths are four times
+/// as large, and it holds the points that were too sparse for the level before and few of the
+/// others. A point belongs to the first level on which enough points are around it. A block is a
+/// cube of a level with the points in it that belong there. Which one a point belongs to depends on
+/// the facts and on what lies near it alone.
+class Division {
+ public:
+  static constexpr double kBlockEdge = 96;  ///< typical R of a level: edge of its cubes
+
+  /// `cloud` has to outlive it.
+  Division(const PointCloud& cloud, const CloudFacts& facts);
+
+  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+  /// A typical R on the block's level, m: that of the facts times a power of four.
+  [[nodiscard]] double radius(std::size_t block) const;
+  /// How many points belong to the block.
+  [[nodiscard]] std::size_t points(std::size_t block) const { return cube(block).own; }
+  /// Their tight box, world frame, m.
+  [[nodiscard]] const Box& box(std::size_t block) const { return cube(block).box; }
+  /// Do points at this place (world frame, m) belong to the block?
+  [[nodiscard]] bool owns(std::size_t block, const Eigen::Vector3d& place) const;
+  /// The points of the block's level up to `reach` around its box, which is at most an edge of its
+  /// cube, m. Rising.
+  [[nodiscard]] std::vector<std::uint32_t> around(std::size_t block, double reach) const;
+
+ private:
+  using Place = std::array<std::int32_t, 3>;  // of a cell or cube in its grid
+  struct Cell {
+    Place at{};
+    std::uint32_t points = 0;
+    std::uint64_t taken = 0;  // a bit for each part of it: was a point seen there?
+    bool settled = false;     // are enough points around to prepare those in it on this level?
+    std::uint32_t cube = 0;
+  };
+  struct Cube {
+    Place at{};
+    std::vector<std::uint32_t> points;
+    std::size_t own = 0;  // points that belong to it
+    Box box = {};         // of these
+  };
+  template <class T>
+  struct Grid {
+    std::vector<T> all;
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by place
+
+    std::uint32_t number_at(const Place& at);  // of one that is made if there is none
+    [[nodiscard]] const T* find(const Place& at) const;
+  };
+  struct Level {
+    double cell = 0;  // edge, m
+    Grid<Cell> cells;
+    Grid<Cube> cubes;
+
+    [[nodiscard]] bool has_enough(const Place& at) const;  // points in and around a cell
+  };
+  struct Block {
+    std::size_t level;
+    std::uint32_t cube;
+  };
+
+  void add_level(std::vector<std::uint32_t>& members, std::vector<std::uint8_t>& waits);
+  void settle(Level& level) const;
+  [[nodiscard]] Place place_of(const Eigen::Vector3d& point, double edge) const;
+  [[nodiscard]] const Cube& cube(std::size_t block) const;
+
+  const PointCloud& cloud_;
+  Box extent_;
+  double radius_;  // typical R of level 0, m
+  std::vector<Level> levels_;
+  std::vector<Block> blocks_;  // by level and place
+};
+
+}  // namespace palpate
