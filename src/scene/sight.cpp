@@ -188,7 +188,7 @@ void Sight::note_question(double now) {
   if (now < newest_.frame.stamp - kOtherClock) return;
   const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
   const double gap = newest_.frame.stamp - before_.frame.stamp;
-  if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
+  if (replaces && gap > 0) lifetime_.add(gap, now - newest_.frame.stamp);
 }
 
 /// The age up to which a frame counts, s.
