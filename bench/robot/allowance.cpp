@@ -30,10 +30,27 @@ double one_frame(const Watcher& watcher) {
   return 1 / watcher.options.rate + 2 * watcher.options.jitter + watcher.delay;
 }
 
+bool is_in_picture(const Watcher& watcher, const Vector3d& x, double t) {
+  const SimulatedCameraOptions& options = watcher.options;
+  const Vector3d seen = moved(options.T_world_camera, options.motion, t).inverse() * x;
+  const CameraModel& camera = options.camera;
+  const Pinhole& p = camera.pinhole;
+  const double u = p.cx + p.fx * seen.x() / seen.z();
+  const double v = p.cy + p.fy * seen.y() / seen.z();
+  return u >= kRim && v >= kRim && u <= camera.width - kRim && v <= camera.height - kRim;
+}
+
+// Does the camera see x, or the surface of what holds x? Its ray may pass as near to other things
+// as it likes: what it shows beside them is true.
 bool looks_there(const Trial& trial, const Watcher& watcher, const Vector3d& x, double t) {
   const SimulatedCameraOptions& options = watcher.options;
   const Vector3d eye = moved(options.T_world_camera, options.motion, t).translation();
-  return is_seen(trial, watcher, surface_before(trial, eye, x, t), t);
+  const Vector3d surface = surface_before(trial, eye, x, t);
+  const Vector3d way = eye - surface;
+  double room = kStep;
+  for (double s = kStep; s < way.norm() && room >= 0; s += std::max(room, kStep))
+    room = distance_and_normal(trial.scene, surface + s * way.normalized(), t).value;
+  return room >= 0 && is_in_picture(watcher, surface, t);
 }
 
 }  // namespace
@@ -44,15 +61,9 @@ double depth_at(const Trial& trial, const Vector3d& x, double t) {
 }
 
 bool is_seen(const Trial& trial, const Watcher& watcher, const Vector3d& x, double t) {
+  if (!is_in_picture(watcher, x, t)) return false;
   const SimulatedCameraOptions& options = watcher.options;
-  const Eigen::Isometry3d pose = moved(options.T_world_camera, options.motion, t);
-  const Vector3d seen = pose.inverse() * x;
-  const CameraModel& camera = options.camera;
-  const Pinhole& p = camera.pinhole;
-  const double u = p.cx + p.fx * seen.x() / seen.z();
-  const double v = p.cy + p.fy * seen.y() / seen.z();
-  if (u < kRim || v < kRim || u > camera.width - kRim || v > camera.height - kRim) return false;
-  const Vector3d way = pose.translation() - x;
+  const Vector3d way = moved(options.T_world_camera, options.motion, t).translation() - x;
   for (double s = kNearby; s < way.norm(); s += kNearby / 2) {
     if (distance_and_normal(trial.scene, x + s * way.normalized(), t).value < kNearby / 4)
       return false;

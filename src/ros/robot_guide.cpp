@@ -168,14 +168,14 @@ void RobotGuide::note(bool proxy_free, bool both_free, double now, bool pressed)
 }
 
 RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
-  robot_ = {.place = target, .memory = tool_};  // it is where the tool is
+  robot_ = {.place = target, .memory = tool_, .seen = looked_};  // it is where the tool is
   ahead_ = ahead;
   followed_ = looked_;
   return {.target = target};
 }
 
 void RobotGuide::pause() {
-  robot_.held = -kNever;  // not seen meanwhile
+  robot_.held = robot_.seen = -kNever;  // not seen meanwhile
   free_since_ = kNever;
   followed_ = -kNever;
   ahead_ = 0;
@@ -186,7 +186,7 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
   const Place held = robot_.place ? judge(*robot_.place, now, robot_.memory) : Place{};
   note_held(held, now);
   Answer answer;
-  if (!robot_.over.what.empty()) {
+  if (held.solid()) {
     answer.reason = robot_.over.what;
     answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
   } else if (!proxy.free()) {
@@ -196,7 +196,7 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
     answer.reason = follows_ ? kWay : kNotYet;
     answer.why = answer.reason;
   }
-  if (robot_.over.what != kPassed || !(options_.retreat > 0)) return answer;
+  if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
   const double step = std::min(options_.retreat * dt, held.seen.behind);
   robot_.place = *robot_.place + step * held.seen.towards;
   answer.target = robot_.place;
@@ -205,8 +205,11 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
 }
 
 // Lets the robot go back only from what came steadily over its position. What came in a jump, or
-// unseen, stands between it and the camera: the way back would lead into it.
+// unseen, stands between it and the camera: the way back would lead into it. A shorter loss of
+// sight than kFreeFor changes nothing.
 void RobotGuide::note_held(const Place& held, double now) {
+  if (held.free() || held.solid()) robot_.seen = now;
+  if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
   const double known = held.free() ? 0 : -kNever;
   const double before = std::exchange(robot_.held, held.solid() ? held.seen.behind : known);
   if (!held.solid()) {

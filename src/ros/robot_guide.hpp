@@ -76,6 +76,7 @@ class RobotGuide {
     std::optional<Eigen::Vector3d> place = {};  // where it is, m, world
     Memory memory = {};
     double held = 0;  // how far it was behind what was seen last, m; -infinite: not seen
+    double seen = 0;  // when its place was seen last, s
     Over over = {};
   };
 

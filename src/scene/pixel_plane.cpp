@@ -10,14 +10,13 @@ namespace palpate {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-PixelWindow window_of(const DepthFrame& frame, double u, double v) {
+PixelWindow window_of(const DepthFrame& frame, double u, double v, int half) {
   PixelWindow found;
   const int across = static_cast<int>(std::lround(u));
   const int down = static_cast<int>(std::lround(v));
-  for (int y = std::max(down - kHalfWindow, 0);
-       y <= std::min(down + kHalfWindow, frame.camera.height - 1); ++y) {
-    for (int x = std::max(across - kHalfWindow, 0);
-         x <= std::min(across + kHalfWindow, frame.camera.width - 1); ++x) {
+  for (int y = std::max(down - half, 0); y <= std::min(down + half, frame.camera.height - 1); ++y) {
+    for (int x = std::max(across - half, 0); x <= std::min(across + half, frame.camera.width - 1);
+         ++x) {
       const float z = frame.depth[static_cast<std::size_t>(y) * frame.camera.width + x];
       if (!(z > 0 && std::isfinite(z))) continue;
       found.all[found.count++] = {x - u, y - v, 1 / static_cast<double>(z)};

@@ -12,6 +12,8 @@ namespace palpate {
 
 inline constexpr int kHalfWindow =
     2;  // pixels: a window of 5 x 5 averages most noise and bends little
+inline constexpr int kWideWindow =
+    2 * kHalfWindow;  // pixels: as far again beyond that window on each side (derived)
 inline constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
 
 /// A pixel's inverse depth, which is affine in the pixel on planes.
@@ -22,7 +24,7 @@ struct Pixel {
 };
 
 struct PixelWindow {
-  std::array<Pixel, (2 * kHalfWindow + 1) * (2 * kHalfWindow + 1)> all;
+  std::array<Pixel, (2 * kWideWindow + 1) * (2 * kWideWindow + 1)> all;
   std::size_t count = 0;
 
   [[nodiscard]] std::span<Pixel> span() { return {all.data(), count}; }
@@ -37,8 +39,9 @@ struct PixelPlane {
   [[nodiscard]] bool told() const { return leverage <= kMostLeverage && inverse > 0; }
 };
 
-/// The pixels around a place of the image that measured something.
-[[nodiscard]] PixelWindow window_of(const DepthFrame& frame, double u, double v);
+/// The pixels around a place of the image that measured something, up to `half` to each side, which
+/// is kWideWindow at most.
+[[nodiscard]] PixelWindow window_of(const DepthFrame& frame, double u, double v, int half);
 
 [[nodiscard]] PixelPlane plane_of(std::span<const Pixel> pixels);
 

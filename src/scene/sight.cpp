@@ -54,8 +54,8 @@ struct Gap {
 /// How far the surface at a place of the image lies beyond `reach` m. `stretch`: of the ray there,
 /// its length for one metre of depth.
 std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, double stretch,
-                          double reach) {
-  PixelWindow window = window_of(view.frame, at.x(), at.y());
+                          double reach, int half) {
+  PixelWindow window = window_of(view.frame, at.x(), at.y(), half);
   const auto sigma_of = [&](const PixelPlane& plane) {  // 1/m
     return view.noise.sigma(1 / plane.inverse) * plane.inverse * plane.inverse;
   };
@@ -77,8 +77,8 @@ struct Look {
   std::optional<Gap> gap;
 };
 
-/// `x`: a place on the ray, world.
-Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x) {
+/// `x`: a place on the ray, world. `half`: of its window, pixels.
+Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x, int half) {
   const Vector3d& eye = view.T_world_sensor.translation();
   const Matrix3d to_sensor = view.T_world_sensor.linear().transpose();
   const Vector3d seen = to_sensor * (x - eye);
@@ -86,7 +86,7 @@ Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x) {
   if (!at) return {.outside = true, .gap = {}};
   const double reach = reach_along(seen.normalized(), to_sensor * (ball.center - eye), ball.radius);
   const double stretch = seen.norm() / seen.z();
-  return {.outside = false, .gap = gap_at(view, *at, stretch, reach)};
+  return {.outside = false, .gap = gap_at(view, *at, stretch, reach, half)};
 }
 
 /// Places on a disc through a ball's middle that faces `eye`, some `pitch` apart; the middle first.
@@ -132,21 +132,23 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
   seen.came = compares && before->free();
 }
 
-/// `before`: an earlier frame that tells how fast things come; null: there is none.
-Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball, double now) {
+/// `before`: an earlier frame that tells how fast things come; null: there is none. `half`: of the
+/// windows, pixels.
+Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball, double now,
+           int half) {
   const Vector3d eye = newest.T_world_sensor.translation();
   Seen seen;
   seen.age = now - newest.frame.stamp;
   seen.towards = (eye - ball.center).normalized();
-  if (look(newest, ball, ball.center).outside) return seen;
+  if (look(newest, ball, ball.center, half).outside) return seen;
   const Pinhole& p = newest.frame.camera.pinhole;
   const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
   const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
   seen.says = Seen::Says::free;
   for (const Vector3d& place : places_on(ball, eye, pitch)) {
-    const Look told = look(newest, ball, place);
+    const Look told = look(newest, ball, place, half);
     if (told.gap) {
-      add(*told.gap, span > 0 ? look(*before, ball, place).gap : std::nullopt, span, seen);
+      add(*told.gap, span > 0 ? look(*before, ball, place, half).gap : std::nullopt, span, seen);
     } else if (seen.says == Seen::Says::free) {
       seen.says = told.outside ? Seen::Says::outside : Seen::Says::nothing;
     }
@@ -188,7 +190,7 @@ void Sight::note_question(double now) {
   if (now < newest_.frame.stamp - kOtherClock) return;
   const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
   const double gap = newest_.frame.stamp - before_.frame.stamp;
-  if (replaces && gap > 0) lifetime_.add(gap, now - before_.frame.stamp);
+  if (replaces && gap > 0) lifetime_.add(gap, now - newest_.frame.stamp);
 }
 
 /// The age up to which a frame counts, s.
@@ -198,7 +200,7 @@ double Sight::lasts(const FrameLimits& limits) const {
   return usual ? std::min(*usual, limits.later) : limits.at_first;
 }
 
-/// Does the frame before the newest one count where that one measured nothing? Only if no frame is
+/// May the frame before the newest one count where that one measured nothing? Only if no frame is
 /// missing between them. Until that can be known, it counts as long as if it were the newest.
 bool Sight::before_counts(double now, double lasts) const {
   if (frames_ < 2) return false;
@@ -218,14 +220,17 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& l
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
   if (frames_ > 2 && base == nullptr && is_base(base_, newest_)) base = &base_;
-  Seen seen = judge(newest_, base, ball, now);
+  Seen seen = judge(newest_, base, ball, now, kHalfWindow);
   if (seen.says == Seen::Says::outside) return seen;
   if (seen.age > lasts) {
     seen.says = Seen::Says::old;
-  } else if (seen.says == Seen::Says::nothing && before_counts(now, lasts)) {
-    seen = judge(before_, frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr, ball, now);
+    return seen;
   }
-  return seen;
+  if (seen.says != Seen::Says::nothing || !before_counts(now, lasts)) return seen;
+  // Around the place the newest frame shows what came since the one before.
+  if (judge(newest_, base, ball, now, kWideWindow).says != Seen::Says::free) return seen;
+  const PosedFrame* earlier = frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr;
+  return judge(before_, earlier, ball, now, kHalfWindow);
 }
 
 }  // namespace palpate

@@ -79,6 +79,33 @@ TEST_F(ARobot, GoesBackSlowlyFromWhereASurfaceCameOverIt) {
   EXPECT_TRUE(runs(0.1).target);
 }
 
+TEST_F(ARobot, GoesOnBackAfterAFrameWasLost) {
+  camera("camera", coming);
+  starts();
+  presses_at(0);
+  ASSERT_TRUE(runs(1.3).retreats);
+  cameras_.back().on = false;
+  const RobotGuide::Answer blind = runs(1.9 * kFrame);
+  EXPECT_FALSE(blind.target);
+  EXPECT_THAT(blind.why, HasSubstr("shows nothing new (camera)"));
+  cameras_.back().on = true;
+  const RobotGuide::Answer answer = runs(1.1 * kFrame);
+  EXPECT_TRUE(answer.retreats) << answer.why;
+}
+
+TEST_F(ARobot, DoesNotGoBackFromWhatCameBetweenAlsoAfterAFrameWasLost) {
+  camera("camera", [](double t) { return t < 1 ? 0 : 0.03; });
+  starts();
+  presses_at(0);
+  ASSERT_THAT(runs(1.2).why, HasSubstr("came between"));
+  cameras_.back().on = false;
+  ASSERT_THAT(runs(3 * kFrame).why, HasSubstr("shows nothing new"));
+  cameras_.back().on = true;
+  const RobotGuide::Answer answer = runs(1.1 * kFrame);
+  EXPECT_THAT(answer.why, HasSubstr("came between"));
+  EXPECT_FALSE(answer.retreats);
+}
+
 TEST_F(ARobot, StandsStillWhereItIsNotToGoBack) {
   camera("camera", coming);
   guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .retreat = 0}, 0);

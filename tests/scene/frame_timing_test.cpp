@@ -69,18 +69,19 @@ TEST(FrameIntervalFilter, AClockThatIsSetBackChangesNothing) {
 constexpr double kInterval = 0.1;  // s
 constexpr double kDelay = 0.02;    // s
 
-// The lifetime after frames that are up to `jitter` (s) early or late, and of which a share is
-// lost.
-FrameLifetime after(int frames, double jitter, double lost) {
+// The lifetime after frames that are taken up to `jitter` and come up to `lag` (s) early or late,
+// and of which a share is lost.
+FrameLifetime after(int frames, double jitter, double lost, double lag = 0) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> error(-jitter, jitter);
+  std::uniform_real_distribution<double> error(-1, 1);
   std::bernoulli_distribution drop(lost);
   FrameLifetime lifetime;
   std::optional<double> before;
   for (int k = 0; k < frames; ++k) {
-    const double stamp = kInterval * k + error(random);
+    const double stamp = kInterval * k + jitter * error(random);
+    const double delay = kDelay + lag * error(random);
     if (drop(random)) continue;
-    if (before) lifetime.add(stamp - *before, stamp - *before + kDelay);
+    if (before) lifetime.add(stamp - *before, delay);
     before = stamp;
   }
   return lifetime;
@@ -95,26 +96,35 @@ TEST(FrameLifetime, IsNoLongerWhereFramesAreLost) {
   EXPECT_NEAR(after(200, 0, 0.4).longest().value(), kInterval + kDelay, 1e-9);
 }
 
-TEST(FrameLifetime, LastsAsLongAsFramesThatComeLate) {
+TEST(FrameLifetime, IsNearlyAsLongAsAFrameCanLastAndNoLonger) {
   constexpr double kJitter = 0.01;  // s
-  for (const double lost : {0., 0.4}) {
-    const double longest = after(200, kJitter, lost).longest().value();
-    EXPECT_GT(longest, kInterval + kDelay + 1.5 * kJitter) << lost;
-    EXPECT_LT(longest, kInterval + kDelay + 4 * kJitter) << lost;
+  constexpr double kLag = 0.005;    // s
+  for (const double lost : {0., 0.1, 0.4}) {
+    for (int frames = 100; frames < 300; ++frames) {
+      const double longest = after(frames, kJitter, lost, kLag).longest().value();
+      EXPECT_GT(longest, kInterval + kDelay + kJitter) << lost;
+      EXPECT_LT(longest, kInterval + kDelay + 2.2 * kJitter + kLag) << lost;
+    }
   }
+}
+
+TEST(FrameLifetime, IsNoLongerThanAGapThatLostAFrameAfterTwoCameAtOnce) {
+  FrameLifetime lifetime;
+  for (int k = 0; k < 16; ++k) lifetime.add(k == 8 ? 0.01 * kInterval : kInterval, kDelay);
+  EXPECT_LE(lifetime.longest().value(), FrameLifetime::kLost * kInterval + kDelay + 1e-9);
 }
 
 TEST(FrameLifetime, FollowsAnotherRate) {
   FrameLifetime lifetime;
-  for (int k = 0; k < 30; ++k) lifetime.add(1. / 60, 1. / 60);
+  for (int k = 0; k < 30; ++k) lifetime.add(1. / 60, 0);
   EXPECT_NEAR(lifetime.longest().value(), 1. / 60, 1e-9);
-  for (int k = 0; k < 16; ++k) lifetime.add(0.2, 0.2);
+  for (int k = 0; k < 16; ++k) lifetime.add(0.2, 0);
   EXPECT_NEAR(lifetime.longest().value(), 0.2, 1e-9);
 }
 
 TEST(FrameLifetime, IsNegativeWhereTheCamerasClockIsAhead) {
   FrameLifetime lifetime;
-  for (int k = 0; k < 16; ++k) lifetime.add(0.1, -0.2);
+  for (int k = 0; k < 16; ++k) lifetime.add(0.1, -0.3);
   EXPECT_NEAR(lifetime.longest().value(), -0.2, 1e-9);
   EXPECT_NEAR(lifetime.interval().value(), 0.1, 1e-9);
 }

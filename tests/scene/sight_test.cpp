@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -89,13 +90,30 @@ TEST_F(ASight, DoesNotTellWhereNothingIsMeasured) {
   EXPECT_EQ(at({0.03, 0, 0.4}).says, Says::free);
 }
 
-TEST_F(ASight, BridgesOneFrameThatMeasuresNothing) {
+// A wall with a square of 6 pixels in which nothing is measured.
+DepthOf flickering_wall(double z) {
+  return [=](double x, double y) { return std::max(std::abs(x), std::abs(y)) < 0.0085 ? 0 : z; };
+}
+
+TEST_F(ASight, BridgesASmallHoleForOneFrame) {
   sees(wall(0.5));
-  sees([](double, double) { return 0; });
+  sees(flickering_wall(0.5));
   EXPECT_EQ(at({0, 0, 0.4}).says, Says::free);
-  EXPECT_EQ(at({0, 0, 0.55}).says, Says::solid);
-  sees([](double, double) { return 0; });
+  sees(flickering_wall(0.5));
   EXPECT_EQ(at({0, 0, 0.4}).says, Says::nothing);
+}
+
+TEST_F(ASight, BridgesNoHoleAroundWhichTheNewestFrameMeasuresNothing) {
+  sees(wall(0.5));
+  sees([](double x, double y) { return std::hypot(x, y) < 0.02 ? 0 : 0.48; });
+  EXPECT_EQ(at({0, 0, 0.49}).says, Says::nothing) << "the wall came on";
+}
+
+TEST_F(ASight, BridgesNoHoleAroundWhichASurfaceCame) {
+  sees(wall(0.5));
+  sees(flickering_wall(0.48));
+  EXPECT_EQ(at({0, 0, 0.49}).says, Says::nothing);
+  EXPECT_EQ(at({0, 0, 0.47}).says, Says::free);
 }
 
 // Frames are asked for when they are kDelay old, after `lost` others that never came.
@@ -111,7 +129,7 @@ TEST_F(ASight, AsksTheFrameBeforeForOneMoreFrame) {
       EXPECT_EQ(says(kDelay), Says::free);
     }
     stamp_ += lost * kFramePeriod;
-    sees([](double, double) { return 0; });
+    sees(flickering_wall(0.5));
     EXPECT_EQ(says(kDelay), lost == 0 ? Says::free : Says::nothing) << lost;
     EXPECT_EQ(says(kDelay + kFramePeriod - 1e-3), lost == 0 ? Says::free : Says::nothing) << lost;
     EXPECT_EQ(says(kDelay + kFramePeriod + 1e-3), Says::old) << lost;

@@ -212,8 +212,8 @@ class Source {
   /// What the newest depth frames say of a ball (m, world) at time `now` (s, on the clock of their
   /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
   /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
-  /// once the next one should have replaced it: at the age at which the last 16 frames were
-  /// replaced, three deviations allowed, lost frames left out; of the first nine 2.5 mean intervals
+  /// once the next one should have replaced it: at the longest gap between the stamps of the last
+  /// 16, lost frames left out, and their longest delay; of the first nine 2.5 mean intervals
   /// after it came; at the latest PolicyOptions::silence after that. So is the last one before
   /// keep(); one of set() never is. From raw depths, not from the surface. Nothing for clouds, and
   /// until a frame is pushed after the first call. Any thread but a servo's.
