@@ -20,13 +20,14 @@ constexpr double kOpenAir = 256;     // of R (judgement): who has so much room i
 constexpr double kFirstBall = 0.5;   // of R (judgement); later ones double where there is room
 constexpr double kLeastBall = 0.25;  // of R (judgement): with less room the field is asked
 constexpr double kInAir = 0.3;       // of W: where surfaces end (FieldOptions::minimum_support)
-constexpr double kAir = std::numeric_limits<double>::infinity();  // a field as high as no sheet's
+constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
 constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
 constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
 constexpr double kDeep = 1;       // of R (judgement), from the proxy: less is not held hard
 constexpr double kElsewhere = 1;  // of R that a proxy moves before it is asked again (judgement)
-// Times that a way turns. Measured: of 288 hands in tilted tubes 1 to 4 R in radius, up to 20 R
-// deep, smooth or rough by 0.1 R, 94 are let go with 2, two with 6, none with 12.
+// Times that a way turns. Measured before sheets barred ways whatever their sides: of 288 hands in
+// tilted tubes 1 to 4 R in radius, up to 20 R deep, smooth or rough by 0.1 R, 94 are let go with 2,
+// two with 6, none with 12.
 constexpr int kTurns = 12;
 constexpr double kLeastTurn = 0.2;  // sine (12 degrees) of what is left of a way (judgement)
 constexpr int kAround = 8;          // slanting directions, 45 degrees apart (judgement)
@@ -51,10 +52,9 @@ WayOut::Ray WayOut::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& alon
 /// not fall again. Once it is in air, every sheet is in its way, whatever its sides: one that let
 /// the proxy pass would let the way pass, too.
 bool WayOut::Ray::passes(const Sample& here) noexcept {
-  if (here.support < kInAir) highest = kAir;
-  if (highest == kAir) return here.support < kInAir;
-  if (!(here.value > std::max(0.0, highest - kClear * radius))) return false;
-  highest = std::max(highest, here.value);
+  const double least = std::max(0.0, highest - kClear * radius);
+  if (!(here.value > 0) || !(here.support < kInAir || here.value > least)) return false;
+  highest = here.support < kInAir ? kAir : std::max(highest, here.value);
   return true;
 }
 
@@ -146,6 +146,7 @@ void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
   const End end = walk(probe, effort);
   if (end == End::none) return;
   has_room_ = has_room_ || ray_.room >= kStride * radius;
+  known_ = place;
   ray_ = {};
   if (end == End::open) {
     state_ = State::open;
@@ -157,8 +158,8 @@ void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
 bool WayOut::is_shut_in(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                         const Eigen::Vector3d& hip) noexcept {
   const double radius = probe.step_length();
-  const bool moved = (place - known_).norm() >= kElsewhere * radius;
-  if (state_ == State::free || (state_ == State::open && moved)) ask(place);
+  const bool moved = state_ != State::asked && (place - known_).norm() >= kElsewhere * radius;
+  if (state_ == State::free || moved) ask(place);
   if (!was_out_ || state_ == State::open || (place - hip).norm() < kDeep * radius) return false;
   if (state_ != State::shut) {
     look_around(probe, place, normal);

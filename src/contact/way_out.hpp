@@ -67,7 +67,7 @@ class WayOut {
   State state_ = State::free;
   int direction_ = 0;                                // of the ray
   bool has_room_ = false;                            // is there any beside the proxy?
-  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // where the proxy's way was asked for, m
+  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // the proxy, when a way was looked for last, m
   bool was_out_ = false;                             // since the last reset
 };
 
