@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/requirement.hpp"
 #include "geometry/cell_builder.hpp"
 #include "geometry/parallel.hpp"
 #include "prepare/assemble.hpp"
@@ -27,7 +28,7 @@ using Eigen::Vector3f;
 // it, which is not worth the halos; judgement.
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;
 
-// Typical R of its level: the halo of a block. Measured: of 2, 3 and 5 all leave blocks alike
+// Typical R of its level: the halo of a block. Measured: 2, 3 and 5 give nearly the same columns
 // (docs/preparation.md).
 constexpr double kHalo = 3;
 // The same on further levels, where R is 1.5 to 6 of these; there it costs little; judgement.
@@ -127,6 +128,8 @@ PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
   if (options.viewpoint) options.viewpoint = placed.viewpoint;
   if (options.facts) {
     detail::require_finite(placed.cloud().positions);
+    const Requirement require{"preparation"};
+    require.positive("facts.radius", options.facts->radius, "give a typical R above 0, in metres");
   } else {
     options.facts = measure_facts(placed.cloud(), options);
   }
@@ -141,6 +144,12 @@ Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
       viewpoint_(placed.viewpoint),
       facts_(*options_.facts),
       division_(cloud_, facts_) {}
+
+Box Blocks::box(std::size_t block) const {
+  const Vector3d reach = Vector3d::Constant(0.5 * halo(block));
+  const Box& own = division_.box(block);
+  return Box{own.lower - reach, own.upper + reach};
+}
 
 double Blocks::halo(std::size_t block) const {
   const double radius = division_.radius(block);

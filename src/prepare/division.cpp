@@ -26,10 +26,11 @@ constexpr std::uint32_t kEnoughAround = 60;
 constexpr int kPartShift = 2;
 constexpr int kParts = 1 << kPartShift;  // derived
 
-// Parts along an axis either way; derived: 21 bits each.
-constexpr double kMostPlaces = 1 << 20;
+// Parts along an axis either way; derived: 21 bits each. Points farther out, 1.6 million R, count
+// as if they were in the outermost ones.
+constexpr double kMostParts = 1 << 20;
 
-/// Calls visit(place) for a place and the 26 around it, itself first.
+/// Calls visit(index) for an index and the 26 around it, itself first.
 template <class Visit>
 void each_around(const std::array<std::int32_t, 3>& at, const Visit& visit) {
   for (int n = 13; n < 13 + 27; ++n) {
@@ -38,7 +39,7 @@ void each_around(const std::array<std::int32_t, 3>& at, const Visit& visit) {
   }
 }
 
-/// The place in a grid with 2^shift times the edge that holds a place.
+/// The index, in a grid with 2^shift times the edge, of what holds the cell with an index.
 std::array<std::int32_t, 3> coarser(std::array<std::int32_t, 3> at, int shift) {
   for (std::int32_t& axis : at) axis >>= shift;
   return at;
@@ -53,7 +54,7 @@ int number_in_cell(const std::array<std::int32_t, 3>& part) {
 std::uint64_t key_of(const std::array<std::int32_t, 3>& at) {
   std::uint64_t key = 0;
   for (const std::int32_t axis : at) {
-    key = key << 21 | static_cast<std::uint64_t>(axis + static_cast<std::int32_t>(kMostPlaces));
+    key = key << 21 | static_cast<std::uint64_t>(axis + static_cast<std::int32_t>(kMostParts));
   }
   return key;
 }
@@ -61,7 +62,7 @@ std::uint64_t key_of(const std::array<std::int32_t, 3>& at) {
 }  // namespace
 
 template <class T>
-std::uint32_t Division::Grid<T>::number_at(const Place& at) {
+std::uint32_t Division::Grid<T>::number_at(const Index& at) {
   const auto [found, is_new] =
       numbers.try_emplace(key_of(at), static_cast<std::uint32_t>(all.size()));
   if (is_new) all.emplace_back().at = at;
@@ -69,7 +70,7 @@ std::uint32_t Division::Grid<T>::number_at(const Place& at) {
 }
 
 template <class T>
-const T* Division::Grid<T>::find(const Place& at) const {
+const T* Division::Grid<T>::find(const Index& at) const {
   const auto found = numbers.find(key_of(at));
   return found == numbers.end() ? nullptr : &all[found->second];
 }
@@ -93,15 +94,16 @@ Division::Division(const PointCloud& cloud, const CloudFacts& facts)
 
 /// Adds a level of these points and replaces them by those of the next one.
 void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::uint8_t>& waits) {
-  const double scale = std::pow(kCoarser, static_cast<double>(levels_.size()));
+  const double radius = levels_.empty() ? radius_ : kCoarser * levels_.back().radius;
   Level& level = levels_.emplace_back();
-  level.cell = std::ldexp(kBlockEdge * radius_ * scale, -kCellShift);
+  level.radius = radius;
+  level.cell = std::ldexp(kBlockEdge * radius, -kCellShift);
   std::vector<std::uint32_t> cells(members.size());
   std::vector<std::uint8_t> first(members.size());  // of its part of a cell
-  Place last{};
+  Index last{};
   for (std::size_t k = 0; k < members.size(); ++k) {
-    const Place part = place_of(cloud_.point(members[k]), level.cell / kParts);
-    const Place at = coarser(part, kPartShift);
+    const Index part = index_of(cloud_.point(members[k]), level.cell / kParts);
+    const Index at = coarser(part, kPartShift);
     cells[k] = k > 0 && at == last ? cells[k - 1] : level.cells.number_at(at);
     last = at;
     Cell& cell = level.cells.all[cells[k]];
@@ -110,10 +112,16 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
     first[k] = (cell.taken & bit) == 0 ? 1 : 0;
     cell.taken |= bit;
   }
-  settle(level);
+  // A level whose cells are as large as the cloud takes all that is left.
+  const bool is_last = !(level.cell < extent_.size().maxCoeff());
+  std::vector<std::size_t> in_cubes;  // points
   for (Cell& cell : level.cells.all) {
+    cell.settled = is_last || level.has_enough(cell.at);
     cell.cube = level.cubes.number_at(coarser(cell.at, kCellShift));
+    in_cubes.resize(level.cubes.all.size());
+    in_cubes[cell.cube] += cell.points;
   }
+  for (std::size_t c = 0; c < in_cubes.size(); ++c) level.cubes.all[c].points.reserve(in_cubes[c]);
   bool more = false;
   std::vector<std::uint32_t> next;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -133,28 +141,20 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
   members = std::move(next);
 }
 
-/// Decides in which cells points are prepared on this level. One whose cells are as large as the
-/// cloud takes all that is left.
-void Division::settle(Level& level) const {
-  const bool is_last = level.cell >= extent_.size().maxCoeff();
-  for (Cell& cell : level.cells.all) cell.settled = is_last || level.has_enough(cell.at);
-}
-
-bool Division::Level::has_enough(const Place& at) const {
+bool Division::Level::has_enough(const Index& at) const {
   std::uint32_t points = 0;
-  each_around(at, [&](const Place& near) {
+  each_around(at, [&](const Index& near) {
     const Cell* const there = points < kEnoughAround ? cells.find(near) : nullptr;
     if (there != nullptr) points += there->points;
   });
   return points >= kEnoughAround;
 }
 
-Division::Place Division::place_of(const Vector3d& point, double edge) const {
+Division::Index Division::index_of(const Vector3d& point, double edge) const {
   const Vector3d at = (point - extent_.lower) / edge;
   // Not negative, so that a conversion rounds down; that is faster than std::floor().
-  const Vector3d counted =
-      at.cwiseMax(-kMostPlaces).cwiseMin(kMostPlaces - 1).array() + kMostPlaces;
-  const Eigen::Vector3i place = counted.cast<int>().array() - static_cast<int>(kMostPlaces);
+  const Vector3d counted = at.cwiseMax(-kMostParts).cwiseMin(kMostParts - 1).array() + kMostParts;
+  const Eigen::Vector3i place = counted.cast<int>().array() - static_cast<int>(kMostParts);
   return {place.x(), place.y(), place.z()};
 }
 
@@ -163,28 +163,28 @@ const Division::Cube& Division::cube(std::size_t block) const {
 }
 
 double Division::radius(std::size_t block) const {
-  return std::ldexp(levels_[blocks_[block].level].cell, kCellShift) / kBlockEdge;
+  return levels_[blocks_[block].level].radius;
+}
+
+/// Also for means of points, which may lie where no cell is.
+bool Division::Level::is_settled(const Index& part) const {
+  const Index at = coarser(part, kPartShift);
+  const Cell* const found = cells.find(at);
+  return found != nullptr ? found->settled : has_enough(at);
 }
 
 bool Division::owns(std::size_t block, const Vector3d& place) const {
-  const auto is_settled = [&](const Level& level) {  // also where means of points are
-    const Place at = coarser(place_of(place, level.cell / kParts), kPartShift);
-    const Cell* const cell = level.cells.find(at);
-    return cell != nullptr ? cell->settled : level.has_enough(at);
-  };
-  const std::size_t level = blocks_[block].level;
-  const Place part = place_of(place, levels_[level].cell / kParts);
-  if (coarser(part, kPartShift + kCellShift) != cube(block).at) return false;
-  const auto first = levels_.begin();
-  return std::none_of(first, first + static_cast<std::ptrdiff_t>(level), is_settled) &&
-         (level + 1 == levels_.size() || is_settled(levels_[level]));
+  std::size_t k = 0;
+  const auto part = [&] { return index_of(place, levels_[k].cell / kParts); };
+  while (k + 1 < levels_.size() && !levels_[k].is_settled(part())) ++k;
+  return k == blocks_[block].level && coarser(part(), kPartShift + kCellShift) == cube(block).at;
 }
 
 std::vector<std::uint32_t> Division::around(std::size_t block, double reach) const {
   const Level& level = levels_[blocks_[block].level];
   const Box& own = box(block);
   std::vector<std::uint32_t> found;
-  each_around(cube(block).at, [&](const Place& at) {
+  each_around(cube(block).at, [&](const Index& at) {
     const Cube* const near = level.cubes.find(at);
     if (near == nullptr) return;
     for (const std::uint32_t i : near->points) {

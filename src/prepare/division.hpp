@@ -35,39 +35,41 @@ class Division {
   [[nodiscard]] const Box& box(std::size_t block) const { return cube(block).box; }
   /// Do points at this place (world frame, m) belong to the block?
   [[nodiscard]] bool owns(std::size_t block, const Eigen::Vector3d& place) const;
-  /// The points of the block's level up to `reach` around its box, which is at most an edge of its
-  /// cube, m. Rising.
+  /// The points of the block's level up to `reach` (m, at most an edge of its cube) around its box.
+  /// Rising.
   [[nodiscard]] std::vector<std::uint32_t> around(std::size_t block, double reach) const;
 
  private:
-  using Place = std::array<std::int32_t, 3>;  // of a cell or cube in its grid
+  using Index = std::array<std::int32_t, 3>;  // cell or cube in its grid
   struct Cell {
-    Place at{};
+    Index at{};
     std::uint32_t points = 0;
     std::uint64_t taken = 0;  // a bit for each part of it: was a point seen there?
     bool settled = false;     // are enough points around to prepare those in it on this level?
     std::uint32_t cube = 0;
   };
   struct Cube {
-    Place at{};
+    Index at{};
     std::vector<std::uint32_t> points;
-    std::size_t own = 0;  // points that belong to it
-    Box box = {};         // of these
+    std::size_t own = 0;  // how many points belong to it
+    Box box = {};         // around these, m
   };
   template <class T>
   struct Grid {
     std::vector<T> all;
-    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by place
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // in `all`, for each index
 
-    std::uint32_t number_at(const Place& at);  // of one that is made if there is none
-    [[nodiscard]] const T* find(const Place& at) const;
+    std::uint32_t number_at(const Index& at);  // makes what is not there
+    [[nodiscard]] const T* find(const Index& at) const;
   };
   struct Level {
-    double cell = 0;  // edge, m
+    double radius = 0;  // typical R, m
+    double cell = 0;    // edge, m
     Grid<Cell> cells;
     Grid<Cube> cubes;
 
-    [[nodiscard]] bool has_enough(const Place& at) const;  // points in and around a cell
+    [[nodiscard]] bool has_enough(const Index& at) const;  // points in and around a cell
+    [[nodiscard]] bool is_settled(const Index& part) const;
   };
   struct Block {
     std::size_t level;
@@ -75,15 +77,14 @@ class Division {
   };
 
   void add_level(std::vector<std::uint32_t>& members, std::vector<std::uint8_t>& waits);
-  void settle(Level& level) const;
-  [[nodiscard]] Place place_of(const Eigen::Vector3d& point, double edge) const;
+  [[nodiscard]] Index index_of(const Eigen::Vector3d& point, double edge) const;
   [[nodiscard]] const Cube& cube(std::size_t block) const;
 
   const PointCloud& cloud_;
   Box extent_;
   double radius_;  // typical R of level 0, m
   std::vector<Level> levels_;
-  std::vector<Block> blocks_;  // by level and place
+  std::vector<Block> blocks_;  // rising by level and index
 };
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "palpate/prepare/prepare.hpp"
+#include "prepare/blocks.hpp"
 
 namespace palpate {
 namespace {
@@ -42,11 +43,14 @@ PointCloud with_strays(PointCloud cloud, int count, double high) {
 
 /// Points that all blocks are prepared with.
 std::size_t work(const PointCloud& cloud) {
-  const CloudFacts facts = measure_facts(cloud, {});
-  const Division division(cloud, facts);
+  PrepareOptions options;
+  options.facts = measure_facts(cloud, options);
+  const Placed placed = place(cloud, options, Eigen::Isometry3d::Identity());
+  const Blocks blocks(placed, options);
+  const Division division(cloud, *options.facts);
   std::size_t points = 0;
   for (std::size_t k = 0; k < division.size(); ++k) {
-    points += division.around(k, 3 * division.radius(k)).size();
+    points += division.around(k, blocks.halo(k)).size();
   }
   return points;
 }
@@ -70,10 +74,14 @@ TEST(Division, EachPointBelongsToOneBlock) {
 
 TEST(Division, BlocksOfAnEvenSheetAreOfOneSize) {
   const PointCloud cloud = ground();
-  const CloudFacts facts = measure_facts(cloud, {});
-  const Division division(cloud, facts);
-  for (std::size_t k = 0; k < division.size(); ++k) {
-    EXPECT_EQ(division.radius(k), facts.radius);
+  CloudFacts facts = measure_facts(cloud, {});
+  const double measured = facts.radius;
+  for (int i = 0; i < 20; ++i) {  // whatever its last digits
+    facts.radius = measured * (1 + 0.01 * i);
+    const Division division(cloud, facts);
+    for (std::size_t k = 0; k < division.size(); ++k) {
+      EXPECT_EQ(division.radius(k), facts.radius);
+    }
   }
 }
 

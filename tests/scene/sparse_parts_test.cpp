@@ -93,17 +93,12 @@ TEST(SparseParts, AreFeltAsWhereAllIsPreparedTogether) {
   }
 }
 
-TEST(SparseParts, ArePreparedOnDemandWhereAToolComesNear) {
-  constexpr double kSparser = 30;
-  const auto cloud = std::make_shared<const PointCloud>(floor_around_patch(kSparser));
-  SourceOptions options;
-  options.prepare.facts = measure_facts(*cloud, {});
-  Scene whole;
-  whole.add("cloud", *cloud, options);
+/// Is a place prepared as in the whole once the field says nothing is missing there?
+void expect_prepared_at(const Vector3d& place, const std::shared_ptr<const PointCloud>& cloud,
+                        const SourceOptions& options, Scene& whole) {
   Scene some;
   Source& source = some.add("cloud", options);
   OnDemand demand(cloud, options.prepare);
-  const Vector3d place(kSide / 2 + 10.5 * kSparser * kFine, 0.1, 0);
   SceneField field(some);
   double time = 1;
   while (!source.points()) demand.advance(source, time);
@@ -114,6 +109,19 @@ TEST(SparseParts, ArePreparedOnDemandWhereAToolComesNear) {
   EXPECT_GT(press(some, place.x(), place.y()), 2);
   while (!demand.done()) demand.advance(source, time);
   EXPECT_EQ(press(some, place.x(), place.y()), press(whole, place.x(), place.y()));
+}
+
+TEST(SparseParts, ArePreparedOnDemandWhereAToolComesNear) {
+  constexpr double kSparser = 100;
+  const auto cloud = std::make_shared<const PointCloud>(floor_around_patch(kSparser));
+  SourceOptions options;
+  options.prepare.facts = measure_facts(*cloud, {});
+  Scene whole;
+  whole.add("cloud", *cloud, options);
+  for (const double beside : {0.3, 0.5, 0.8, 10.5}) {  // spacings of the floor
+    SCOPED_TRACE(beside);
+    expect_prepared_at({kSide / 2 + beside * kSparser * kFine, 0.1, 0}, cloud, options, whole);
+  }
 }
 
 }  // namespace

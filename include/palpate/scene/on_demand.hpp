@@ -23,7 +23,7 @@ class OnDemand {
   /// Is the cloud so large that a person would wait for it, and prepared in a way that allows it?
   [[nodiscard]] static bool suits(const PointCloud& cloud, const PrepareOptions& options);
 
-  /// Measures the cloud's facts and divides it, which takes some tenths of a second.
+  /// Measures the cloud's facts and divides it, which takes about a second for 10 million points.
   /// @throws Error as prepare() does.
   OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
            const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
