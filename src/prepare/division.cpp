@@ -113,15 +113,7 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
     cell.taken |= bit;
   }
   // A level whose cells are as large as the cloud takes all that is left.
-  const bool is_last = !(level.cell < extent_.size().maxCoeff());
-  std::vector<std::size_t> in_cubes;  // points
-  for (Cell& cell : level.cells.all) {
-    cell.settled = is_last || level.has_enough(cell.at);
-    cell.cube = level.cubes.number_at(coarser(cell.at, kCellShift));
-    in_cubes.resize(level.cubes.all.size());
-    in_cubes[cell.cube] += cell.points;
-  }
-  for (std::size_t c = 0; c < in_cubes.size(); ++c) level.cubes.all[c].points.reserve(in_cubes[c]);
+  level.make_cubes(!(level.cell < extent_.size().maxCoeff()));
   bool more = false;
   std::vector<std::uint32_t> next;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -139,6 +131,18 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
   }
   if (!more) next.clear();
   members = std::move(next);
+}
+
+/// Decides in which cells points are prepared on this level and makes room for all that is in them.
+void Division::Level::make_cubes(bool takes_all) {
+  std::vector<std::size_t> in_cubes;  // points
+  for (Cell& in : cells.all) {
+    in.settled = takes_all || has_enough(in.at);
+    in.cube = cubes.number_at(coarser(in.at, kCellShift));
+    in_cubes.resize(cubes.all.size());
+    in_cubes[in.cube] += in.points;
+  }
+  for (std::size_t c = 0; c < in_cubes.size(); ++c) cubes.all[c].points.reserve(in_cubes[c]);
 }
 
 bool Division::Level::has_enough(const Index& at) const {

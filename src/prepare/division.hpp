@@ -68,6 +68,7 @@ class Division {
     Grid<Cell> cells;
     Grid<Cube> cubes;
 
+    void make_cubes(bool takes_all);
     [[nodiscard]] bool has_enough(const Index& at) const;  // points in and around a cell
     [[nodiscard]] bool is_settled(const Index& part) const;
   };
