@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "prepare/plane_fits.hpp"
 #include "prepare/radii.hpp"
 
 namespace palpate {
