@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "palpate/field/field_options.hpp"
+
 namespace palpate {
 namespace {
 
@@ -19,7 +21,7 @@ constexpr int kMostWork = 8000;  // points, a step on the other ways: some 25 us
 constexpr double kOpenAir = 256;     // of R (judgement): who has so much room is in no body
 constexpr double kFirstBall = 0.5;   // of R (judgement); later ones double where there is room
 constexpr double kLeastBall = 0.25;  // of R (judgement): with less room the field is asked
-constexpr double kInAir = 0.3;       // of W: where surfaces end (FieldOptions::minimum_support)
+constexpr double kSurfaceEnds = FieldOptions{}.minimum_support;   // of W (derived)
 constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
 constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
 constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
@@ -53,8 +55,8 @@ WayOut::Ray WayOut::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& alon
 /// the proxy pass would let the way pass, too.
 bool WayOut::Ray::passes(const Sample& here) noexcept {
   const double least = std::max(0.0, highest - kClear * radius);
-  if (!(here.value > 0) || !(here.support < kInAir || here.value > least)) return false;
-  highest = here.support < kInAir ? kAir : std::max(highest, here.value);
+  if (!(here.value > 0) || !(here.support < kSurfaceEnds || here.value > least)) return false;
+  highest = here.support < kSurfaceEnds ? kAir : std::max(highest, here.value);
   return true;
 }
 

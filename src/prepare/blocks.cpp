@@ -145,12 +145,6 @@ Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
       facts_(*options_.facts),
       division_(cloud_, facts_) {}
 
-Box Blocks::box(std::size_t block) const {
-  const Vector3d reach = Vector3d::Constant(0.5 * halo(block));
-  const Box& own = division_.box(block);
-  return Box{own.lower - reach, own.upper + reach};
-}
-
 double Blocks::halo(std::size_t block) const {
   const double radius = division_.radius(block);
   return (radius > facts_.radius ? kSparseHalo : kHalo) * radius;

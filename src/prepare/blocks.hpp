@@ -38,9 +38,8 @@ class Blocks {
   [[nodiscard]] const CloudFacts& facts() const { return facts_; }
   [[nodiscard]] std::size_t size() const { return division_.size(); }
 
-  /// The box that the surface of a block's points usually reaches, which is half of its halo around
-  /// them, world frame, m.
-  [[nodiscard]] Box box(std::size_t block) const;
+  /// The box of a block's points, world frame, m.
+  [[nodiscard]] const Box& box(std::size_t block) const { return division_.box(block); }
 
   /// How far around that points count for it, m.
   [[nodiscard]] double halo(std::size_t block) const;

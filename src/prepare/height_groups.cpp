@@ -43,7 +43,7 @@ bool may_fall_apart(std::span<const double> heights, double spacing) {
   const auto count = static_cast<double>(heights.size());
   const double variance = (squares - sum * sum / count) / count;
   // That of two groups is within^2 + share (1 - share) way^2, where kApart within fit into the way
-  // between their means: it tells how long the way is at least, and thereby the gap.
+  // between their means: it tells how long the way is at least, so it bounds the gap, too.
   constexpr double kLeast = 0.999 * kEmpty * kEmpty;  // derived: less than rounding takes
   double below = 0;
   int last = 0;

@@ -76,7 +76,7 @@ struct KnownSigns {
   std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
                                            ///< not finite; empty: none
   std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
-  std::optional<Eigen::Vector3d> middle;   ///< of the whole cloud, likewise; empty: these are all
+  std::optional<Eigen::Vector3d> middle;   ///< of the whole cloud, m; empty: these are all
 };
 
 /// A point that lies on a second sheet, too, where two meet in a crease or at an edge.

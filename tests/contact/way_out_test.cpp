@@ -47,7 +47,7 @@ class WallsField : public Field {
 };
 
 /// A hollow ball around the origin.
-class HollowBall final : public WallsField {
+class HollowBall : public WallsField {
  public:
   static constexpr double kOuter = 0.06;  // m
 
@@ -59,22 +59,17 @@ class HollowBall final : public WallsField {
 
 /// A hollow ball whose wall is free around its top, as where points have wrong normals, though they
 /// weigh there what they weigh anywhere else.
-class BallOfWrongNormals final : public Field {
+class BallOfWrongNormals final : public HollowBall {
  public:
   [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
-    Sample sample = ball_.sample(x);
+    Sample sample = HollowBall::sample(x);
     sample.support = std::clamp(1 - sample.value / (0.6 * kR), 0.0, 1.0);
     if (x.z() > 0.8 * x.norm()) sample.value = std::abs(sample.value) + 0.1 * kR;
     return sample;
   }
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
-    return ball_.is_free({ball.center, ball.radius + 0.4 * kR});
+    return HollowBall::is_free({ball.center, ball.radius + 0.4 * kR});
   }
-  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
-  [[nodiscard]] Traits traits() const noexcept override { return ball_.traits(); }
-
- private:
-  HollowBall ball_;
 };
 
 /// Two square plates that face each other across a gap, or meet at an edge.
