@@ -7,8 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "palpate/field/field_options.hpp"
-
 namespace palpate {
 namespace {
 
@@ -18,10 +16,10 @@ constexpr int kFirstLooks = 4;   // a step
 constexpr int kFirstWork = 1;    // points: one sample a step
 constexpr int kMostWork = 8000;  // points, a step on the other ways: some 25 us (judgement)
 
-constexpr double kOpenAir = 256;     // of R (judgement): who has so much room is in no body
-constexpr double kFirstBall = 0.5;   // of R (judgement); later ones double where there is room
-constexpr double kLeastBall = 0.25;  // of R (judgement): with less room the field is asked
-constexpr double kSurfaceEnds = FieldOptions{}.minimum_support;   // of W (derived)
+constexpr double kOpenAir = 256;      // of R (judgement): who has so much room is in no body
+constexpr double kFirstBall = 0.5;    // of R (judgement); later ones double where there is room
+constexpr double kLeastBall = 0.25;   // of R (judgement): with less room the field is asked
+constexpr double kSurfaceEnds = 0.3;  // of W: the default of FieldOptions::minimum_support
 constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
 constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
 constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
