@@ -51,6 +51,12 @@ float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
   return 0;
 }
 
+/// The side of the square grid whose holes are as wide as those between lines, m: their half
+/// diagonals are equal. `along`: from a point to the next one on its line, m.
+float side_of_square(float gap, float along) {
+  return std::sqrt((gap * gap + along * along) / 2);
+}
+
 }  // namespace
 
 Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
@@ -92,28 +98,83 @@ bool lies_in_lines(const CellGrid& grid) {
   return looked > 0 && static_cast<float>(lines) >= kLines * static_cast<float>(looked);
 }
 
-void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
-  std::vector<float> gaps(spacings.size());
-  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+namespace {
+
+/// The spacing of the nearest point beside a line whose own gap is as wide as the way to it, m; 0:
+/// there is none. The square of a gap is at most 2 s^2 (side_of_square).
+float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
+                     std::span<const float> spacings, std::vector<std::uint32_t>& near) {
+  float reach = 2 * line.spacing;
+  for (int k = 0; k < kLineWidenings; ++k, reach *= 2) {
+    near.clear();
+    grid.within(grid.points()[i], reach, near);
+    if (near.size() > kEnough) break;
+    float nearest = reach;
+    float spacing = 0;
+    for (const std::uint32_t j : near) {
+      const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
+      const float length = way.norm();
+      if (length >= nearest || way.squaredNorm() >= 2 * spacings[j] * spacings[j]) continue;
+      if (std::abs(way.dot(line.along)) > kAside * length) continue;
+      nearest = length;
+      spacing = spacings[j];
+    }
+    if (spacing > 0) return spacing;
+  }
+  return 0;
+}
+
+/// The side of the square grid whose holes are as wide as those between lines, m, at each point of
+/// a line with others on both sides; 0 elsewhere.
+std::vector<float> sides_of_squares(const CellGrid& grid) {
+  std::vector<float> sides(grid.size());
+  detail::parallel_ranges(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Neighbor> found;
     std::vector<std::uint32_t> near;
     for (std::size_t i = begin; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);
       const Line line = line_at(grid, at, found);
       if (line.off >= kThin) continue;
-      gaps[i] = gap_across(grid, at, line, 2 * line.spacing, kLineWidenings, near);
+      const float gap = gap_across(grid, at, line, 2 * line.spacing, kLineWidenings, near);
+      if (gap > 0) sides[i] = side_of_square(gap, line.spacing / 2);
     }
   });
-  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+  return sides;
+}
+
+/// The median of the sides at the nearest points along a line; 0: none has one.
+std::vector<float> averaged_along(const CellGrid& grid, const std::vector<float>& sides) {
+  std::vector<float> averaged(sides.size());
+  detail::parallel_ranges(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<CellGrid::Neighbor> found;
     std::vector<float> around;
     for (std::size_t i = begin; i < end; ++i) {
       grid.nearest(grid.points()[i], kAlongLine, found);
       around.clear();
       for (const CellGrid::Neighbor& other : found) {
-        if (gaps[other.index] > 0) around.push_back(gaps[other.index]);
+        if (sides[other.index] > 0) around.push_back(sides[other.index]);
       }
-      spacings[i] = std::max(spacings[i], static_cast<float>(median(around)));
+      averaged[i] = static_cast<float>(median(around));
+    }
+  });
+  return averaged;
+}
+
+}  // namespace
+
+void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
+  const std::vector<float> sides = averaged_along(grid, sides_of_squares(grid));
+  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellGrid::Neighbor> found;
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto at = static_cast<std::uint32_t>(i);
+      float side = sides[i];
+      if (side <= 0) {
+        const Line line = line_at(grid, at, found);
+        if (line.off < kThin) side = spacing_beside(grid, at, line, sides, near);
+      }
+      spacings[i] = std::max(spacings[i], side);
     }
   });
 }

@@ -30,8 +30,9 @@ struct Line {
 /// than those of the next line?
 [[nodiscard]] bool lies_in_lines(const CellGrid& grid);
 
-/// Raises the spacings (m) of points on lines to the way to the next lines on both sides, so that
-/// supports bridge it. Looks for lines up to 30 times as far apart as points.
+/// Raises the spacings (m) of points on lines to those of the square grid with equally wide holes,
+/// so that supports bridge the gaps between lines. Points without lines on both sides take the
+/// spacing of the next line. Looks for lines up to 30 times as far apart as points.
 void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings);
 
 }  // namespace palpate

@@ -56,7 +56,8 @@ void measure_of_all(const PrepareOptions& options, Sampling& sampling) {
   if (options.facts || options.paper) return;
   const CellGrid& grid = sampling.grid;
   sampling.facts.noise = measure_noise(grid, sampling.spacing);
-  if (!options.radius) sampling.facts.irregular = is_irregular(grid, sampling.spacings);
+  if (options.radius || sampling.facts.in_lines) return;
+  sampling.facts.irregular = is_irregular(grid, sampling.spacings);
 }
 
 bool is_noisy(const CloudFacts& facts) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
@@ -37,15 +38,20 @@ std::vector<float> widened(const CellGrid& grid) {
   return spacings;
 }
 
-TEST(Lines, HaveTheSpacingOfTheWayToTheNext) {
+// A square grid's holes reach s / sqrt(2) from its points, those between lines half the way from
+// one point to the opposite one.
+TEST(Lines, HaveTheSpacingOfTheSquareGridWithTheSameHoles) {
   for (const float ratio : {5.f, 6.f, 10.f}) {
     const std::vector<float> spacings = widened(lines_of(25, ratio));
-    EXPECT_NEAR(median(spacings), kGap, 0.1 * kGap) << ratio;
-    // The first and the last line have a next one on one side alone, and keep their own.
-    const auto wide = std::ranges::count_if(spacings, [](float s) { return s > 0.9f * kGap; });
-    EXPECT_GT(static_cast<double>(wide), 0.9 * static_cast<double>(spacings.size())) << ratio;
-    EXPECT_LT(*std::ranges::max_element(spacings), 1.5f * kGap) << ratio;
+    const float expected = kGap * std::sqrt((1 + 1 / (ratio * ratio)) / 2);
+    EXPECT_NEAR(median(spacings), expected, 0.1 * expected) << ratio;
+    EXPECT_LT(*std::ranges::max_element(spacings), 1.5f * expected) << ratio;
   }
+}
+
+TEST(Lines, AtTheRimHaveTheSpacingOfTheNextLine) {
+  const std::vector<float> spacings = widened(lines_of(25, 10));
+  EXPECT_GT(*std::ranges::min_element(spacings), 0.6f * kGap);
 }
 
 TEST(Lines, AreNoGrids) {
