@@ -206,7 +206,7 @@ class Gunzip {
   }
 
   void grow() {
-    const std::size_t allowed = std::max(kAlwaysAllowed, kLargestRatio * input_.bytes.size());
+    const std::size_t allowed = largest_unpacked(input_.bytes.size());
     if (out_.size() >= allowed) {
       fail(input_,
            fmt::format("unpacks to more than {} MiB, over {} times its size", allowed >> 20U,
@@ -225,6 +225,10 @@ class Gunzip {
 };
 
 }  // namespace
+
+std::size_t largest_unpacked(std::size_t packed) {
+  return std::max(kAlwaysAllowed, kLargestRatio * packed);
+}
 
 Bytes gunzip(const Input& input, std::size_t most) {
   return Gunzip(input, most).run();
