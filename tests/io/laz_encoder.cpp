@@ -78,9 +78,9 @@ std::string laz_of(std::string_view las, const LazWriting& writing) {
   const std::size_t record = load<std::uint16_t>(las, 105);
   const std::size_t begin = load<std::uint32_t>(las, 96);
   const std::size_t header = load<std::uint16_t>(las, 94);
-  std::string bytes(las.substr(0, header));
+  std::string bytes = std::string(las.substr(0, header)) + writing.record;
   bytes += description(format, record, writing.varying ? 0xFFFFFFFFU : writing.chunk);
-  overwrite<std::uint32_t>(bytes, 100, 1);
+  overwrite<std::uint32_t>(bytes, 100, writing.record.empty() ? 1 : 2);
   overwrite<std::uint32_t>(bytes, 96, static_cast<std::uint32_t>(bytes.size()));
   overwrite(bytes, 104, static_cast<std::uint8_t>(format | 128));
   const std::size_t place = bytes.size();

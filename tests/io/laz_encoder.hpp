@@ -9,6 +9,7 @@ namespace palpate {
 struct LazWriting {
   std::uint32_t chunk = 50000;  ///< points
   bool varying = false;         ///< chunks of different sizes, `chunk` at most
+  std::string record{};         ///< a record of the header, its own header included
   bool place_at_end = false;    ///< the place of the chunk table is at the end of the file
 };
 

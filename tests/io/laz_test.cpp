@@ -133,11 +133,17 @@ TEST(Laz, HoldsNoMorePointsThanItsBytesCan) {
   overwrite(bytes, kDescription + 12, std::numeric_limits<std::uint32_t>::max() - 1);
   overwrite(bytes, 107, std::numeric_limits<std::uint32_t>::max() - 1);
   EXPECT_THAT(refusal(bytes), HasSubstr("chunk 1 of 4294967294 points"));
-  overwrite<std::uint32_t>(bytes, 107, 10'000'000);
-  EXPECT_THAT(refusal(bytes), HasSubstr("announces 10000000 points in"));
   const std::size_t table = static_cast<std::size_t>(load<std::int64_t>(bytes, kPoints));
   overwrite(bytes, table + 4, std::numeric_limits<std::uint32_t>::max());
   EXPECT_THAT(refusal(bytes), HasSubstr("a table of 4294967295 chunks"));
+}
+
+// Each chunk may be as large as it says, but not all of them together.
+TEST(Laz, HoldsNoMorePointsInAllThanItsBytesCan) {
+  std::string bytes = laz_of(survey_of({.points = 3000}), {.chunk = 100});
+  overwrite<std::uint32_t>(bytes, kDescription + 12, 300'000);
+  overwrite<std::uint32_t>(bytes, 107, 9'000'000);
+  EXPECT_THAT(refusal(bytes), HasSubstr("announces 9000000 points in"));
 }
 
 TEST(Laz, AFileCutAnywhereIsRefused) {

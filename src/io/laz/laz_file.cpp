@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "io/file_bytes.hpp"
 #include "io/laz/range_decoder.hpp"
 #include "io/text_scanner.hpp"
 
@@ -81,6 +82,10 @@ void check_items(const Input& input, const LasHeader& header, std::size_t record
 }
 
 }  // namespace
+
+bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points) {
+  return bytes >= header.record_size && points <= largest_unpacked(bytes) / sizeof(LasPoint);
+}
 
 std::optional<std::size_t> read_chunk_size(const Input& input, const LasHeader& header) {
   if (header.format > 8 || header.format == 4 || header.format == 5) {
@@ -174,8 +179,6 @@ class ChunkTableReader {
   }
 
   void check(const Chunk& chunk, std::size_t i) const {
-    // A point takes 1/1000 of a byte at least, as its three coordinates are one symbol each.
-    constexpr std::size_t kMostPointsAByte = 4096;
     if (chunk.bytes > table_ - chunk.place) {
       wrong(fmt::format("chunk {} of {} bytes at byte {} reaches into the table", i + 1,
                         chunk.bytes, chunk.place));
@@ -184,8 +187,7 @@ class ChunkTableReader {
       wrong(fmt::format("chunk {} ends with point {}, but the header announces {}", i + 1,
                         chunk.first + chunk.points, header_.points));
     }
-    if (chunk.points > 0 &&
-        (chunk.bytes < header_.record_size || chunk.points / kMostPointsAByte > chunk.bytes)) {
+    if (chunk.points > 0 && !can_hold(header_, chunk.bytes, chunk.points)) {
       wrong(fmt::format("chunk {} of {} points has {} bytes, which cannot hold them", i + 1,
                         chunk.points, chunk.bytes));
     }
