@@ -45,20 +45,4 @@ class Bytes {
 [[nodiscard]] Bytes gunzip(const Input& input,
                            std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// Bytes under a path, for libraries that read nothing but files: a file in memory (Linux memfd),
-/// gone with this object.
-class MemoryFile {
- public:
-  /// @throws Error when the system grants no such file, or no room for it.
-  explicit MemoryFile(std::span<const std::byte> bytes);
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile();
-
-  [[nodiscard]] std::string path() const;
-
- private:
-  int fd_;
-};
-
 }  // namespace palpate::io
