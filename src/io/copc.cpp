@@ -93,7 +93,8 @@ class CopcReader {
   }
 
   void add_node(std::size_t at, const CopcNode& node) {
-    const auto& [level, cell] = node.key;
+    const std::int32_t level = node.key.level;
+    const std::array<std::int32_t, 3>& cell = node.key.cell;
     if (level < 0 || level > kDeepest ||
         std::ranges::any_of(cell, [&](std::int32_t c) { return c < 0 || c >> level != 0; })) {
       wrong(at,

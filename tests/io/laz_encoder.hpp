@@ -1,3 +1,4 @@
+// Declares the LAZ encoder of the tests.
 #pragma once
 
 #include <cstdint>

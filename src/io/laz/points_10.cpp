@@ -21,82 +21,67 @@ constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnClass8{
      {9, 10, 11, 12, 13, 14, 15, 14},
      {8, 9, 10, 11, 12, 13, 14, 15}}};
 
-// Passes over GPS times. Of four interleaved sequences it knows the last step, which decides how
-// the next one is coded; times themselves are not needed.
+// Passes over GPS times. There are four interleaved sequences of them, and each codes its next time
+// in one way until it has a step that is not 0, and in another way from then on. How long that step
+// is, and the times, are of no use here.
 class TimeModel {
  public:
   void skip(RangeDecoder& in) {
     // Switching to another sequence is followed by a step of it; more switches than sequences
     // are damage.
-    for (std::size_t i = 0; i < steps_.size(); ++i) {
-      const std::uint32_t to = steps_[now_] == 0 ? after_none(in) : after_step(in);
+    for (std::size_t i = 0; i < has_step_.size(); ++i) {
+      const std::uint32_t to = has_step_[now_] ? skip_multiple(in) : skip_first(in);
       if (to == 0) return;
-      now_ = (now_ + to) % steps_.size();
+      now_ = (now_ + to) % has_step_.size();
     }
   }
 
  private:
-  static constexpr std::uint32_t kMost = 500;     // times the last step
-  static constexpr std::uint32_t kLeast = 510;    // -10 times
   static constexpr std::uint32_t kNothing = 511;  // no step
   static constexpr std::uint32_t kNew = 512;      // a new sequence
 
-  // These return how many sequences further the time belongs; 0: it is read.
-  std::uint32_t after_none(RangeDecoder& in) {
+  // These return how many sequences further the time belongs; 0: it is passed.
+  std::uint32_t skip_first(RangeDecoder& in) {
     const std::uint32_t symbol = in.symbol(first_);
     if (symbol == 1) {
-      steps_[now_] = number_.decode(in, 0, 0);
-      extremes_[now_] = 0;
+      has_step_[now_] = number_.decode(in, 0, 0) != 0;
     } else if (symbol == 2) {
       begin_sequence(in);
     }
     return symbol > 2 ? symbol - 2 : 0;
   }
 
-  std::uint32_t after_step(RangeDecoder& in) {
+  std::uint32_t skip_multiple(RangeDecoder& in) {
     const std::uint32_t symbol = in.symbol(factor_);
-    if (symbol == 1) {
-      (void)number_.decode(in, steps_[now_], 1);
-      extremes_[now_] = 0;
-    } else if (symbol < kNothing) {
-      read_multiple(in, symbol);
+    if (symbol < kNothing) {
+      (void)number_.decode(in, 0, context(symbol));
     } else if (symbol == kNew) {
       begin_sequence(in);
     }
     return symbol > kNew ? symbol - kNew : 0;
   }
 
-  // A step that is a multiple of the last one. Four in a row that no factor fits replace it.
-  void read_multiple(RangeDecoder& in, std::uint32_t symbol) {
-    const bool extreme = symbol == 0 || symbol == kMost || symbol == kLeast;
-    const std::uint32_t factor = symbol <= kMost ? symbol : kMost - symbol;
-    const std::uint32_t step = number_.decode(in, factor * steps_[now_], context(symbol));
-    if (!extreme || ++extremes_[now_] <= 3) return;
-    steps_[now_] = step;
-    extremes_[now_] = 0;
-  }
-
+  // Up to 500 a symbol is a factor of the last step; above, 500 less the symbol is.
   static std::size_t context(std::uint32_t symbol) {
     if (symbol == 0) return 7;
+    if (symbol == 1) return 1;
     if (symbol < 10) return 2;
-    if (symbol < kMost) return 3;
-    return symbol == kMost ? 4 : symbol < kLeast ? 5 : 6;
+    if (symbol < 500) return 3;
+    return symbol == 500 ? 4 : symbol < 510 ? 5 : 6;
   }
 
   void begin_sequence(RangeDecoder& in) {
-    begun_ = (begun_ + 1) % steps_.size();
+    begun_ = (begun_ + 1) % has_step_.size();
     (void)number_.decode(in, 0, 8);
     (void)in.raw(32);
     now_ = begun_;
-    steps_[now_] = 0;
-    extremes_[now_] = 0;
+    has_step_[now_] = false;
   }
 
   SymbolModel first_{6};
   SymbolModel factor_{516};
   NumberModel number_{32, 9};
-  std::array<std::uint32_t, 4> steps_{};
-  std::array<int, 4> extremes_{};
+  std::array<bool, 4> has_step_{};
   std::size_t now_ = 0;
   std::size_t begun_ = 0;
 };
