@@ -40,6 +40,12 @@ TEST(Laz, GivesTheCloudOfTheLasOriginal) {
   }
 }
 
+TEST(Laz, ReadsNothingFromChunksBehindTheLastPoint) {
+  std::string laz = laz_of(survey_of({.points = 3000}), {.chunk = 100});
+  overwrite<std::uint32_t>(laz, 107, 2900);
+  EXPECT_EQ(read_text(laz).declared, 2900u);
+}
+
 TEST(Laz, GivesTheSameOnOneThread) {
   const std::string laz = laz_of(survey_of({.format = 7, .points = 5000}), {.chunk = 100});
   const CloudFile many = read_text(laz);

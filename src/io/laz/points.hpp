@@ -9,7 +9,7 @@
 namespace palpate::io::laz {
 
 /// Decodes the points of one chunk, whose length says how many there are. `chunk` holds a whole
-/// record at least.
+/// record at least, unless there are no points.
 /// @return the points before the bytes ended, or stopped making sense: all of them for a chunk
 ///   that is whole.
 [[nodiscard]] std::size_t decode_points(const LasHeader& header, std::span<const std::byte> chunk,

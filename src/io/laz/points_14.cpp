@@ -279,6 +279,7 @@ std::size_t decode_points_14(const LasHeader& header, std::span<const std::byte>
 
 std::size_t decode_points(const LasHeader& header, std::span<const std::byte> chunk,
                           std::span<LasPoint> points) {
+  if (points.empty()) return 0;  // a chunk behind the last point
   return header.extended() ? decode_points_14(header, chunk, points)
                            : decode_points_10(header, chunk, points);
 }
