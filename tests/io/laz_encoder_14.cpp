@@ -60,6 +60,8 @@ struct Channel14 {
 
 // What follows the 30 bytes that all formats have.
 struct Rest14 {
+  explicit Rest14(std::string_view record) : last(record) {}
+
   std::string last;
   ColorEncoder color;
   std::array<SymbolModel, 2> infrared = symbol_models<2>(256);
@@ -90,7 +92,7 @@ class Encoder14 {
         now_(channel_of(record)) {
     channels_[now_] = std::make_unique<Channel14>(record);
     rest_now_ = now_;
-    rests_[now_] = std::make_unique<Rest14>(std::string(record));
+    rests_[now_] = std::make_unique<Rest14>(record);
   }
 
   void encode(std::string_view record) {
