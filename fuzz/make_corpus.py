@@ -3,6 +3,7 @@
 encoding that the readers know. Run it again after changing it; inputs that once broke a reader lie
 beside them as found-* and are left alone."""
 
+import base64
 import gzip
 import pathlib
 import struct
@@ -115,7 +116,72 @@ def las():
                 struct.pack_into("<3H", row, LAS_COLORS[fmt], *[257 * c for c in COLORS[i]])
             rows += row
         seed("las", f"format_{fmt}", las_header(minor, fmt, record, len(POINTS)) + rows)
-    seed("las", "laz", las_header(2, 128, 20, 4) + bytes(40))
+
+
+# LAZ: format, extra bytes, points and bytes of each chunk, and the chunks with the table of their
+# sizes, as the encoder of tests/io makes them.
+LAZ_CHUNKS = (
+    (1, 0, [(1, 32), (6, 70), (5, 67)],
+     "2IYBAEMNAwC5CwAA4QABBAAAAAAAAAAAAAAAQQAAAAAAhwEARg0DALULAADhAAEEAAAAAAAAAAAAAABBQhY6KS+Lo/3UfKIhed"
+     "RDM1NJJE7DeXLQnMvHoWfcaof9kgywg6MnTgAALYgBAEsNAwCrCwAA5AASBAKyGNzIMgAAAAAAQUoVOrXSAsTfPG/cnWW7HUNP"
+     "ZvFULdR+U8+XLex/2EZoa86AAAAAAAAAAAADAAAABJNvuR16Qy32AA=="),
+    (3, 2, [(6, 105), (6, 108)],
+     "0IYBAEANAwC0CwAA0gAJAAAAAAAAAAAAAAAAQUMBQwFDAQADwGtCRFSj4ZxUeUvFLftuDur+UyxQEHXAiKcAadngJaDd06NmPr"
+     "zOIF/1ZFffIUccbwF0J/TE05dt2zSq03sVDLUAAAAACYgBADUNAwC9CwAA4gAKAAEAAACgDwAAAAAAQYECgQKBAgQDyHGek68d"
+     "yUYf7WXzvqMn+yy0Okk//3hxG5algEAvQJ0DZh7lE9maVDRqk0So+u5F6Wz6mXfoUnUR/kd7KdzJ0eVtSSi3owAAAAAAAAIAAA"
+     "A8mkmShgA="),
+    (6, 0, [(6, 127), (6, 139)],
+     "1YYBAEINAwC3CwAAAAAAAAAAw/sAAAAAAAAAAABBBgAAABUAAAAIAAAAAAAAAAAAAAAKAAAACQAAAAAAAAAAAAAACQAAABBnI5"
+     "st5cWbosgbZohOec2aBpQAABVTcdhr2AwAhP46InuSWB0AAK40JSR1wVAAABPADnUPnz5gAPSHAQBEDQMAuwsAANsAhQAAAKn/"
+     "AAD4KgAAAAAAQQYAAAATAAAACAAAAAkAAAAAAAAACwAAAAUAAAAJAAAAAAAAAAgAAAAgaoHlDMQWBkURvIXNnwLs1MAACAvG6/"
+     "0dTgAYGAwMC/P0AAA6yANJiB6UIcAAAGmkCUwAACgoFBPr7AAAFX24Fa7qIAAAAAAAAgAAAD3wks8yAA=="),
+    (8, 2, [(6, 200), (6, 195)],
+     "0IYBAD0NAwC4CwAA5AAAAAAAAAAAAAAAAAAAAABBAABwAAAAEo4AAwYAAAAVAAAACAAAAAkAAAAAAAAACAAAAAAAAAAAAAAAAA"
+     "AAAAsAAAATAAAACgAAAAkAAAAJAAAAIGZjbO0HuRO/W2re3Mx9Rj/XzIAABBwlVhKopAAAAAAYF/P0AAACZKgD8oHAABap90NL"
+     "tgzmnFAAgiC1vDznhJiN9hL3Cqrbz/gAADL2xujGYQAAAAAAAAX9AgF9gAD+A30BBP5+gADkhwEATQ0DALELAADYAEQgGAAAAA"
+     "AACC4AAAAAAEHx/vH+8f4eAAcCBgAAABUAAAAIAAAAAAAAAAcAAAAHAAAABwAAAAAAAAAAAAAACQAAABYAAAAAAAAACQAAAAkA"
+     "AAAuIkrTEGyBnICThdOgjkV/9GAUNAAaQya73XLDAAAIYHfPgAAAAFV3YEgAk5n7Ct2gABQg+vUPnz5gAPjZAZ3+PsBH4T9aGf"
+     "PLDVf+YcgIAAAAAPr/h3/9gAAE+/6F/n4AgAAAAAAAAgAAAEQWDvWmAA=="),
+)
+LAZ_ITEMS = {1: [(6, 20), (7, 8)], 3: [(6, 20), (7, 8), (8, 6), (0, 2)], 6: [(10, 30)],
+             8: [(10, 30), (12, 8), (14, 2)]}
+
+
+def las_record(user, number, data):
+    return struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + data
+
+
+def laz_file(fmt, extra, sizes, chunks, before=b""):
+    """`before`: a record of the header. Returns the bytes, and the place of the first chunk."""
+    version = 2 if fmt < 6 else 3
+    points = 0xffffffff if fmt == 1 else sizes[0][0]
+    items = b"".join(struct.pack("<3H", kind, size, version) for kind, size in LAZ_ITEMS[fmt])
+    records = before + las_record(b"laszip encoded", 22204, struct.pack(
+        "<2H2BH2I2qH", version, 0, 3, 0, 0, 0, points, -1, -1, len(LAZ_ITEMS[fmt])) + items)
+    minor = 4 if fmt >= 6 else 2
+    offset = len(las_header(minor, fmt, 0, 0)) + len(records)
+    head = bytearray(las_header(minor, fmt | 128, LAS_RECORDS[fmt] + extra, sum(n for n, _ in sizes),
+                                offset))
+    struct.pack_into("<I", head, 100, 2 if before else 1)
+    table = offset + 8 + sum(size for _, size in sizes)
+    return bytes(head) + records + struct.pack("<q", table) + base64.b64decode(chunks), offset + 8
+
+
+def laz():
+    for fmt, extra, sizes, chunks in LAZ_CHUNKS:
+        seed("laz", f"format_{fmt}", laz_file(fmt, extra, sizes, chunks)[0])
+    seed("laz", "without_description", las_header(2, 128, 20, 4) + bytes(40))
+
+    def copc(place):
+        info = struct.pack("<5d2Q2d", 0, 0, 0, 8, 1, place, 64, 0, 1) + bytes(88)
+        return laz_file(*next(entry for entry in LAZ_CHUNKS if entry[0] == 6),
+                        before=las_record(b"copc", 1, info))
+    data, first = copc(0)
+    (points, size), (points_2, size_2) = LAZ_CHUNKS[2][2]
+    pages = struct.pack("<4iQ2i", 0, 0, 0, 0, first, size, points)
+    pages += struct.pack("<4iQ2i", 1, 1, 0, 0, len(data) + 64, 32, -1)
+    pages += struct.pack("<4iQ2i", 1, 1, 0, 0, first + size, size_2, points_2)
+    seed("copc", "two_pages", copc(len(data))[0] + pages)
 
 
 def depth():
@@ -352,6 +418,6 @@ def messages():
     Cdr().header().put("IB", 1, 2).text("guard").text("off").text("").put("I", 1).text("key").text("value").seed("diagnostics")
 
 
-for make in (ply, pcd, las, depth, text, packed, sequences, remote, client_messages, haply, mcap,
+for make in (ply, pcd, las, laz, depth, text, packed, sequences, remote, client_messages, haply, mcap,
              messages):
     make()

@@ -15,10 +15,12 @@
 #include "bag/mcap_reader.hpp"
 #include "device/haply_message.hpp"
 #include "device/remote_protocol.hpp"
+#include "io/copc.hpp"
 #include "io/depth_image.hpp"
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "memory_file.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -29,10 +31,10 @@
 namespace palpate::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 19> kNames{
-    "any",          "cdr",          "depth",    "frame_list", "gzip", "haply_frame", "las",
-    "mcap",         "obj",          "pcd",      "pgm",        "ply",  "png",         "poses",
-    "remote_frame", "remote_state", "sequence", "trajectory", "xyz"};
+constexpr std::array<std::string_view, 21> kNames{
+    "any", "cdr",   "copc",         "depth",        "frame_list", "gzip",       "haply_frame",
+    "las", "laz",   "mcap",         "obj",          "pcd",        "pgm",        "ply",
+    "png", "poses", "remote_frame", "remote_state", "sequence",   "trajectory", "xyz"};
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -167,7 +169,7 @@ void check_haply_frame(std::string_view text) {
 }
 
 void check_mcap(std::span<const std::byte> bytes) {
-  const io::MemoryFile file(bytes);
+  const MemoryFile file(bytes);
   bag::McapReader reader(file.path());
   const bag::Contents& contents = reader.contents();
   std::size_t zeros = 0;  // so that every byte is read
@@ -184,6 +186,24 @@ void check_mcap(std::span<const std::byte> bytes) {
       continue;
     }
   }
+}
+
+void check_copc(const io::Input& input) {
+  const io::LasHeader header = io::read_las_header(input);
+  const std::optional<io::Copc> copc = io::read_copc(input, header);
+  if (!copc) return;
+  std::size_t points = 0;
+  for (const io::CopcNode& node : copc->nodes) {
+    expect(!io::box_of(*copc, node.key).empty(), "a node without a box");
+    points += node.points;
+    if (node.points > 10'000) continue;  // correct, but slow
+    try {
+      expect(io::read_node(input, header, node).size() == node.points, "points of a node");
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  expect(points == header.points, "nodes that are not all of the file");
 }
 
 // True when `name` is one of the parts of a sequence.
@@ -204,7 +224,7 @@ bool run_sequence_target(std::string_view name, const io::Input& input) {
 }
 
 CloudFile read_as(std::string_view name, const io::Input& input) {
-  if (name == "las") return io::read_las(input);
+  if (name == "las" || name == "laz") return io::read_las(input);
   if (name == "obj") return io::read_obj(input);
   if (name == "pcd") return io::read_pcd(input);
   if (name == "pgm") return io::cloud_of(input, io::read_pgm(input));
@@ -233,6 +253,8 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
       check_haply_frame(input.text());
     } else if (name == "cdr") {
       check_messages(bytes);
+    } else if (name == "copc") {
+      check_copc(input);
     } else if (name == "mcap") {
       check_mcap(bytes);
     } else if (name == "gzip") {

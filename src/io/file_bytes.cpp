@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -206,7 +205,7 @@ class Gunzip {
   }
 
   void grow() {
-    const std::size_t allowed = std::max(kAlwaysAllowed, kLargestRatio * input_.bytes.size());
+    const std::size_t allowed = largest_unpacked(input_.bytes.size());
     if (out_.size() >= allowed) {
       fail(input_,
            fmt::format("unpacks to more than {} MiB, over {} times its size", allowed >> 20U,
@@ -226,34 +225,12 @@ class Gunzip {
 
 }  // namespace
 
+std::size_t largest_unpacked(std::size_t packed) {
+  return std::max(kAlwaysAllowed, kLargestRatio * packed);
+}
+
 Bytes gunzip(const Input& input, std::size_t most) {
   return Gunzip(input, most).run();
-}
-
-MemoryFile::MemoryFile(std::span<const std::byte> bytes)
-    : fd_(::memfd_create("palpate", MFD_CLOEXEC)) {
-  while (fd_ >= 0 && !bytes.empty()) {
-    const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      ::close(fd_);
-      fd_ = -1;
-      break;
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  if (fd_ < 0) {
-    throw Error(
-        fmt::format("a file in memory: {}. Free some memory and try again.", std::strerror(errno)));
-  }
-}
-
-MemoryFile::~MemoryFile() {
-  ::close(fd_);
-}
-
-std::string MemoryFile::path() const {
-  return fmt::format("/proc/self/fd/{}", fd_);
 }
 
 }  // namespace palpate::io

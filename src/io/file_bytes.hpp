@@ -35,26 +35,14 @@ class Bytes {
 /// @throws Error that names the path and the reason: absent, a folder, no permission, a device.
 [[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);
 
-/// The bytes inside gzip (one member or several in a row). Refuses what grows beyond any honest
-/// cloud: more than 64 MiB and more than 250 times the packed size.
+/// The most bytes that so many packed ones may become: 64 MiB or 250 times as many. No honest
+/// cloud grows beyond that (judgement).
+[[nodiscard]] std::size_t largest_unpacked(std::size_t packed);
+
+/// The bytes inside gzip (one member or several in a row). Refuses what grows beyond
+/// largest_unpacked().
 /// `most`: bytes after which it may stop. @throws Error for broken, cut or oversized data.
 [[nodiscard]] Bytes gunzip(const Input& input,
                            std::size_t most = std::numeric_limits<std::size_t>::max());
-
-/// Bytes under a path, for libraries that read nothing but files: a file in memory (Linux memfd),
-/// gone with this object.
-class MemoryFile {
- public:
-  /// @throws Error when the system grants no such file, or no room for it.
-  explicit MemoryFile(std::span<const std::byte> bytes);
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  ~MemoryFile();
-
-  [[nodiscard]] std::string path() const;
-
- private:
-  int fd_;
-};
 
 }  // namespace palpate::io

@@ -4,9 +4,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/input.hpp"
@@ -87,6 +90,8 @@ inline constexpr std::size_t kLzfLargestRatio = 88;
 /// Part of a LAS header that reading points needs (ASPRS LAS 1.0 - 1.4).
 struct LasHeader {
   int minor_version = 0;
+  std::size_t size = 0;     ///< bytes, up to its variable length records
+  std::size_t records = 0;  ///< variable length records
   int format = 0;           ///< point format, 0 - 10
   bool compressed = false;  ///< LAZ
   std::size_t points_offset = 0;
@@ -100,24 +105,50 @@ struct LasHeader {
   /// The bit of a record's byte 15 that marks a point as withheld; LAS 1.0 has none.
   [[nodiscard]] std::byte withheld_mask() const;
   [[nodiscard]] std::optional<std::size_t> color_offset() const;  ///< bytes into a record
-  [[nodiscard]] std::string name() const;                         ///< "LAS 1.2, point format 0"
+  [[nodiscard]] std::size_t extra_bytes() const;  ///< of a record, behind what its format has
+  [[nodiscard]] std::string name() const;         ///< "LAS 1.2, point format 0"
 };
 
 /// @throws Error that names the byte of what is wrong.
 [[nodiscard]] LasHeader read_las_header(const Input& input);
 
+/// The contents of a variable length record: where they are in the file, and their bytes.
+struct LasRecord {
+  std::size_t place = 0;
+  std::size_t size = 0;
+};
+
+/// The first such record that lies within the file.
+[[nodiscard]] std::optional<LasRecord> find_record(const Input& input, const LasHeader& header,
+                                                   std::string_view user, int id);
+
+/// What is kept of a point of any format. Not cleared before it is written: there are many.
+struct LasPoint {
+  std::array<std::int32_t, 3> number;  ///< coordinate = number * scale + offset
+  std::array<std::uint16_t, 3> color;  ///< 0 in formats without
+  std::uint16_t intensity;
+  bool withheld;  ///< marked as not to be used
+};
+
+/// The point of a record that is not compressed.
+[[nodiscard]] LasPoint las_point(const LasHeader& header, const std::byte* record);
+
 /// LAS 1.0 - 1.4, point formats 0 - 10. Points marked withheld are dropped; intensity and colour
 /// are kept unless they are zero throughout. Made for tens of millions of points: two passes over
-/// the bytes, nothing held twice. A compressed (LAZ) file goes to read_laz.
+/// the bytes, nothing held twice. LAZ (and COPC, which is LAZ) in formats 0 - 3 and 6 - 8.
 [[nodiscard]] CloudFile read_las(const Input& input);
 
-/// Under what names the user's LASzip is looked for (as dlopen does).
-inline const std::array<std::string, 2> kLaszipNames{"liblaszip.so.8", "liblaszip.so"};
+namespace laz {
 
-/// LAZ (and COPC, which is LAZ), through the C interface of the user's LASzip 3 library.
-/// @throws Error that says how to convert the file where none of `libraries` can be loaded.
-[[nodiscard]] CloudFile read_laz(const Input& input, const LasHeader& header,
-                                 std::span<const std::string> libraries = kLaszipNames);
+/// Decoding points takes so many times as long as making a cloud of them (measured, two cores):
+/// how they share the progress that is reported.
+inline constexpr std::size_t kDecodingShare = 4;
+
+/// All points of a LAZ file, decoded on all cores.
+/// @throws Error that names the byte of what is wrong.
+[[nodiscard]] std::unique_ptr<LasPoint[]> read_points(const Input& input, const LasHeader& header);
+
+}  // namespace laz
 
 /// The vertices of a Wavefront OBJ file ("v x y z", with "r g b" where the first vertex has them),
 /// and its normals where there are as many "vn" as "v". Everything else is skipped.

@@ -42,6 +42,14 @@ void append(std::string& out, T value, std::endian order = std::endian::little) 
   out.append(bytes.data(), bytes.size());
 }
 
+/// The number in the bytes from `offset` on, in the order of this machine.
+template <class T>
+T load(std::string_view bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
 /// Writes a number over the bytes from `offset` on.
 template <class T>
 void overwrite(std::string& out, std::size_t offset, T value) {

@@ -31,8 +31,8 @@ struct CloudFile {
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
 };
 
-/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and
-/// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
+/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ (COPC too), 16-bit depth PNG and PGM; gzip around any
+/// of them. The kind is told from the bytes first and from the name second;
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
 ///

@@ -1,0 +1,180 @@
+// Reads the octree of COPC files, and the points of its nodes.
+#include "io/copc.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "io/laz/laz_file.hpp"
+#include "io/laz/points.hpp"
+#include "io/text_scanner.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::string_view kMakeAgain =
+    "Make it again, for example with \"pdal translate IN.laz OUT.copc.laz\"";
+
+// Offsets into the record "copc", and its bytes.
+constexpr std::size_t kHalfSize = 24;
+constexpr std::size_t kSpacing = 32;
+constexpr std::size_t kRootPlace = 40;
+constexpr std::size_t kRootSize = 48;
+constexpr std::size_t kInfoSize = 160;
+
+constexpr std::size_t kEntrySize = 32;  // bytes of an entry of a page
+constexpr std::int32_t kDeepest = 30;   // level: its cells have numbers of 31 bits
+
+class CopcReader {
+ public:
+  CopcReader(const Input& input, const LasHeader& header, std::size_t info)
+      : input_(input), header_(header), info_(info) {}
+
+  Copc run() {
+    const std::byte* info = input_.bytes.data() + info_;
+    for (int k = 0; k < 3; ++k) copc_.center[k] = load_as<double>(info + 8 * k);
+    copc_.half_size = load_as<double>(info + kHalfSize);
+    copc_.spacing = load_as<double>(info + kSpacing);
+    const bool possible = copc_.center.allFinite() && std::isfinite(copc_.half_size) &&
+                          copc_.half_size > 0 && std::isfinite(copc_.spacing) && copc_.spacing > 0;
+    if (!possible) wrong(info_, "an octree without a finite size, center and spacing");
+    add_page(info_ + kRootPlace, load_as<std::uint64_t>(info + kRootPlace),
+             load_as<std::uint64_t>(info + kRootSize));
+    while (!pages_.empty()) read_page();
+    check_nodes();
+    return std::move(copc_);
+  }
+
+ private:
+  struct Page {
+    std::size_t place = 0;
+    std::size_t bytes = 0;
+  };
+
+  // `at`: the byte that says where the page is.
+  void add_page(std::size_t at, std::uint64_t place, std::uint64_t bytes) {
+    const std::size_t size = input_.bytes.size();
+    if (place > size || bytes > size - place || bytes % kEntrySize != 0) {
+      wrong(at, fmt::format("a page of {} bytes at byte {} of a file of {}", bytes, place, size));
+    }
+    if (!known_pages_.insert(place).second) {
+      wrong(at, fmt::format("the page at byte {} is listed twice", place));
+    }
+    page_bytes_ += bytes;  // so pages that overlap cannot grow without end
+    if (page_bytes_ > size) wrong(at, "more bytes in pages than in the file");
+    pages_.push_back({place, bytes});
+  }
+
+  void read_page() {
+    const Page page = pages_.back();
+    pages_.pop_back();
+    for (std::size_t at = page.place; at < page.place + page.bytes; at += kEntrySize) {
+      const std::byte* entry = input_.bytes.data() + at;
+      CopcNode node;
+      node.key.level = load_as<std::int32_t>(entry);
+      for (std::size_t k = 0; k < 3; ++k) {
+        node.key.cell[k] = load_as<std::int32_t>(entry + 4 + 4 * k);
+      }
+      const auto place = load_as<std::uint64_t>(entry + 16);
+      const auto bytes = load_as<std::int32_t>(entry + 24);
+      const auto points = load_as<std::int32_t>(entry + 28);
+      if (bytes < 0 || points < -1) wrong(at, "a node of fewer than 0 bytes or points");
+      node.bytes = static_cast<std::size_t>(bytes);
+      if (points < 0) {
+        add_page(at, place, node.bytes);
+      } else {
+        node.place = place;
+        node.points = static_cast<std::size_t>(points);
+        add_node(at, node);
+      }
+    }
+  }
+
+  void add_node(std::size_t at, const CopcNode& node) {
+    const std::int32_t level = node.key.level;
+    const std::array<std::int32_t, 3>& cell = node.key.cell;
+    if (level < 0 || level > kDeepest ||
+        std::ranges::any_of(cell, [&](std::int32_t c) { return c < 0 || c >> level != 0; })) {
+      wrong(at,
+            fmt::format("no cube of level {} is at {}, {}, {}", level, cell[0], cell[1], cell[2]));
+    }
+    const std::size_t size = input_.bytes.size();
+    const bool outside = node.place > size || node.bytes > size - node.place;
+    if (node.points > 0 && (outside || !laz::can_hold(header_, node.bytes, node.points))) {
+      wrong(at, fmt::format("a node of {} points in {} bytes at byte {} of a file of {}",
+                            node.points, node.bytes, node.place, size));
+    }
+    copc_.nodes.push_back(node);
+  }
+
+  void check_nodes() {
+    std::vector<CopcNode>& nodes = copc_.nodes;
+    std::ranges::sort(nodes, {}, &CopcNode::key);
+    const auto twice = std::ranges::adjacent_find(nodes, {}, &CopcNode::key);
+    if (twice != nodes.end()) wrong(info_, fmt::format("{} is listed twice", name(twice->key)));
+    std::size_t points = 0;
+    for (const CopcNode& node : nodes) {
+      points += node.points;
+      CopcKey parent{node.key.level - 1, node.key.cell};
+      for (std::int32_t& c : parent.cell) c /= 2;
+      if (parent.level >= 0 && !std::ranges::binary_search(nodes, parent, {}, &CopcNode::key)) {
+        wrong(info_, fmt::format("{} is listed, but its parent is not", name(node.key)));
+      }
+    }
+    if (points == header_.points) return;
+    wrong(info_, fmt::format("the nodes have {} points, but the header announces {}", points,
+                             header_.points));
+  }
+
+  static std::string name(const CopcKey& key) {
+    return fmt::format("node {}-{}-{}-{}", key.level, key.cell[0], key.cell[1], key.cell[2]);
+  }
+
+  [[noreturn]] void wrong(std::size_t at, std::string_view what) const {
+    fail_at_byte(input_, at, what, kMakeAgain);
+  }
+
+  const Input& input_;
+  const LasHeader& header_;
+  std::size_t info_;  // place of the record "copc"
+  Copc copc_;
+  std::vector<Page> pages_;  // still to be read
+  std::set<std::size_t> known_pages_;
+  std::size_t page_bytes_ = 0;
+};
+
+}  // namespace
+
+std::optional<Copc> read_copc(const Input& input, const LasHeader& header) {
+  const std::optional<LasRecord> info = find_record(input, header, "copc", 1);
+  if (!info || info->size < kInfoSize || !header.compressed || !header.extended()) {
+    return std::nullopt;
+  }
+  (void)laz::read_chunk_size(input, header);  // throws for what is not read
+  return CopcReader(input, header, info->place).run();
+}
+
+Box box_of(const Copc& copc, const CopcKey& key) {
+  const double size = std::ldexp(2 * copc.half_size, -key.level);
+  const Eigen::Vector3d cell(key.cell[0], key.cell[1], key.cell[2]);
+  const Eigen::Vector3d low = copc.center.array() - copc.half_size + size * cell.array();
+  Box box;
+  box.extend(low);
+  box.extend(low + Eigen::Vector3d::Constant(size));
+  return box;
+}
+
+std::vector<LasPoint> read_node(const Input& input, const LasHeader& header, const CopcNode& node) {
+  std::vector<LasPoint> points(node.points);
+  if (node.points == 0) return points;
+  const std::size_t decoded =
+      laz::decode_points(header, input.bytes.subspan(node.place, node.bytes), points);
+  if (decoded == node.points) return points;
+  fail_at_byte(input, node.place,
+               fmt::format("the node ends inside its point {} of {}", decoded + 1, node.points),
+               "Download the file again");
+}
+
+}  // namespace palpate::io

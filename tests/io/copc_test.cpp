@@ -1,0 +1,209 @@
+// Octrees of COPC files are what the file's chunks hold, and damaged ones are refused.
+#include "io/copc.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+
+#include "io/laz/laz_file.hpp"
+#include "io/laz_encoder.hpp"
+#include "io/laz_survey.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::size_t kInfo = 375 + 54;  // the record's contents, in a file of version 1.4
+
+struct Entry {
+  std::array<std::int32_t, 4> key;  // level, x, y, z
+  std::uint64_t place;
+  std::int32_t bytes;
+  std::int32_t points;
+};
+
+io::Input input_of(const std::string& bytes, const ReadOptions& options) {
+  return {std::as_bytes(std::span(bytes)), "a.copc.laz", options};
+}
+
+void append_page(std::string& bytes, std::span<const Entry> entries) {
+  for (const Entry& entry : entries) {
+    for (const std::int32_t number : entry.key) append(bytes, number);
+    append(bytes, entry.place);
+    append(bytes, entry.bytes);
+    append(bytes, entry.points);
+  }
+}
+
+// A file of five chunks under a root, whose last two are listed on a page of their own. `change`
+// may spoil the entries.
+std::string copc_bytes(const std::function<void(std::vector<Entry>&)>& change = {}) {
+  std::string record(54 + 160, '\0');
+  record.replace(2, 4, "copc");
+  overwrite<std::uint16_t>(record, 18, 1);
+  overwrite<std::uint16_t>(record, 20, 160);
+  const double octree[] = {10, 20, 30, 64, 2};
+  for (std::size_t i = 0; i < 5; ++i) overwrite(record, 54 + 8 * i, octree[i]);
+  const std::string las = survey_of({.format = 7, .points = 2000});
+  std::string bytes = laz_of(las, {.chunk = 400, .record = record});
+  const ReadOptions options;
+  const io::Input input = input_of(bytes, options);
+  const auto chunks = io::laz::read_chunk_table(input, io::read_las_header(input));
+  const std::array<std::int32_t, 4> keys[] = {
+      {0, 0, 0, 0}, {1, 0, 1, 1}, {1, 1, 0, 0}, {2, 2, 1, 0}, {3, 5, 3, 1}};
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < 5; ++i) {
+    entries.push_back({keys[i], chunks[i].place, static_cast<std::int32_t>(chunks[i].bytes),
+                       static_cast<std::int32_t>(chunks[i].points)});
+  }
+  entries.push_back({{1, 1, 1, 1}, 0, 0, 0});  // a node without points
+  entries.push_back({{2, 2, 1, 0}, bytes.size(), 64, -1});
+  std::swap(entries[3], entries[5]);
+  std::swap(entries[4], entries[6]);  // now root, two, empty, page; the page's two
+  if (change) change(entries);
+  append_page(bytes, std::span(entries).subspan(5));
+  overwrite<std::uint64_t>(bytes, kInfo + 40, bytes.size());
+  overwrite<std::uint64_t>(bytes, kInfo + 48, 32 * 5);
+  append_page(bytes, std::span(entries).first(5));
+  return bytes;
+}
+
+std::optional<io::Copc> read(const std::string& bytes) {
+  const ReadOptions options;
+  const io::Input input = input_of(bytes, options);
+  return io::read_copc(input, io::read_las_header(input));
+}
+
+std::string refusal_of(const std::string& bytes) {
+  try {
+    (void)read(bytes);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Every chunk is a node, and the nodes' points are those of the file read whole.
+void expect_all_points(const std::string& bytes, const io::Copc& copc) {
+  const ReadOptions options;
+  const io::Input input = input_of(bytes, options);
+  const io::LasHeader header = io::read_las_header(input);
+  const auto all = io::laz::read_points(input, header);
+  std::size_t points = 0;
+  for (const io::laz::Chunk& chunk : io::laz::read_chunk_table(input, header)) {
+    const auto node = std::ranges::find(copc.nodes, chunk.place, &io::CopcNode::place);
+    ASSERT_NE(node, copc.nodes.end());
+    EXPECT_EQ(node->bytes, chunk.bytes);
+    const std::vector<io::LasPoint> own = io::read_node(input, header, *node);
+    ASSERT_EQ(own.size(), chunk.points);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      ASSERT_EQ(own[i].number, all[chunk.first + i].number);
+      ASSERT_EQ(own[i].intensity, all[chunk.first + i].intensity);
+      ASSERT_EQ(own[i].color, all[chunk.first + i].color);
+    }
+    points += own.size();
+  }
+  EXPECT_EQ(points, header.points);
+}
+
+TEST(Copc, ListsNodesOfAllPagesByTheirKeys) {
+  const std::string bytes = copc_bytes();
+  const std::optional<io::Copc> copc = read(bytes);
+  ASSERT_TRUE(copc);
+  EXPECT_EQ(copc->center, Eigen::Vector3d(10, 20, 30));
+  EXPECT_EQ(copc->half_size, 64);
+  EXPECT_EQ(copc->spacing, 2);
+  ASSERT_EQ(copc->nodes.size(), 6u);
+  EXPECT_TRUE(std::ranges::is_sorted(copc->nodes, {}, &io::CopcNode::key));
+  EXPECT_EQ(copc->nodes[3].points, 0u);
+  EXPECT_EQ(copc->nodes[5].key.level, 3);
+  const Box box = io::box_of(*copc, copc->nodes[5].key);  // cell 5, 3, 1 of 8 that are 16 wide
+  EXPECT_EQ(box.lower, Eigen::Vector3d(10 - 64 + 80, 20 - 64 + 48, 30 - 64 + 16));
+  EXPECT_EQ(box.size(), Eigen::Vector3d(16, 16, 16));
+  expect_all_points(bytes, *copc);
+  EXPECT_EQ(read_text(bytes).declared, 2000u);  // read whole it is LAZ
+}
+
+TEST(Copc, OtherFilesHaveNoOctree) {
+  EXPECT_FALSE(read(survey_of({.format = 6})));
+  EXPECT_FALSE(read(laz_of(survey_of({.format = 6}))));
+}
+
+TEST(Copc, RefusesNodesThatCannotBe) {
+  const auto spoilt = [](const std::function<void(std::vector<Entry>&)>& change) {
+    return refusal_of(copc_bytes(change));
+  };
+  EXPECT_EQ(spoilt([](auto&) {}), "no error");
+  EXPECT_THAT(spoilt([](auto& e) { e[1].key = {1, 2, 0, 0}; }), HasSubstr("no cube of level 1"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].key[0] = 31; }), HasSubstr("no cube of level 31"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].key[0] = -1; }), HasSubstr("no cube of level -1"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].key = e[2].key; }), HasSubstr("1-1-0-0 is listed twice"));
+  EXPECT_THAT(spoilt([](auto& e) { e[2].key = {1, 0, 0, 0}; }), HasSubstr("its parent is not"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].place = 1U << 30U; }), HasSubstr("at byte 1073741824"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].bytes = 35; }), HasSubstr("400 points in 35 bytes"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].bytes = -1; }), HasSubstr("fewer than 0 bytes"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].points = -2; }), HasSubstr("fewer than 0 bytes or points"));
+  EXPECT_THAT(spoilt([](auto& e) { e[1].points = 399; }), HasSubstr("have 1999 points"));
+  EXPECT_THAT(spoilt([](auto& e) { e[4].bytes = 63; }), HasSubstr("a page of 63 bytes"));
+  EXPECT_THAT(spoilt([](auto& e) { e[3] = e[4]; }), HasSubstr("is listed twice"));
+  EXPECT_THAT(spoilt([](auto& e) { e[4].place += 1U << 30U; }), HasSubstr("a page of 64 bytes at"));
+}
+
+TEST(Copc, RefusesAnOctreeWithoutSizeOrRoot) {
+  const auto broken = [](std::size_t offset, auto value) {
+    std::string bytes = copc_bytes();
+    overwrite(bytes, kInfo + offset, value);
+    return refusal_of(bytes);
+  };
+  EXPECT_THAT(broken(24, 0.0), HasSubstr("without a finite size"));
+  EXPECT_THAT(broken(0, std::numeric_limits<double>::quiet_NaN()), HasSubstr("without a finite"));
+  EXPECT_THAT(broken(40, ~std::uint64_t{0}), HasSubstr("at byte 18446744073709551615"));
+  EXPECT_THAT(broken(48, std::uint64_t{0}), HasSubstr("have 0 points"));
+}
+
+TEST(Copc, NamesTheNodeThatIsDamaged) {
+  const std::string bytes = copc_bytes();
+  io::CopcNode node = read(bytes)->nodes[1];
+  node.bytes /= 2;
+  const ReadOptions options;
+  const io::Input input = input_of(bytes, options);
+  try {
+    (void)io::read_node(input, io::read_las_header(input), node);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("byte " + std::to_string(node.place) + ": the node ends"));
+  }
+}
+
+TEST(Copc, PointsOfARealFileLieInTheCubesOfTheirNodes) {
+  const char* data = std::getenv("PALPATE_DATA");
+  if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA names no folder with the real data";
+  std::ifstream file(std::filesystem::path(data) / "pdal_small/lone-star.copc.laz",
+                     std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const ReadOptions options;
+  const io::Input input = input_of(bytes, options);
+  const io::LasHeader header = io::read_las_header(input);
+  const std::optional<io::Copc> copc = io::read_copc(input, header);
+  ASSERT_TRUE(copc);
+  EXPECT_GT(copc->nodes.size(), 1u);
+  expect_all_points(bytes, *copc);
+  for (const io::CopcNode& node : copc->nodes) {
+    Box box = io::box_of(*copc, node.key);
+    box.lower.array() -= 1e-6;  // coordinates are rounded
+    box.upper.array() += 1e-6;
+    for (const io::LasPoint& point : io::read_node(input, header, node)) {
+      const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
+      ASSERT_TRUE(box.contains(numbers.cwiseProduct(header.scale) + header.offset));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
