@@ -15,6 +15,7 @@
 #include "apps/palpate/cli/matrix_pose.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_filter.hpp"
+#include "palpate/io/files.hpp"
 
 namespace palpate::app {
 namespace {
@@ -64,7 +65,10 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 }  // namespace
 
 std::string file_of(const std::string& source) {
-  if (!source.starts_with(kBag)) return source;
+  if (!source.starts_with(kBag)) {
+    const std::size_t scan = source.rfind(".e57#");
+    return scan == std::string::npos ? source : source.substr(0, scan + 4);
+  }
   // The file in "runs/monday.mcap:/camera/depth,frame=world".
   const std::string text = source.substr(kBag.size());
   std::error_code none;
@@ -206,6 +210,17 @@ void name_all(std::vector<CloudArgument>& sources) {
   if (std::ranges::count_if(sources, standard_input) > 1) {
     throw UsageError("standard input (-) can be read only once; give a file for the other input");
   }
+}
+
+std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most) {
+  const std::vector<std::filesystem::path> paths = scans_of(source.path);
+  if (paths.size() == 1 || paths.size() > most) return {source};
+  std::vector<CloudArgument> scans;
+  for (const std::filesystem::path& path : paths) {
+    const std::string text = path.string();
+    scans.push_back({fmt::format("{}-{}", source.name, text.substr(text.rfind('#') + 1)), text});
+  }
+  return scans;
 }
 
 std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments) {

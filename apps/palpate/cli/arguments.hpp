@@ -33,7 +33,8 @@ struct PoseArgument {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_world_cloud
 };
 
-/// The path that a source's text names: of "bag:run.mcap:/camera/depth,frame=odom" run.mcap.
+/// The path that a source's text names: of "bag:run.mcap:/camera/depth,frame=odom" run.mcap, of
+/// "house.e57#2" house.e57.
 [[nodiscard]] std::string file_of(const std::string& source);
 
 /// The numbers in `text`, separated by commas.
@@ -80,6 +81,11 @@ inline constexpr const char* kPoseForm =
 /// @throws UsageError when two names are the same, a path names nothing, or standard input is asked
 /// for twice.
 void name_all(std::vector<CloudArgument>& sources);
+
+/// A source for each scan of an E57 file, named NAME-1 and so on; the source alone where it is
+/// another file, or has more than `most` scans, which are joined then.
+/// @throws Error as scans_of() does.
+[[nodiscard]] std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most);
 
 /// Both for each argument.
 [[nodiscard]] std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments);

@@ -9,6 +9,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/touch_options.hpp"
+#include "palpate/scene/scene.hpp"
 
 namespace palpate::app {
 
@@ -107,6 +108,22 @@ void place(std::vector<DescribedSource>& sources, const std::vector<PoseArgument
   }
 }
 
+// Makes each scan of a file a source of its own, as far as a scene has room for them.
+std::vector<DescribedSource> scans_apart(const std::vector<DescribedSource>& sources) {
+  std::size_t room = Scene::kMaxSources - std::min(Scene::kMaxSources, sources.size());
+  std::vector<DescribedSource> result;
+  for (const DescribedSource& source : sources) {
+    const std::vector<CloudArgument> scans = split_scans(source.plan.argument, room + 1);
+    room -= scans.size() - 1;
+    for (const CloudArgument& scan : scans) {
+      result.push_back(source);
+      result.back().plan.argument = scan;
+    }
+  }
+  name(result);
+  return result;
+}
+
 // A tool of that size can be felt with no smaller R, m.
 void check_radius(const PrepareOptions& prepare, double tool_radius) {
   if (!prepare.radius || *prepare.radius >= prepare.minimum_radius) return;
@@ -156,6 +173,7 @@ std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
       !sources.empty(),
       "no source given; name a file, a camera or a sequence ('palpate touch --help' lists them)");
   place(sources, choices.poses);
+  sources = scans_apart(sources);
   for (DescribedSource& source : sources) complete(source.plan, surface);
   return sources;
 }
@@ -169,7 +187,7 @@ bool keeps_history(Policy policy) {
 }
 
 void add_facts(RunFacts& facts, const SourcePlan& source) {
-  const std::string& path = source.argument.path;
+  const std::string path = file_of(source.argument.path);
   const bool stream = source.kind == SourceKind::stream;
   const bool organised = source.kind == SourceKind::cloud && may_be_organised(path);
   const bool depth = source.kind != SourceKind::cloud || organised;

@@ -111,7 +111,7 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, optionally "
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, depth PNG or PGM, optionally "
       "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
       names);
 }
