@@ -57,36 +57,46 @@ bool seen_from_origin(const E57Scan& scan) {
          !scan.T_file_scan.linear().isIdentity();
 }
 
+// How the columns of a scan become points.
+struct E57Layout {
+  Roles roles;  // one a field
+  bool spherical = false;
+  std::optional<std::size_t> invalid{};  // the field that marks invalid points
+  std::vector<bool> used{};              // one a field
+};
+
+E57Layout layout_of(const Input& input, const E57Scan& scan) {
+  E57Layout result{roles_in(scan, kCartesian)};
+  if (!result.roles.has_point()) result = {roles_in(scan, kSpherical), true};
+  if (!result.roles.has_point()) {
+    fail(input, fmt::format("scan \"{}\" has no coordinates", excerpt(scan.name)),
+         "Export it again with cartesianX, Y and Z");
+  }
+  const std::string_view state =
+      result.spherical ? "sphericalInvalidState" : "cartesianInvalidState";
+  for (std::size_t k = 0; k < scan.fields.size(); ++k) {
+    const E57Field& field = scan.fields[k];
+    if (field.name == state && field.kind != E57Field::Kind::skipped) result.invalid = k;
+    result.used.push_back(result.roles[k] || result.invalid == k);
+  }
+  return result;
+}
+
 // Makes rows of a scan's columns.
 class E57ScanReader {
  public:
   // @throws Error when the scan lacks coordinates, or its bytes cannot hold its points.
   E57ScanReader(const Input& input, E57Pages& pages, const E57Scan& scan)
-      : scan_(scan), roles_(roles_in(scan, kCartesian)), spherical_(!roles_.has_point()) {
-    if (spherical_) roles_ = roles_in(scan, kSpherical);
-    if (!roles_.has_point()) {
-      fail(input, fmt::format("scan \"{}\" has no coordinates", excerpt(scan.name)),
-           "Export it again with cartesianX, Y and Z");
-    }
-    const std::string_view state = spherical_ ? "sphericalInvalidState" : "cartesianInvalidState";
-    std::vector<bool> used(scan.fields.size());
-    for (std::size_t k = 0; k < used.size(); ++k) {
-      if (scan.fields[k].name == state && scan.fields[k].kind != E57Field::Kind::skipped) {
-        invalid_ = k;
-      }
-      used[k] = roles_[k] || invalid_ == k;
-    }
-    packets_.emplace(input, pages, scan, used);
-  }
+      : scan_(scan), layout_(layout_of(input, scan)), packets_(input, pages, scan, layout_.used) {}
 
   [[nodiscard]] const E57Scan& scan() const { return scan_; }
-  [[nodiscard]] Columns columns() const { return roles_.columns(); }
-  [[nodiscard]] std::uint64_t bytes() const { return packets_->bytes(); }
+  [[nodiscard]] Columns columns() const { return layout_.roles.columns(); }
+  [[nodiscard]] std::uint64_t bytes() const { return packets_.bytes(); }
 
   // `before`: points of the scans before, for the progress.
   void run(CloudBuilder& builder, Progress& progress, std::size_t before) {
     std::size_t done = 0;
-    while (const std::size_t count = packets_->next()) {
+    while (const std::size_t count = packets_.next()) {
       for (std::size_t i = 0; i < count; ++i) builder.add(row(i));
       done += count;
       progress.at(before + done);
@@ -95,28 +105,28 @@ class E57ScanReader {
 
  private:
   [[nodiscard]] double value(std::size_t column, Role role, std::size_t i) const {
-    const double value = packets_->values(column)[i];
-    if (role != Role::red && role != Role::green && role != Role::blue) return value;
+    const double number = packets_.values(column)[i];
+    if (role != Role::red && role != Role::green && role != Role::blue) return number;
     const E57Field& field = scan_.fields[column];
-    return 255 * (value - field.black) / (field.white - field.black);
+    return 255 * (number - field.black) / (field.white - field.black);
   }
 
   [[nodiscard]] Row row(std::size_t i) const {
     Row row{};
-    for (std::size_t k = 0; k < roles_.size(); ++k) {
-      if (const auto role = roles_[k]) row[index_of(*role)] = value(k, *role, i);
+    for (std::size_t k = 0; k < layout_.roles.size(); ++k) {
+      if (const auto role = layout_.roles[k]) row[index_of(*role)] = value(k, *role, i);
     }
     Eigen::Map<Eigen::Vector3d> point(row.data() + index_of(Role::x));
-    if (spherical_) point = cartesian(point);
+    if (layout_.spherical) point = cartesian(point);
     point = scan_.T_file_scan * Eigen::Vector3d(point);
-    if (invalid_ && packets_->values(*invalid_)[i] != 0) {
-      point.setConstant(
-          std::numeric_limits<double>::quiet_NaN());  // the builder drops and counts it
-    }
+    // The builder drops and counts what is no number.
+    if (layout_.invalid && packets_.values(*layout_.invalid)[i] != 0) row[0] = kNoNumber;
     Eigen::Map<Eigen::Vector3d> normal(row.data() + index_of(Role::normal_x));
     normal = scan_.T_file_scan.linear() * Eigen::Vector3d(normal);
     return row;
   }
+
+  static constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
   static Eigen::Vector3d cartesian(const Eigen::Vector3d& v) {
     const double across = v[0] * std::cos(v[2]);
@@ -124,10 +134,8 @@ class E57ScanReader {
   }
 
   const E57Scan& scan_;
-  Roles roles_;
-  bool spherical_;
-  std::optional<std::size_t> invalid_;  // the column that marks invalid points
-  std::optional<E57Packets> packets_;
+  E57Layout layout_;
+  E57Packets packets_;
 };
 
 // The scan that the input's name asks for, otherwise all that hold points.

@@ -53,7 +53,7 @@ class E57Packets {
   /// missing.
   [[nodiscard]] std::size_t next();
 
-  /// Of the points of the last next(): the numbers of a column that is used.
+  /// The numbers of a used column, of the points of the last next().
   [[nodiscard]] const std::vector<double>& values(std::size_t column) const {
     return columns_[column].values();
   }

@@ -15,7 +15,6 @@
 #include "apps/palpate/cli/matrix_pose.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_filter.hpp"
-#include "palpate/io/files.hpp"
 
 namespace palpate::app {
 namespace {
@@ -210,17 +209,6 @@ void name_all(std::vector<CloudArgument>& sources) {
   if (std::ranges::count_if(sources, standard_input) > 1) {
     throw UsageError("standard input (-) can be read only once; give a file for the other input");
   }
-}
-
-std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most) {
-  const std::vector<std::filesystem::path> paths = scans_of(source.path);
-  if (paths.size() == 1 || paths.size() > most) return {source};
-  std::vector<CloudArgument> scans;
-  for (const std::filesystem::path& path : paths) {
-    const std::string text = path.string();
-    scans.push_back({fmt::format("{}-{}", source.name, text.substr(text.rfind('#') + 1)), text});
-  }
-  return scans;
 }
 
 std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments) {

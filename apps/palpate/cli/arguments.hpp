@@ -82,11 +82,6 @@ inline constexpr const char* kPoseForm =
 /// for twice.
 void name_all(std::vector<CloudArgument>& sources);
 
-/// A source for each scan of an E57 file, named NAME-1 and so on; the source alone where it is
-/// another file, or has more than `most` scans, which are joined then.
-/// @throws Error as scans_of() does.
-[[nodiscard]] std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most);
-
 /// Both for each argument.
 [[nodiscard]] std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments);
 

@@ -14,6 +14,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
@@ -180,7 +181,7 @@ InfoReport study(const CloudArgument& argument, const ReadOptions& options, Trus
   return report;
 }
 
-// As touch takes them: each scan of a file by itself, unless there are too many.
+// Takes each scan of a file by itself, as touch does, unless there are too many.
 std::vector<CloudArgument> clouds_of(const InfoOptions& options) {
   std::vector<CloudArgument> clouds;
   for (const CloudArgument& argument : parse_clouds(options.clouds)) {

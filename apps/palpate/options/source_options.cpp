@@ -116,6 +116,17 @@ std::string cloud_help() {
       names);
 }
 
+std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most) {
+  const std::vector<std::filesystem::path> paths = scans_of(source.path);
+  if (paths.size() == 1 || paths.size() > most) return {source};
+  std::vector<CloudArgument> scans;
+  for (const std::filesystem::path& path : paths) {
+    const std::string text = path.string();
+    scans.push_back({fmt::format("{}-{}", source.name, text.substr(text.rfind('#') + 1)), text});
+  }
+  return scans;
+}
+
 void add_reading_options(OptionTable& table, ReadOptions& o) {
   table.under("Reading", "reading", true);
   table
