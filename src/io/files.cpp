@@ -86,7 +86,7 @@ CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& 
   const std::string name = path == "-" ? "standard input" : path.string();
   try {
     const bool is_file = std::filesystem::exists(path);
-    const Bytes bytes = read_bytes(is_file ? path : std::filesystem::path(split_scan(name).file));
+    const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
     return read_cloud_bytes(bytes.span(), name, options);
   } catch (const std::bad_alloc&) {
     throw Error(

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/touch_plan.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
@@ -59,11 +60,12 @@ TEST(Scans, EachOfAFileIsASourceOfItsOwn) {
 TEST(Scans, InfoTellsOfEachAndWhereItsScannerStood) {
   Shell shell;
   shell.write("house.e57", floor_e57(2));
-  const Outcome outcome = shell.run("info house.e57 --json info.json");
+  const Outcome outcome = shell.run("info house.e57");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const nlohmann::json clouds = nlohmann::json::parse(shell.read("info.json"));
-  ASSERT_EQ(clouds.size(), 2U);
-  EXPECT_THAT(clouds[1]["viewpoint"].get<std::vector<double>>(), ElementsAre(0.04, 0, 1));
+  EXPECT_THAT(outcome.out, HasSubstr("house-1 house.e57#1"));
+  EXPECT_THAT(outcome.out, HasSubstr("viewpoint  0, 0, 1\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("house-2 house.e57#2"));
+  EXPECT_THAT(outcome.out, HasSubstr("viewpoint  0.04, 0, 1\n"));
 }
 
 TEST(Scans, APoseOfTheFileIsOfAllItsScans) {
@@ -77,6 +79,17 @@ TEST(Scans, APoseOfTheFileIsOfAllItsScans) {
     EXPECT_EQ(plan.sources[i].options.T_world_sensor.translation(), Eigen::Vector3d(1, 2, 3));
   }
   EXPECT_TRUE(plan.sources[2].options.T_world_sensor.translation().isZero());
+}
+
+TEST(Scans, AScanMayHaveAPoseOfItsOwn) {
+  const Shell shell;
+  shell.write("house.e57", floor_e57(2));
+  const std::string house = shell.path("house.e57");
+  const TouchPlan plan =
+      planned(house + " --pose house-2=1,2,3,0,0,0,1 --pose house=4,0,0,0,0,0,1");
+  EXPECT_EQ(plan.sources[0].options.T_world_sensor.translation(), Eigen::Vector3d(4, 0, 0));
+  EXPECT_EQ(plan.sources[1].options.T_world_sensor.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_THROW((void)planned(house + " --pose house-3=1,2,3,0,0,0,1"), UsageError);
 }
 
 TEST(Scans, AreJoinedWhereASceneHasNoRoomForThem) {
