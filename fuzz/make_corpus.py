@@ -19,7 +19,7 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "cdr", "client_message", "depth", "frame_list", "haply_frame", "mcap", "poses",
+    if target not in ("any", "cdr", "client_message", "depth", "e57", "frame_list", "haply_frame", "mcap", "poses",
                       "remote_frame", "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
@@ -233,6 +233,47 @@ def packed():
     seed("gzip", "stored", gzip.compress(plain, compresslevel=0, mtime=0))
 
 
+def e57():
+    """E57 files without the CRCs of their pages, which the target adds."""
+    def columns(names, kind):
+        return "".join(f"<{name} type={kind}/>" for name in names)
+
+    def scan(at, points, prototype, more=""):
+        return (f'<vectorChild><name>a</name>{more}<points type="CompressedVector" fileOffset="{at}" '
+                f'recordCount="{points}"><prototype>{prototype}</prototype></points></vectorChild>')
+
+    def packet(*streams):
+        data = struct.pack("<H", len(streams)) + b"".join(struct.pack("<H", len(each)) for each in streams)
+        data += b"".join(streams)
+        data += bytes(-len(data) % 4)
+        return struct.pack("<BBH", 1, 0, len(data) + 3) + data
+
+    def file(packets, *scans):
+        size = 32 + len(packets)
+        data = struct.pack("<B7xQQQ", 1, size, 48 + 32, 0) + packets
+        xml = f"<e57Root><data3D>{''.join(scans)}</data3D><images2D><vectorChild/></images2D></e57Root>".encode()
+        head = struct.pack("<8sIIQQQQ", b"ASTM-E57", 1, 0, 1024, 48 + size, len(xml), 1024)
+        return head + data + xml
+
+    xs, ys, zs = ([p[k] for p in POINTS] for k in range(3))
+    doubles = [struct.pack("<4d", *each) for each in (xs, ys, zs)]
+    xyz = ("cartesianX", "cartesianY", "cartesianZ")
+    pose = "<pose><rotation><w>0.6</w><z>0.8</z></rotation><translation><x>5</x></translation></pose>"
+    seed("e57", "doubles", file(packet(*doubles), scan(48, 4, columns(xyz, '"Float"'), pose)))
+    uneven = packet(doubles[0], b"", doubles[2][:9]) + struct.pack("<BBH4x", 0, 0, 7) + packet(
+        b"", doubles[1], doubles[2][9:]) + struct.pack("<BBH", 2, 0, 3)
+    seed("e57", "uneven", file(uneven, scan(48, 4, columns(xyz, '"Float"'))))
+    spherical = columns(("sphericalRange", "sphericalAzimuth", "sphericalElevation"), '"Float" precision="single"')
+    singles = [struct.pack("<4f", *each) for each in (zs, xs, ys)]
+    state = '<sphericalInvalidState type="Integer" minimum="0" maximum="2"/>'
+    seed("e57", "spherical", file(packet(*singles, b"\x60"), scan(48, 4, spherical + state)))
+    scaled = columns(xyz, '"ScaledInteger" minimum="0" maximum="7" scale="0.125" offset="1"')
+    colors = columns(("colorRed", "colorGreen", "colorBlue"), '"Integer" minimum="0" maximum="255"')
+    bits = sum(value << 3 * i for i, value in enumerate((0, 2, 5, 7))).to_bytes(2, "little")
+    seed("e57", "scaled", file(packet(bits, bits, bits, *(bytes(each) for each in zip(*COLORS))),
+                               scan(48, 4, scaled + colors), scan(0, 0, "")))
+
+
 def sequences():
     camera = '"fx": 500, "fy": 510, "cx": 320, "cy": 240'
     seed("sequence", "least", "{" + camera + "}")
@@ -418,6 +459,6 @@ def messages():
     Cdr().header().put("IB", 1, 2).text("guard").text("off").text("").put("I", 1).text("key").text("value").seed("diagnostics")
 
 
-for make in (ply, pcd, las, laz, depth, text, packed, sequences, remote, client_messages, haply, mcap,
+for make in (ply, pcd, las, laz, depth, text, packed, e57, sequences, remote, client_messages, haply, mcap,
              messages):
     make()

@@ -12,7 +12,10 @@
 namespace palpate::python {
 namespace {
 
-constexpr const char* kRead = R"(Reads PLY, PCD, XYZ, OBJ, LAS, LAZ or a depth image, also gzipped.
+constexpr const char* kRead =
+    R"(Reads PLY, PCD, XYZ, OBJ, LAS, LAZ, E57 or a depth image, also gzipped.
+
+The scans of an E57 file are joined; "a.e57#2" is the second one.
 
 scale: metres for one of the file's units. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
 

@@ -27,6 +27,8 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return read_pcd(input);
     case FileKind::las:
       return read_las(input);
+    case FileKind::e57:
+      return read_e57(input);
     case FileKind::obj:
       return read_obj(input);
     case FileKind::text:
@@ -83,7 +85,8 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
 CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path == "-" ? "standard input" : path.string();
   try {
-    const Bytes bytes = read_bytes(path);
+    const bool is_file = std::filesystem::exists(path);
+    const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
     return read_cloud_bytes(bytes.span(), name, options);
   } catch (const std::bad_alloc&) {
     throw Error(
@@ -94,6 +97,23 @@ CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& 
 
 PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options) {
   return read_cloud_file(path, options).cloud;
+}
+
+std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path) {
+  constexpr std::string_view kE57 = "ASTM-E57";
+  std::error_code none;
+  if (extension(path.string()) != ".e57" || !std::filesystem::is_regular_file(path, none)) {
+    return {path};
+  }
+  const Bytes bytes = read_bytes(path);
+  const ReadOptions options;
+  const Input input{bytes.span(), path.string(), options};
+  if (!input.text().starts_with(kE57)) return {path};
+  std::vector<std::filesystem::path> scans;
+  for (const std::size_t number : e57_scans_with_points(input)) {
+    scans.emplace_back(fmt::format("{}#{}", path.string(), number));
+  }
+  return scans.size() > 1 ? scans : std::vector{path};
 }
 
 namespace {

@@ -150,6 +150,14 @@ inline constexpr std::size_t kDecodingShare = 4;
 
 }  // namespace laz
 
+/// E57: the scans that hold points, or one that the name asks for ("house.e57#2"), in the file's
+/// frame. Points marked invalid are dropped; of several scans the columns are kept that all have.
+/// The viewpoint is kept of a single scan that a scanner made.
+[[nodiscard]] CloudFile read_e57(const Input& input);
+
+/// The numbers of the scans that hold points, from 1 on.
+[[nodiscard]] std::vector<std::size_t> e57_scans_with_points(const Input& input);
+
 /// The vertices of a Wavefront OBJ file ("v x y z", with "r g b" where the first vertex has them),
 /// and its normals where there are as many "vn" as "v". Everything else is skipped.
 [[nodiscard]] CloudFile read_obj(const Input& input);

@@ -44,12 +44,19 @@ std::string extension(std::string_view name) {
   return result;
 }
 
+ScanName split_scan(const std::string& name) {
+  const std::size_t mark = name.rfind('#');
+  if (mark == std::string::npos || extension(name.substr(0, mark)) != ".e57") return {name};
+  const std::optional<std::size_t> number = parse_count(std::string_view(name).substr(mark + 1));
+  return number ? ScanName{name.substr(0, mark), number} : ScanName{name};
+}
+
 namespace {
 
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, optionally "
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, 16-bit depth PNG and PGM, optionally "
     "gzipped";
 
 struct Known {
@@ -58,14 +65,9 @@ struct Known {
 };
 
 constexpr Known kKnown[] = {
-    {"ply\n", FileKind::ply},
-    {"ply\r", FileKind::ply},
-    {"ply ", FileKind::ply},
-    {"LASF", FileKind::las},
-    {"\x89PNG\r\n\x1a\n", FileKind::png},
-    {"P5", FileKind::pgm},
-    {"\x1f\x8b", FileKind::gzip},
-    {"# .PCD", FileKind::pcd},
+    {"ply\n", FileKind::ply}, {"ply\r", FileKind::ply},     {"ply ", FileKind::ply},
+    {"LASF", FileKind::las},  {"ASTM-E57", FileKind::e57},  {"\x89PNG\r\n\x1a\n", FileKind::png},
+    {"P5", FileKind::pgm},    {"\x1f\x8b", FileKind::gzip}, {"# .PCD", FileKind::pcd},
 };
 
 struct Refused {
@@ -92,7 +94,6 @@ constexpr Refused kRefused[] = {
     {"MM\0*"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
     {"P6", "a colour picture (PPM)", "Give the 16-bit depth image of the camera"},
     {"P2", "a PGM written as text", "Convert it to binary PGM (P5) or to 16-bit PNG"},
-    {"ASTM-E57", "an E57 scan", kExport},
     {"glTF", "a binary glTF model", kExport},
     {"\x89HDF", "an HDF5 file", "Export the points as PLY or text"},
     {"OFF", "an OFF model", kExport},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,13 @@ struct Input {
 /// The last extension of a name, lower case, with its dot: ".las"; "" without one.
 [[nodiscard]] std::string extension(std::string_view name);
 
+/// The file and the number in "house.e57#2", the second scan in it; other names have no number.
+struct ScanName {
+  std::string file;
+  std::optional<std::size_t> number{};
+};
+[[nodiscard]] ScanName split_scan(const std::string& name);
+
 /// Tells the caller's callback how far a read has come, about a hundred times in all, so that it
 /// costs a comparison a point.
 class Progress {
@@ -74,10 +82,10 @@ class Progress {
   std::size_t next_;
 };
 
-enum class FileKind { ply, pcd, las, obj, text, png, pgm, gzip };
+enum class FileKind { ply, pcd, las, e57, obj, text, png, pgm, gzip };
 
 /// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
-/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, E57, STL,
+/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, STL,
 ///   JSON, a web page, ...) and about bytes that are nothing we know.
 [[nodiscard]] FileKind kind_of(const Input& input);
 

@@ -64,7 +64,10 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 }  // namespace
 
 std::string file_of(const std::string& source) {
-  if (!source.starts_with(kBag)) return source;
+  if (!source.starts_with(kBag)) {
+    const std::size_t scan = source.rfind(".e57#");
+    return scan == std::string::npos ? source : source.substr(0, scan + 4);
+  }
   // The file in "runs/monday.mcap:/camera/depth,frame=world".
   const std::string text = source.substr(kBag.size());
   std::error_code none;

@@ -33,7 +33,8 @@ struct PoseArgument {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< T_world_cloud
 };
 
-/// The path that a source's text names: of "bag:run.mcap:/camera/depth,frame=odom" run.mcap.
+/// The path that a source's text names: of "bag:run.mcap:/camera/depth,frame=odom" run.mcap, of
+/// "house.e57#2" house.e57.
 [[nodiscard]] std::string file_of(const std::string& source);
 
 /// The numbers in `text`, separated by commas.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -13,9 +14,11 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
+#include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
 
 namespace palpate::app {
@@ -178,6 +181,15 @@ InfoReport study(const CloudArgument& argument, const ReadOptions& options, Trus
   return report;
 }
 
+// Takes each scan of a file by itself, as touch does, unless there are too many.
+std::vector<CloudArgument> clouds_of(const InfoOptions& options) {
+  std::vector<CloudArgument> clouds;
+  for (const CloudArgument& argument : parse_clouds(options.clouds)) {
+    std::ranges::copy(split_scans(argument, Scene::kMaxSources), std::back_inserter(clouds));
+  }
+  return clouds;
+}
+
 // One a cloud, or none. Whether they can be made is tried before any work.
 std::vector<TrustPicture> pictures_of(const std::vector<CloudArgument>& clouds,
                                       const InfoOptions& options) {
@@ -220,7 +232,7 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
 
 void info(const InfoOptions& options) {
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
-  const std::vector<CloudArgument> arguments = parse_clouds(options.clouds);
+  const std::vector<CloudArgument> arguments = clouds_of(options);
   std::vector<TrustPicture> pictures = pictures_of(arguments, options);
   std::FILE* out = options.json == "-" ? stderr : stdout;
   for (std::size_t i = 0; i < arguments.size(); ++i) {

@@ -6,9 +6,11 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/touch_options.hpp"
+#include "palpate/scene/scene.hpp"
 
 namespace palpate::app {
 
@@ -89,11 +91,16 @@ void add_command_line(std::vector<DescribedSource>& sources, const TouchChoices&
   }
 }
 
-void place(std::vector<DescribedSource>& sources, const std::vector<PoseArgument>& poses) {
+auto named(std::vector<DescribedSource>& sources, const std::string& name) {
+  return std::ranges::find(sources, name, [](const DescribedSource& each) -> const std::string& {
+    return each.plan.argument.name;
+  });
+}
+
+void place(std::vector<DescribedSource>& sources, std::span<const PoseArgument> poses) {
   std::set<std::string> placed;
   for (const PoseArgument& pose : poses) {
-    const auto source = std::ranges::find_if(
-        sources, [&](const DescribedSource& each) { return each.plan.argument.name == pose.name; });
+    const auto source = named(sources, pose.name);
     if (source == sources.end()) {
       std::string names;
       for (const DescribedSource& each : sources) names += " " + each.plan.argument.name;
@@ -105,6 +112,31 @@ void place(std::vector<DescribedSource>& sources, const std::vector<PoseArgument
     }
     source->plan.options.T_world_sensor = pose.pose;
   }
+}
+
+// Makes each scan of a file a source of its own, as far as a scene has room for them.
+std::vector<DescribedSource> scans_apart(const std::vector<DescribedSource>& sources) {
+  std::size_t room = Scene::kMaxSources - std::min(Scene::kMaxSources, sources.size());
+  std::vector<DescribedSource> result;
+  for (const DescribedSource& source : sources) {
+    const std::vector<CloudArgument> scans = split_scans(source.plan.argument, room + 1);
+    room -= scans.size() - 1;
+    for (const CloudArgument& scan : scans) {
+      result.push_back(source);
+      result.back().plan.argument = scan;
+    }
+  }
+  name(result);
+  return result;
+}
+
+// A pose of a file is of all its scans, unless one has a pose of its own.
+void place_and_split(std::vector<DescribedSource>& sources, std::vector<PoseArgument> poses) {
+  const auto of_scans = std::ranges::stable_partition(
+      poses, [&](const PoseArgument& pose) { return named(sources, pose.name) != sources.end(); });
+  place(sources, std::span(poses.begin(), of_scans.begin()));
+  sources = scans_apart(sources);
+  place(sources, of_scans);
 }
 
 // A tool of that size can be felt with no smaller R, m.
@@ -155,7 +187,7 @@ std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
   require(
       !sources.empty(),
       "no source given; name a file, a camera or a sequence ('palpate touch --help' lists them)");
-  place(sources, choices.poses);
+  place_and_split(sources, choices.poses);
   for (DescribedSource& source : sources) complete(source.plan, surface);
   return sources;
 }
@@ -169,7 +201,7 @@ bool keeps_history(Policy policy) {
 }
 
 void add_facts(RunFacts& facts, const SourcePlan& source) {
-  const std::string& path = source.argument.path;
+  const std::string path = file_of(source.argument.path);
   const bool stream = source.kind == SourceKind::stream;
   const bool organised = source.kind == SourceKind::cloud && may_be_organised(path);
   const bool depth = source.kind != SourceKind::cloud || organised;

@@ -111,9 +111,20 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, optionally "
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, depth PNG or PGM, optionally "
       "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
       names);
+}
+
+std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most) {
+  const std::vector<std::filesystem::path> paths = scans_of(source.path);
+  if (paths.size() == 1 || paths.size() > most) return {source};
+  std::vector<CloudArgument> scans;
+  for (const std::filesystem::path& path : paths) {
+    const std::string text = path.string();
+    scans.push_back({fmt::format("{}-{}", source.name, text.substr(text.rfind('#') + 1)), text});
+  }
+  return scans;
 }
 
 void add_reading_options(OptionTable& table, ReadOptions& o) {

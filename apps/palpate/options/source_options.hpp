@@ -36,6 +36,11 @@ void add_source_options(OptionTable& table, SourcePlan& source);
 /// Help text for the sources of a command.
 [[nodiscard]] std::string cloud_help();
 
+/// A source for each scan of an E57 file, named NAME-1 and so on; the source alone where it is
+/// another file, or has more than `most` scans, which are joined then.
+/// @throws Error as scans_of() does.
+[[nodiscard]] std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t most);
+
 /// The policy for a source's frames or clouds.
 [[nodiscard]] Policy policy_of(const SourcePlan& source);
 

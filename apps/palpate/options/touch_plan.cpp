@@ -217,7 +217,10 @@ TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
     if (like.options.prepare.viewpoint) like.options.prepare.orientation = {};
     like.options.prepare.viewpoint.reset();
   }
-  plan.sources = {choose_sources(choices, plan.surface).front().plan};
+  plan.sources.clear();
+  for (const DescribedSource& source : choose_sources(choices, plan.surface)) {
+    plan.sources.push_back(source.plan);
+  }
   require(plan.sources.front().kind != SourceKind::stream,
           "a page opens clouds and depth images, no recordings");
   plan.motion.trajectory.clear();

@@ -189,7 +189,9 @@ std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, st
   try {
     const std::string file = folder.write(name, std::exchange(bytes, {}));
     auto start = std::make_unique<Start>(plan_of_file(plan, file), clock);
-    start->loaded.sources.front().plan.argument.path = name;
+    for (LoadedSource& source : start->loaded.sources) {
+      source.plan.argument.path.erase(0, place.size());
+    }
     return start;
   } catch (const std::bad_alloc&) {
     throw Error(name + " is too large for the memory that is left");

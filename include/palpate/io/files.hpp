@@ -31,8 +31,10 @@ struct CloudFile {
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
 };
 
-/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ (COPC too), 16-bit depth PNG and PGM; gzip around any
-/// of them. The kind is told from the bytes first and from the name second;
+/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ (COPC too), E57, 16-bit depth PNG and PGM; gzip around
+/// any of them. All scans of an E57 file are joined in the file's frame; "house.e57#2" is the second
+/// one alone, with its viewpoint where a scanner stood there. The kind is told from the bytes first
+/// and from the name second;
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
 ///
@@ -46,6 +48,10 @@ struct CloudFile {
 /// The same for bytes in memory. `name` stands for the file in messages and gives its extension.
 [[nodiscard]] CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
                                          const ReadOptions& options = {});
+
+/// The paths of an E57 file's scans that hold points, if it has several: "house.e57#1" and so on.
+/// Any other path alone. @throws Error as read_cloud_file() does.
+[[nodiscard]] std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path);
 
 /// The cloud alone.
 [[nodiscard]] PointCloud read_cloud(const std::filesystem::path& path,
