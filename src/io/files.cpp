@@ -11,6 +11,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/splats.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 
@@ -35,6 +36,10 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return cloud_of(input, read_png(input));
     case FileKind::pgm:
       return cloud_of(input, read_pgm(input));
+    case FileKind::spz:
+      return shell_file(input, read_spz);
+    case FileKind::splat:
+      return shell_file(input, read_dot_splat);
     case FileKind::gzip:
       break;
   }

@@ -49,8 +49,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, optionally "
-    "gzipped";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, SPZ, .splat, 16-bit depth PNG and PGM, "
+    "optionally gzipped";
 
 struct Known {
   std::string_view start;
@@ -64,6 +64,7 @@ constexpr Known kKnown[] = {
     {"LASF", FileKind::las},
     {"\x89PNG\r\n\x1a\n", FileKind::png},
     {"P5", FileKind::pgm},
+    {"NGSP", FileKind::spz},
     {"\x1f\x8b", FileKind::gzip},
     {"# .PCD", FileKind::pcd},
 };
@@ -146,6 +147,14 @@ void refuse_known(const Input& input) {
   }
 }
 
+// Formats of splats that are not read, which may begin like anything.
+void refuse_splats(const Input& input) {
+  const std::string ending = extension(input.name);
+  if (ending != ".sog" && ending != ".ksplat" && ending != ".lcc") return;
+  fail(input, fmt::format("splats as {} are not read", ending),
+       fmt::format("Convert them: npx @playcanvas/splat-transform {} splats.ply", input.name));
+}
+
 [[noreturn]] void refuse_unknown(const Input& input) {
   const std::string ending = extension(input.name);
   if (ending == ".stl") fail(input, "this is an STL model", kExport);
@@ -162,6 +171,8 @@ FileKind kind_of(const Input& input) {
   if (input.bytes.empty()) {
     fail(input, "the file is empty", "Download or export it again");
   }
+  refuse_splats(input);
+  if (extension(input.name) == ".splat") return FileKind::splat;
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
