@@ -34,7 +34,7 @@ struct SplatGrid {
   }
 
   [[nodiscard]] static std::array<std::int64_t, 3> place_of(std::uint64_t key) {
-    constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+    constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;  // of an axis (derived)
     return {static_cast<std::int64_t>(key >> (2 * kBits)),
             static_cast<std::int64_t>(key >> kBits & kMask),
             static_cast<std::int64_t>(key & kMask)};

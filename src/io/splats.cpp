@@ -53,6 +53,18 @@ Eigen::Vector4f with_largest(std::size_t largest, const Eigen::Vector3f& others)
   return all;
 }
 
+namespace {
+
+// Puts the origin where a reader of the same points would put it.
+void move_origin(PointCloud& cloud) {
+  cloud.origin = choose_origin(cloud.size(), [&](std::size_t i) { return cloud.point(i); });
+  for (Eigen::Vector3f& p : cloud.positions) {
+    p = (p.cast<double>() - cloud.origin).cast<float>();
+  }
+}
+
+}  // namespace
+
 CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   constexpr double kReading = 0.3;  // of the time, about (measured)
   ReadOptions part = input.options;
@@ -69,6 +81,7 @@ CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   }
   CloudFile file;
   file.cloud = std::move(shell.cloud);
+  move_origin(file.cloud);
   file.format = std::move(rows.format);
   file.declared = rows.splats.size() + rows.dropped;
   file.dropped = rows.dropped;

@@ -40,6 +40,11 @@ void refuse_material(const CloudArgument& source) {
                   source.path));
 }
 
+void refuse_voxel(const CloudArgument& source) {
+  throw Error(fmt::format(
+      "--voxel is not for splats, whose points are one a cell; remove it for {}", source.path));
+}
+
 // The median of what was measured, m; 0: nothing was.
 double middle_depth(const DepthFrame& frame) {
   std::vector<float> depths;
@@ -105,12 +110,16 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
+  if (loaded.file.splats && plan.options.prepare.voxel.value_or(0) > 0) refuse_voxel(plan.argument);
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
   result.read_seconds = loaded.seconds;
+  result.splats = loaded.file.splats;
+  if (plan.reading.scale == 1 && !plan.reading.length) {
+    result.units = units_of(loaded.file, core_of(loaded.file.cloud), plan.reading);
+  }
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
-  if (plan.reading.scale == 1) result.units = guess_units(core_of(*cloud), result.format);
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
     check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
   }
