@@ -105,7 +105,8 @@ SplatFile read_dot_splat(const Input& input) {
     const std::byte* row = input.bytes.data() + at;
     const auto number = [&](std::size_t k) { return load_as<float>(row + 4 * k); };
     const auto byte = [&](std::size_t k) { return std::to_integer<std::uint8_t>(row[24 + k]); };
-    const auto turn = [&](std::size_t k) { return static_cast<float>(byte(4 + k)) - 128; };
+    // Writers cut 128 + 128 x down to a whole number: half a step is added back.
+    const auto turn = [&](std::size_t k) { return static_cast<float>(byte(4 + k)) - 127.5F; };
     file.add({.position = {number(0), number(1), number(2)},
               .sigma = {number(3), number(4), number(5)},
               .rotation = {turn(0), turn(1), turn(2), turn(3)},

@@ -33,20 +33,23 @@ inline double harmonic_of(std::uint8_t color) {
   return (color / 255.0 - 0.5) / 0.28209479177387814;
 }
 
+inline constexpr int kHarmonics = 9;  ///< coefficients of degree 1
+
 inline std::string splat_ply(std::span<const Splat> splats) {
   std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                     std::to_string(splats.size()) + "\n";
-  for (const char* name :
-       {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "f_rest_0", "opacity",
-        "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"}) {
-    out += std::string("property float ") + name + "\n";
-  }
+  const auto add = [&](std::initializer_list<const char*> names) {
+    for (const char* name : names) out += std::string("property float ") + name + "\n";
+  };
+  add({"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"});
+  for (int k = 0; k < kHarmonics; ++k) add({("f_rest_" + std::to_string(k)).c_str()});
+  add({"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"});
   out += "end_header\n";
   for (const Splat& s : splats) {
     for (const float x : s.position) put(out, x);
     for (int k = 0; k < 3; ++k) put(out, 0.F);  // normals that are none
     for (const std::uint8_t c : s.color) put(out, static_cast<float>(harmonic_of(c)));
-    put(out, 0.F);
+    for (int k = 0; k < kHarmonics; ++k) put(out, 0.F);
     put(out, std::log(s.opacity / (1 - s.opacity)));
     for (const float x : s.sigma) put(out, std::log(x));
     const Eigen::Quaternionf& q = s.rotation;
@@ -140,7 +143,7 @@ inline std::string dot_splat(std::span<const Splat> splats) {
     for (const std::uint8_t c : s.color) put(out, c);
     put_byte(out, 255 * s.opacity);
     const Eigen::Quaternionf& q = s.rotation;
-    for (const float x : {q.w(), q.x(), q.y(), q.z()}) put_byte(out, 128 + 128 * x);
+    for (const float x : {q.w(), q.x(), q.y(), q.z()}) put_byte(out, std::floor(128 + 128 * x));
   }
   return out;
 }
