@@ -151,6 +151,9 @@ SplatFile read_splat_ply(const Input& input) {
   const auto trained = std::ranges::find_if(header.elements, is_trained);
   if (trained != header.elements.end()) return read_trained(input, header, *trained);
   const auto packed = std::ranges::find_if(header.elements, is_packed);
+  if (packed == header.elements.end()) {
+    fail(input, "no element of this PLY file holds splats", "Export it again with its splats");
+  }
   const auto chunk = std::find_if(header.elements.begin(), packed, is_chunk);
   if (chunk == packed) {
     fail(input, "its packed splats come without an element \"chunk\" before them",

@@ -40,11 +40,6 @@ void refuse_material(const CloudArgument& source) {
                   source.path));
 }
 
-void refuse_voxel(const CloudArgument& source) {
-  throw Error(fmt::format(
-      "--voxel is not for splats, whose points are one a cell; remove it for {}", source.path));
-}
-
 // The median of what was measured, m; 0: nothing was.
 double middle_depth(const DepthFrame& frame) {
   std::vector<float> depths;
@@ -110,7 +105,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
-  if (loaded.file.splats && plan.options.prepare.voxel.value_or(0) > 0) refuse_voxel(plan.argument);
+  check_voxel(loaded, plan.options.prepare);
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
