@@ -5,6 +5,7 @@ beside them as found-* and are left alone."""
 
 import base64
 import gzip
+import math
 import pathlib
 import struct
 import zlib
@@ -459,6 +460,61 @@ def messages():
     Cdr().header().put("IB", 1, 2).text("guard").text("off").text("").put("I", 1).text("key").text("value").seed("diagnostics")
 
 
+def splats():
+    """A flat square of 6 x 6 round splats, half opaque, in each format; large enough for a shell."""
+    places = [(0.02 * i, 0.02 * j, 0.0) for i in range(6) for j in range(6)]
+    sigmas = (0.001, 0.02, 0.02)
+    n = len(places)
+    logs = [math.log(x) for x in sigmas]
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {n}\n"
+    names = ("x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3").split()
+    columns = "".join(f"property float {name}\n" for name in names)
+    turn = (0.5 ** 0.5, 0, 0.5 ** 0.5, 0)  # w x y z: the short axis along z
+    seed("splat_ply", "trained", (head + columns + "end_header\n").encode() + b"".join(
+        struct.pack("<14f", *p, 1, 0, -1, 2, *logs, *turn) for p in places))
+    names = [f"{end}_{axis}" for what in ("", "scale_") for end in ("min", "max")
+             for axis in (what + k for k in "xyz")]
+    chunk = "".join(f"property float {name}\n" for name in names)
+    packed = "".join(f"property uint packed_{name}\n" for name in ("position", "rotation", "scale", "color"))
+    rows = b"".join(struct.pack("<4I", (j * 409) << 21 | (i * 204) << 11,
+                                512 << 20 | 1023 << 10 | 512, 0, 0xc86432d0)
+                    for i in range(6) for j in range(6))
+    seed("splat_ply", "compressed", head.replace("element", f"element chunk 1\n{chunk}element").encode()
+         + (packed + "end_header\n").encode()
+         + struct.pack("<12f", 0, 0, 0, 0.1, 0.1, 0.01, *logs, *logs) + rows)
+    seed("splat", "plain", b"".join(
+        struct.pack("<6f8B", *p, *sigmas, 200, 100, 50, 220, 218, 128, 218, 128) for p in places))
+    for version in (1, 2, 3):
+        seed("spz", f"version{version}", spz_header(version, n)
+             + b"".join(spz_columns(version, places, logs)))
+    columns = spz_columns(4, places, logs)
+    streams = [zstd_stored(column) for column in columns]
+    table = b"".join(struct.pack("<QQ", len(s), len(c)) for s, c in zip(streams, columns))
+    seed("spz", "version4", spz_header(4, n) + struct.pack("<I12x", 32) + table + b"".join(streams))
+
+
+def spz_header(version, count):
+    return b"NGSP" + struct.pack("<II4B", version, count, 0, 12, 0, 5 if version == 4 else 0)
+
+
+def spz_columns(version, places, logs):
+    """Positions, alphas, colours, scales, rotations."""
+    def position(p):
+        if version == 1:
+            return struct.pack("<3e", *p)
+        return b"".join(round(x * 4096).to_bytes(3, "little", signed=True) for x in p)
+    turn = struct.pack("<I", 3 << 30 | 511 << 10) if version >= 3 else bytes([128, 218, 128])
+    n = len(places)
+    return [b"".join(map(position, places)), bytes([220]) * n, bytes([160, 128, 96]) * n,
+            bytes(round(16 * (x + 10)) for x in logs) * n, turn * n]
+
+
+def zstd_stored(data):
+    """A zstd frame of one raw block."""
+    return (struct.pack("<IBI", 0xfd2fb528, 0xa0, len(data))
+            + (len(data) << 3 | 1).to_bytes(3, "little") + data)
+
+
 for make in (ply, pcd, las, laz, depth, text, packed, e57, sequences, remote, client_messages, haply, mcap,
-             messages):
+             messages, splats):
     make()

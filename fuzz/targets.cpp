@@ -21,6 +21,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/splats.hpp"
 #include "memory_file.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
@@ -33,10 +34,10 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr auto kNames = std::to_array<std::string_view>(
-    {"any",          "cdr",         "copc",       "depth", "e57",   "frame_list",
-     "gzip",         "haply_frame", "las",        "laz",   "mcap",  "obj",
-     "pcd",          "pgm",         "ply",        "png",   "poses", "remote_frame",
-     "remote_state", "sequence",    "trajectory", "xyz"});
+    {"any",         "cdr", "copc",       "depth",        "e57",          "frame_list", "gzip",
+     "haply_frame", "las", "laz",        "mcap",         "obj",          "pcd",        "pgm",
+     "ply",         "png", "poses",      "remote_frame", "remote_state", "sequence",   "splat",
+     "splat_ply",   "spz", "trajectory", "xyz"});
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -48,7 +49,7 @@ void check_promises(const CloudFile& file) {
   const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
   expect(n > 0, "a cloud without points");
   expect(fits(cloud.normals) && fits(cloud.colors) && fits(cloud.intensities), "column lengths");
-  expect(file.declared == n + file.dropped, "counts that do not add up");
+  expect(file.splats || file.declared == n + file.dropped, "counts that do not add up");
   expect(cloud.origin.allFinite(), "origin");
   expect(!cloud.viewpoint || cloud.viewpoint->allFinite(), "viewpoint");
   for (const auto& p : cloud.positions) expect(p.allFinite(), "a position that is not finite");
@@ -242,6 +243,9 @@ CloudFile read_as(std::string_view name, const io::Input& input) {
   if (name == "pgm") return io::cloud_of(input, io::read_pgm(input));
   if (name == "ply") return io::read_ply(input);
   if (name == "png") return io::cloud_of(input, io::read_png(input));
+  if (name == "splat") return io::shell_file(input, io::read_dot_splat);
+  if (name == "splat_ply") return io::shell_file(input, io::read_splat_ply);
+  if (name == "spz") return io::shell_file(input, io::read_spz);
   if (name == "xyz") return io::read_xyz(input);
   return read_cloud_bytes(input.bytes, input.name, input.options);
 }

@@ -158,6 +158,10 @@ std::vector<std::array<std::uint8_t, 3>> byte_colors(
 
 void check_options(const Input& input) {
   const double scale = input.options.scale;
+  const double length = input.options.length.value_or(1);
+  if (!(std::isfinite(length) && length > 0)) {
+    fail(input, fmt::format("no cloud can be {} m long", length), "Give a length above zero");
+  }
   if (std::isfinite(scale) && scale > 0) return;
   fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
        "Give a scale above zero, e.g. 0.001 for millimetres or 0.3048 for feet");

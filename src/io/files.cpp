@@ -11,6 +11,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/splats.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 
@@ -37,6 +38,10 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return cloud_of(input, read_png(input));
     case FileKind::pgm:
       return cloud_of(input, read_pgm(input));
+    case FileKind::spz:
+      return shell_file(input, read_spz);
+    case FileKind::splat:
+      return shell_file(input, read_dot_splat);
     case FileKind::gzip:
       break;
   }
@@ -57,6 +62,41 @@ Bytes unpack(const Input& input, const std::string& inside) {
   return gunzip(input);
 }
 
+// The longest side of the cloud without the outermost half percent at either end, m.
+double typical_length(const PointCloud& cloud) {
+  constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)
+  const std::size_t left_out = cloud.size() / kOutermost;
+  std::vector<float> values(cloud.size());
+  float longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::transform(cloud.positions, values.begin(),
+                           [&](const Eigen::Vector3f& p) { return p[axis]; });
+    const auto low = values.begin() + static_cast<std::ptrdiff_t>(left_out);
+    const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(left_out);
+    std::nth_element(values.begin(), low, values.end());
+    const float lower = *low;
+    std::nth_element(values.begin(), high, values.end());
+    longest = std::max(longest, *high - lower);
+  }
+  return static_cast<double>(longest);
+}
+
+// Makes the cloud as long as the caller says it is.
+void fit_length(const Input& input, CloudFile& file) {
+  if (!input.options.length) return;
+  PointCloud& cloud = file.cloud;
+  const double length = typical_length(cloud);
+  if (!(length > 0)) {
+    fail(input, "all points are at one place, so no length fits",
+         "Give no length, or another file");
+  }
+  const double factor = *input.options.length / length;
+  for (Eigen::Vector3f& p : cloud.positions) p *= static_cast<float>(factor);
+  cloud.origin *= factor;
+  if (cloud.viewpoint) *cloud.viewpoint *= factor;
+  if (file.splats) file.splats->spacing *= factor;
+}
+
 CloudFile read_packed(const Input& input) {
   const Bytes unpacked = unpack(input, name_inside(input.name));
   const Input inside{unpacked.span(), name_inside(input.name), input.options};
@@ -74,6 +114,7 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
   try {
     const FileKind kind = kind_of(input);
     CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
+    fit_length(input, file);
     if (options.progress) options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {

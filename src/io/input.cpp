@@ -56,8 +56,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, 16-bit depth PNG and PGM, optionally "
-    "gzipped";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, SPZ, .splat, 16-bit depth PNG and "
+    "PGM, "
+    "optionally gzipped";
 
 struct Known {
   std::string_view start;
@@ -65,9 +66,10 @@ struct Known {
 };
 
 constexpr Known kKnown[] = {
-    {"ply\n", FileKind::ply}, {"ply\r", FileKind::ply},     {"ply ", FileKind::ply},
-    {"LASF", FileKind::las},  {"ASTM-E57", FileKind::e57},  {"\x89PNG\r\n\x1a\n", FileKind::png},
-    {"P5", FileKind::pgm},    {"\x1f\x8b", FileKind::gzip}, {"# .PCD", FileKind::pcd},
+    {"ply\n", FileKind::ply},  {"ply\r", FileKind::ply},    {"ply ", FileKind::ply},
+    {"LASF", FileKind::las},   {"ASTM-E57", FileKind::e57}, {"\x89PNG\r\n\x1a\n", FileKind::png},
+    {"P5", FileKind::pgm},     {"NGSP", FileKind::spz},     {"\x1f\x8b", FileKind::gzip},
+    {"# .PCD", FileKind::pcd},
 };
 
 struct Refused {
@@ -147,6 +149,14 @@ void refuse_known(const Input& input) {
   }
 }
 
+// Formats of splats that are not read, which may begin like anything.
+void refuse_splats(const Input& input) {
+  const std::string ending = extension(input.name);
+  if (ending != ".sog" && ending != ".ksplat" && ending != ".lcc") return;
+  fail(input, fmt::format("splats as {} are not read", ending),
+       fmt::format("Convert them: npx @playcanvas/splat-transform {} splats.ply", input.name));
+}
+
 [[noreturn]] void refuse_unknown(const Input& input) {
   const std::string ending = extension(input.name);
   if (ending == ".stl") fail(input, "this is an STL model", kExport);
@@ -163,6 +173,8 @@ FileKind kind_of(const Input& input) {
   if (input.bytes.empty()) {
     fail(input, "the file is empty", "Download or export it again");
   }
+  refuse_splats(input);
+  if (extension(input.name) == ".splat") return FileKind::splat;
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }

@@ -1,62 +1,15 @@
-// Reads the vertices of PLY files, as text or as bytes of either order.
-#include <fmt/format.h>
-
+// Reads the vertices of PLY files as points, or as splats where that is what they are.
 #include <algorithm>
-#include <bit>
+#include <string>
 
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/text_scanner.hpp"
+#include "io/ply_rows.hpp"
+#include "io/splats.hpp"
 
 namespace palpate::io {
 namespace {
-
-// The two ways to get the next number of an element; false at the end of the bytes.
-class AsciiCursor {
- public:
-  AsciiCursor(const Input& input, std::size_t offset) : scanner_(input, offset) {}
-  bool next(NumberType, double& value) {
-    const std::optional<double> number = scanner_.next_number();
-    value = number.value_or(0);
-    return number.has_value();
-  }
-  bool skip(NumberType, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (scanner_.next_token().empty()) return false;
-    }
-    return true;
-  }
-  [[nodiscard]] std::size_t offset() const { return scanner_.offset(); }
-  static std::size_t least_size(NumberType) { return 2; }  // a digit and a space
-
- private:
-  TextScanner scanner_;
-};
-
-class BinaryCursor {
- public:
-  BinaryCursor(const Input& input, std::size_t offset, std::endian order)
-      : bytes_(input.bytes), offset_(offset), order_(order) {}
-  bool next(NumberType type, double& value) {
-    if (bytes_.size() - offset_ < size_of(type)) return false;
-    value = load_number(type, bytes_.data() + offset_, order_);
-    offset_ += size_of(type);
-    return true;
-  }
-  bool skip(NumberType type, std::size_t count) {
-    if ((bytes_.size() - offset_) / size_of(type) < count) return false;
-    offset_ += count * size_of(type);
-    return true;
-  }
-  [[nodiscard]] std::size_t offset() const { return offset_; }
-  static std::size_t least_size(NumberType type) { return size_of(type); }
-
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t offset_;
-  std::endian order_;
-};
 
 struct VertexColumns {
   Roles roles;  // one a property
@@ -76,110 +29,35 @@ VertexColumns columns_of(const PlyElement& element) {
   return result;
 }
 
-template <class Cursor>
-class PlyReader {
- public:
-  PlyReader(const Input& input, const PlyHeader& header, Cursor cursor)
-      : input_(input), header_(header), cursor_(std::move(cursor)) {}
-
-  CloudFile run(std::string format) {
-    for (const PlyElement& element : header_.elements) {
-      const VertexColumns columns = columns_of(element);
-      if (columns.roles.has_point()) return read_vertices(element, columns, std::move(format));
-      skip_element(element);
-    }
-    fail(input_, "no element of this PLY file has the properties x, y and z",
-         "Export it again with its vertices");
+CloudFile read_vertices(const Input& input, const PlyHeader& header, const PlyElement& element,
+                        const VertexColumns& columns) {
+  CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
+                       most_rows(input, header, element));
+  PlyTable table{&element, {}, std::vector<double>(kRoleCount, 0), {}};
+  for (std::size_t k = 0; k < columns.roles.size(); ++k) {
+    const std::optional<Role> role = columns.roles[k];
+    table.places.push_back(role ? std::optional(index_of(*role)) : std::nullopt);
   }
-
- private:
-  CloudFile read_vertices(const PlyElement& element, const VertexColumns& columns,
-                          std::string format) {
-    const std::size_t room = (input_.bytes.size() - cursor_.offset() + 1) / least_row(element);
-    CloudBuilder builder(input_, columns.roles.columns(), columns.color_scale,
-                         std::min(element.count, room));
-    Progress progress(input_.options, input_.bytes.size());
-    Row row{};
-    for (std::size_t i = 0; i < element.count; ++i) {
-      if (!read_row(element, columns, row)) fail_cut(element, i);
-      builder.add(row);
-      progress.at(cursor_.offset());
-    }
-    return builder.finish(std::move(format));
-  }
-
-  bool read_row(const PlyElement& element, const VertexColumns& columns, Row& row) {
-    for (std::size_t k = 0; k < element.properties.size(); ++k) {
-      const PlyProperty& property = element.properties[k];
-      double value = 0;
-      if (property.list_count) {
-        if (!skip_list(property)) return false;
-      } else if (!columns.roles[k]) {
-        if (!cursor_.skip(property.type, 1)) return false;
-      } else if (cursor_.next(property.type, value)) {
-        row[index_of(*columns.roles[k])] = value;
-      } else {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  void skip_element(const PlyElement& element) {
-    if (element.properties.empty()) return;
-    for (std::size_t i = 0; i < element.count; ++i) {
-      for (const PlyProperty& property : element.properties) {
-        const bool there =
-            property.list_count ? skip_list(property) : cursor_.skip(property.type, 1);
-        if (!there) fail_cut(element, i);
-      }
-    }
-  }
-
-  bool skip_list(const PlyProperty& property) {
-    const std::size_t begin = cursor_.offset();
-    double length = 0;
-    if (!cursor_.next(*property.list_count, length)) return false;
-    if (!(length >= 0 && length <= 4294967295.0)) {
-      fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
-                   "The file is damaged: export it again");
-    }
-    return cursor_.skip(property.type, static_cast<std::size_t>(length));
-  }
-
-  static std::size_t least_row(const PlyElement& element) {
-    std::size_t size = 0;
-    for (const PlyProperty& p : element.properties) {
-      size += Cursor::least_size(p.list_count.value_or(p.type));
-    }
-    return size;
-  }
-
-  [[noreturn]] void fail_cut(const PlyElement& element, std::size_t present) const {
-    fail_at_byte(input_, input_.bytes.size(),
-                 fmt::format("the file ends after {} of {} rows of \"{}\"", present, element.count,
-                             excerpt(element.name)),
-                 fmt::format("Download or export it again; to use the {} rows that are present, "
-                             "write \"element {} {}\" in its header",
-                             present, excerpt(element.name), present));
-  }
-
-  const Input& input_;
-  const PlyHeader& header_;
-  Cursor cursor_;
-};
+  table.take = [&](std::span<const double> values) {
+    Row row;
+    std::ranges::copy(values, row.begin());
+    builder.add(row);
+  };
+  read_ply_rows(input, header, {&table, 1});
+  return builder.finish(std::string(name_of(header.encoding)));
+}
 
 }  // namespace
 
 CloudFile read_ply(const Input& input) {
   const PlyHeader header = read_ply_header(input);
-  if (header.encoding == PlyEncoding::ascii) {
-    return PlyReader(input, header, AsciiCursor(input, header.size)).run("PLY, ascii");
+  if (holds_splats(header)) return shell_file(input, read_splat_ply);
+  for (const PlyElement& element : header.elements) {
+    const VertexColumns columns = columns_of(element);
+    if (columns.roles.has_point()) return read_vertices(input, header, element, columns);
   }
-  const bool little = header.encoding == PlyEncoding::little_endian;
-  const BinaryCursor cursor(input, header.size, little ? std::endian::little : std::endian::big);
-  return PlyReader(input, header, cursor)
-      .run(little ? "PLY, binary little endian" : "PLY, binary big endian");
+  fail(input, "no element of this PLY file has the properties x, y and z",
+       "Export it again with its vertices");
 }
 
 }  // namespace palpate::io

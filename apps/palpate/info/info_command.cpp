@@ -89,6 +89,7 @@ namespace {
 constexpr const char* kInfoFooter = R"(Examples:
   palpate info bunny.ply
   palpate info scan.las --picture trust.png
+  palpate info room.spz --length 4.2 --write points.ply
   palpate info depth.png --intrinsics 525,525,319.5,239.5
   palpate info - < scan.pcd
   palpate info sequence:recording camera:openni2
@@ -158,14 +159,16 @@ void print_map(const PointCloud& cloud, std::FILE* out) {
              grouped(largest), draw(map, style.colored()));
 }
 
-InfoReport study(const CloudArgument& argument, const ReadOptions& options, TrustPicture* picture) {
+InfoReport study(const CloudArgument& argument, const ReadOptions& options,
+                 const std::string& write, TrustPicture* picture) {
   InfoReport report;
   report.loaded = load(argument, options);
+  if (!write.empty()) write_cloud(write, report.loaded.file.cloud);
   const PointCloud& cloud = report.loaded.file.cloud;
   const Waiting waiting("studying " + argument.name);
   report.bounds = bounds_of(cloud);
   report.core = core_of(cloud);
-  report.units = guess_units(report.core, report.loaded.file.format);
+  report.units = units_of(report.loaded.file, report.core, options);
   report.spacing = measure_spacing(CellGrid(cloud.positions));
   const Prepared prepared = prepare(cloud);
   report.prepared = prepared.report;
@@ -190,23 +193,32 @@ std::vector<CloudArgument> clouds_of(const InfoOptions& options) {
   return clouds;
 }
 
+void refuse_streams(const std::vector<CloudArgument>& clouds, std::string_view option,
+                    const std::string& path) {
+  for (const CloudArgument& cloud : clouds) {
+    if (path.empty() || !lives(cloud.path)) continue;
+    throw UsageError(fmt::format(
+        "{} works only with clouds, and {} is a stream; remove one of them", option, cloud.path));
+  }
+}
+
 // One a cloud, or none. Whether they can be made is tried before any work.
 std::vector<TrustPicture> pictures_of(const std::vector<CloudArgument>& clouds,
                                       const InfoOptions& options) {
   std::vector<NamedFile> outputs = {{"--json", options.json}};
   for (std::size_t i = 0; i < clouds.size(); ++i) {
     outputs.push_back({"--picture", numbered_path(options.picture, i)});
+    outputs.push_back({"--write", numbered_path(options.write, i)});
   }
   check_distinct(inputs(clouds), outputs);
+  refuse_streams(clouds, "--picture", options.picture);
+  refuse_streams(clouds, "--write", options.write);
   if (options.picture.empty()) return {};
-  for (const CloudArgument& cloud : clouds) {
-    if (!lives(cloud.path)) continue;
-    throw UsageError(fmt::format(
-        "--picture works only with clouds, and {} is a stream; remove one of them", cloud.path));
-  }
   check_picture(options.picture);
   std::vector<TrustPicture> pictures;
-  for (std::size_t i = 0; i < clouds.size(); ++i) pictures.emplace_back(outputs[i + 1].path);
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    pictures.emplace_back(numbered_path(options.picture, i));
+  }
   return pictures;
 }
 
@@ -227,6 +239,12 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
                           "clouds give one file each: a.png, a-2.png"))
       ->type_name("FILE")
       ->group("Output");
+  command
+      .add_option("--write", options.write,
+                  wrapped("the points with normals and colours as PLY or PCD, of splats those of "
+                          "the shell; several clouds give one file each: a.ply, a-2.ply"))
+      ->type_name("FILE")
+      ->group("Output");
   command.footer(kInfoFooter);
 }
 
@@ -243,8 +261,8 @@ void info(const InfoOptions& options) {
       clouds.push_back(report.data);
       continue;
     }
-    const InfoReport info =
-        study(argument, options.reading, pictures.empty() ? nullptr : &pictures[i]);
+    const InfoReport info = study(argument, options.reading, numbered_path(options.write, i),
+                                  pictures.empty() ? nullptr : &pictures[i]);
     const Report report = report_of(info);
     report.print(out);
     advice_of(info).print(out);

@@ -24,6 +24,7 @@ struct InfoOptions {
   std::vector<std::string> clouds;
   ReadOptions reading;
   std::string json;
+  std::string write;    ///< alike
   std::string picture;  ///< of several clouds the first one's: numbered_path()
 };
 

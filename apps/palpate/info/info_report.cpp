@@ -51,9 +51,11 @@ void add_grid(Report& report, const InfoReport& info) {
 void add_points(Report& report, const InfoReport& info) {
   const CloudFile& file = info.loaded.file;
   const PointCloud& cloud = file.cloud;
+  const std::size_t dropped = file.splats ? 0 : file.dropped;
+  if (file.splats) add_splats(report, *file.splats, file.declared, file.dropped, cloud.size());
   report.row("points",
              "{points}[, {points_invalid} of {points_declared} declared dropped as invalid]",
-             cloud.size(), file.dropped, file.declared);
+             cloud.size(), dropped, file.declared);
   add_grid(report, info);
   report.note("holds", columns_of(cloud));
   report.data.update({{"normals", !cloud.normals.empty()},

@@ -111,8 +111,9 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, depth PNG or PGM, optionally "
-      "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, Gaussian splats (PLY, SPZ, "
+      ".splat), depth PNG or PGM, optionally gzipped; - for standard input; or synthetic:NAME with "
+      "NAME one of {}",
       names);
 }
 
@@ -135,6 +136,11 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
       .only_for({&RunFacts::is_static,
                  "applies only to files; cameras report their own, and sequences store it in "
                  "sequence.json"});
+  table
+      .add("--length", o.length, "METRES", positive(),
+           "length of the cloud's longest side, instead of --scale; splats have no unit of their "
+           "own")
+      .only_for(kCloud);
   table
       .add_text(
           "--intrinsics", KeyKind::numbers, "FX,FY,CX,CY",

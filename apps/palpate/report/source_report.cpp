@@ -53,10 +53,13 @@ Report cloud_report(const LoadedSource& cloud) {
   const Prepared::Report& r = cloud.prepared;
   Report report = file_report(cloud);
   report.data["points_declared"] = cloud.declared;
+  if (cloud.splats) {
+    add_splats(report, *cloud.splats, cloud.declared, cloud.dropped, r.points_in);
+  }
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
-             r.points_in, r.points_out, r.duplicates, r.speckle, cloud.dropped);
+             r.points_in, r.points_out, r.duplicates, r.speckle, cloud.splats ? 0 : cloud.dropped);
   if (cloud.on_demand) {
     const double share = cloud.on_demand->share();
     report.data["prepared_share"] = share;
@@ -177,6 +180,17 @@ void add_trust(Report& report, const Prepared::Report& prepared) {
              "[{?}{trust/untrusted_share} of this cloud has low trust and is rendered as a "
              "metaball]",
              prepared.untrusted >= 0.01, prepared.untrusted);
+}
+
+void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, std::size_t dropped,
+                std::size_t points) {
+  report.row("splats",
+             "{splats/read} read[, {splats/invalid} invalid], {splats/visible} of opacity 0.02 and "
+             "more; shell {splats/points} points, {splats/spacing_m} apart[; "
+             "{splats/unsure_share} without a normal of their own][; {splats/pieces} pieces of "
+             "less than 60 cells dropped]",
+             declared, dropped, splats.visible, points, splats.spacing, splats.unsure,
+             splats.pieces);
 }
 
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed) {

@@ -20,6 +20,11 @@ inline constexpr const char* kNoSurface =
 /// Says how much of a cloud has low trust, where it is a hundredth or more.
 void add_trust(Report& report, const Prepared::Report& prepared);
 
+/// Adds the row "splats": how those of a file became `points`. `declared`: splats in the file,
+/// `dropped`: those of them that are not finite.
+void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, std::size_t dropped,
+                std::size_t points);
+
 /// Adds the row "organised": "640 x 480 pixels, focal length 525 px, `processed`".
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed);
 

@@ -79,6 +79,12 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   return {"metres", size + ", plausible for an object or a room in metres", ""};
 }
 
+UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
+  if (!file.splats || reading.length || reading.scale != 1) return guess_units(core, file.format);
+  return {"unknown", fmt::format("{:.3g} long, and splats have no unit", core.size().maxCoeff()),
+          "give --length with the metres of its longest side"};
+}
+
 bool on_a_line(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3f along = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : points) {

@@ -20,6 +20,10 @@ struct UnitsGuess {
 /// Guesses from coordinates as read, in what is taken for metres.
 [[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);
 
+/// The same of a cloud whose core_of() is `core`. Splats have no unit unless `reading` gives one.
+[[nodiscard]] UnitsGuess units_of(const CloudFile& file, const Box& core,
+                                  const ReadOptions& reading);
+
 /// Are they all at one place or on a line, where no surface is? So are none.
 [[nodiscard]] bool on_a_line(std::span<const Eigen::Vector3f> points);
 

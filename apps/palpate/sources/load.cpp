@@ -103,6 +103,13 @@ LoadedCloud load(const CloudArgument& argument, const ReadOptions& options) {
   return result;
 }
 
+void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options) {
+  if (!loaded.file.splats || options.voxel.value_or(0) == 0) return;
+  throw Error(
+      fmt::format("--voxel is not for splats, whose points are one a cell; remove it for {}",
+                  loaded.argument.path));
+}
+
 DepthFrame load_depth_image(const std::string& path, const ReadOptions& options) {
   if (!options.intrinsics) {
     throw Error(

@@ -22,6 +22,9 @@ struct LoadedCloud {
 /// @throws Error as read_cloud_file() does, and when it holds no point.
 [[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadOptions& options);
 
+/// @throws Error when a voxel filter is wanted for splats, whose points are one a cell already.
+void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options);
+
 /// Reads a depth image as one frame of a camera.
 /// @throws Error as read_depth_frame() does, and when no intrinsics are given.
 [[nodiscard]] DepthFrame load_depth_image(const std::string& path, const ReadOptions& options);

@@ -105,12 +105,16 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
+  check_voxel(loaded, plan.options.prepare);
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
   result.read_seconds = loaded.seconds;
+  result.splats = loaded.file.splats;
+  if (plan.reading.scale == 1 && !plan.reading.length) {
+    result.units = units_of(loaded.file, core_of(loaded.file.cloud), plan.reading);
+  }
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
-  if (plan.reading.scale == 1) result.units = guess_units(core_of(*cloud), result.format);
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
     check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
   }

@@ -37,8 +37,9 @@ struct LoadedSource {
   std::string format;
   std::size_t declared = 0;
   std::size_t dropped = 0;
+  std::optional<SplatFacts> splats = {};  ///< of a scene of splats
   double read_seconds = 0;
-  UnitsGuess units;                     ///< of a file that was read without --scale
+  UnitsGuess units;                     ///< of a file that was read without --scale and --length
   double prepare_seconds = 0;           ///< wall time of everything between reading and touching
   std::unique_ptr<OnDemand> on_demand;  ///< of a large cloud whose blocks become ready in the run
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again

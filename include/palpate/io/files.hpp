@@ -17,24 +17,37 @@ namespace palpate {
 
 struct ReadOptions {
   double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
+  /// m; chooses the scale so that the longest side of the cloud's box, without the outermost half
+  /// percent at either end of each axis, is so long.
+  std::optional<double> length{};
   std::optional<Pinhole> intrinsics{};  ///< of a depth image; needed for one
   double depth_unit = 1e-3;             ///< metres a step of a depth image
   /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
   std::function<void(double)> progress{};
 };
 
+/// How the Gaussian splats of a file became points.
+struct SplatFacts {
+  std::size_t visible = 0;  ///< splats of opacity 0.02 and more
+  double spacing = 0;       ///< edge of the cells, each of which gave a point at most, m
+  double unsure = 0;        ///< share of points without a normal of their own, 0 to 1
+  std::size_t pieces = 0;   ///< groups of fewer than 60 cells that were dropped
+};
+
 /// A cloud and what its file said of itself.
 struct CloudFile {
   PointCloud cloud;
   std::string format;        ///< such as "PLY, binary little endian"
-  std::size_t declared = 0;  ///< points that the file announces; of a depth image its pixels
+  std::size_t declared = 0;  ///< points or splats of the file; of a depth image its pixels
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
+  std::optional<SplatFacts> splats{};  ///< of a scene of splats
 };
 
 /// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ (COPC too), E57, 16-bit depth PNG and PGM; gzip around
 /// any of them. All scans of an E57 file are joined in the file's frame; "house.e57#2" is the second
-/// one alone, with its viewpoint where a scanner stood there. The kind is told from the bytes first
-/// and from the name second;
+/// one alone, with its viewpoint where a scanner stood there. Gaussian splats (PLY, compressed PLY,
+/// .splat, .spz) become points on the surface that they show, with normals and colours. The kind is
+/// told from the bytes first and from the name second;
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
 ///

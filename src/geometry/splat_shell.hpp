@@ -1,0 +1,43 @@
+// Makes points on a surface from Gaussian splats.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "palpate/geometry/point_cloud.hpp"
+
+namespace palpate {
+
+/// A Gaussian of a splat scene.
+struct Splat {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m
+  Eigen::Vector3f sigma = Eigen::Vector3f::Zero();     ///< along its own axes, m; not negative
+  Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();  ///< of its axes; unit
+  float opacity = 0;                                             ///< at its middle, 0 to 1
+  std::array<std::uint8_t, 3> color{};                           ///< red, green, blue
+};
+
+/// The surface of a splat scene, and how it was found.
+struct SplatShell {
+  PointCloud cloud;         ///< with normals, zero where a point has none of its own, and colours
+  std::size_t visible = 0;  ///< splats of opacity kLeastOpacity and more
+  double spacing = 0;       ///< edge of a cell, which holds a point at most, m
+  double unsure = 0;        ///< share of points without a normal, 0 to 1
+  std::size_t pieces = 0;   ///< groups of fewer than kSmallestPiece cells that were dropped
+};
+
+inline constexpr float kLeastOpacity = 0.02F;      ///< fainter splats show nothing (judgement)
+inline constexpr std::size_t kSmallestPiece = 60;  ///< cells; smaller ones float (judgement)
+
+/// The shell of splats (docs/touch.md, "Gaussian splats"): samples them, adds up their optical
+/// depth in cells, keeps the cells that light reaches, and draws these together to a sheet. Without
+/// points where no splat is opaque. The result does not depend on the number of threads.
+/// `progress` is told 0 ... 1 now and then; it may throw to give up.
+[[nodiscard]] SplatShell shell_of(std::span<const Splat> splats,
+                                  const std::function<void(double)>& progress = {});
+
+}  // namespace palpate
