@@ -121,7 +121,8 @@ class CloudBuilder {
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> byte_colors(
     const std::vector<std::array<float, 3>>& colors, ColorScale scale);
 
-/// @throws Error unless options.scale is a finite number above zero.
+/// @throws Error unless options.scale is a finite number above zero, and options.mesh_spacing one
+/// that is not below.
 void check_options(const Input& input);
 
 /// @throws Error that says so when a file had points but none that can be used, or none at all.

@@ -29,6 +29,10 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return read_las(input);
     case FileKind::obj:
       return read_obj(input);
+    case FileKind::stl:
+      return read_stl(input);
+    case FileKind::gltf:
+      return read_gltf(input);
     case FileKind::text:
       return read_xyz(input);
     case FileKind::png:
@@ -57,22 +61,18 @@ Bytes unpack(const Input& input, const std::string& inside) {
 
 CloudFile read_packed(const Input& input) {
   const Bytes unpacked = unpack(input, name_inside(input.name));
-  const Input inside{unpacked.span(), name_inside(input.name), input.options};
+  const Input inside{unpacked.span(), name_inside(input.name), input.options, input.folder};
   CloudFile file = read_kind(inside, kind_of(inside));
   file.format += ", gzip";
   return file;
 }
 
-}  // namespace
-
-CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
-                           const ReadOptions& options) {
-  const Input input{bytes, name, options};
+CloudFile read_input(const Input& input) {
   check_options(input);
   try {
     const FileKind kind = kind_of(input);
     CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
-    if (options.progress) options.progress(1.0);
+    if (input.options.progress) input.options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {
     fail(input, "not enough memory for its points",
@@ -80,14 +80,22 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
   }
 }
 
+}  // namespace
+
+CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
+                           const ReadOptions& options) {
+  return read_input({bytes, name, options});
+}
+
 CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string name = path == "-" ? "standard input" : path.string();
+  const bool piped = path == "-";
   try {
     const Bytes bytes = read_bytes(path);
-    return read_cloud_bytes(bytes.span(), name, options);
+    if (piped) return read_cloud_bytes(bytes.span(), "standard input", options);
+    return read_input({bytes.span(), path.string(), options, path.parent_path() / "."});
   } catch (const std::bad_alloc&) {
     throw Error(
-        name +
+        (piped ? "standard input" : path.string()) +
         ": not enough memory to read it. Downsample the cloud or split it into tiles first.");
   }
 }

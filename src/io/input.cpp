@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/formats.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
@@ -35,13 +36,18 @@ std::string excerpt(std::string_view text) {
   return text.size() > kLongest ? result + "..." : result;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result{text};
+  std::ranges::transform(result, result.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  });
+  return result;
+}
+
 std::string extension(std::string_view name) {
   const std::size_t dot = name.find_last_of("./");
   if (dot == std::string_view::npos || name[dot] != '.') return {};
-  std::string result{name.substr(dot)};
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return result;
+  return lower_case(name.substr(dot));
 }
 
 namespace {
@@ -49,8 +55,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, 16-bit depth PNG and PGM, optionally "
-    "gzipped";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ, 16-bit depth PNG and PGM, "
+    "optionally gzipped";
 
 struct Known {
   std::string_view start;
@@ -66,6 +72,7 @@ constexpr Known kKnown[] = {
     {"P5", FileKind::pgm},
     {"\x1f\x8b", FileKind::gzip},
     {"# .PCD", FileKind::pcd},
+    {"glTF", FileKind::gltf},
 };
 
 struct Refused {
@@ -93,10 +100,8 @@ constexpr Refused kRefused[] = {
     {"P6", "a colour picture (PPM)", "Give the 16-bit depth image of the camera"},
     {"P2", "a PGM written as text", "Convert it to binary PGM (P5) or to 16-bit PNG"},
     {"ASTM-E57", "an E57 scan", kExport},
-    {"glTF", "a binary glTF model", kExport},
     {"\x89HDF", "an HDF5 file", "Export the points as PLY or text"},
     {"OFF", "an OFF model", kExport},
-    {"solid ", "an STL model", kExport},
     {"Kaydara FBX", "an FBX model", kExport},
     {"#ROSBAG", "a ROS bag", "Export one cloud from it as PCD"},
     {"\x89MCAP", "an MCAP recording", "Touch what it recorded: palpate touch bag:{}"},
@@ -128,6 +133,14 @@ std::string_view first_word(const Input& input) {
   return {};
 }
 
+// JSON that is named as glTF, or whose first words say so.
+bool is_gltf_json(const Input& input) {
+  constexpr std::size_t kFirst = 4096;  // bytes in which "asset" is looked for (judgement)
+  const std::string_view head = input.text().substr(0, kFirst);
+  if (!trim(head).starts_with('{')) return false;
+  return extension(input.name) == ".gltf" || head.find("\"asset\"") != std::string_view::npos;
+}
+
 FileKind text_kind(const Input& input, std::string_view word) {
   constexpr std::string_view kObjWords[] = {"v", "vn", "vt", "mtllib", "o", "g", "s", "usemtl"};
   const bool is_obj =
@@ -147,8 +160,6 @@ void refuse_known(const Input& input) {
 }
 
 [[noreturn]] void refuse_unknown(const Input& input) {
-  const std::string ending = extension(input.name);
-  if (ending == ".stl") fail(input, "this is an STL model", kExport);
   std::string head;
   for (const std::byte b : input.bytes.first(std::min<std::size_t>(input.bytes.size(), 8))) {
     head += fmt::format(" {:02x}", std::to_integer<unsigned>(b));
@@ -165,6 +176,8 @@ FileKind kind_of(const Input& input) {
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
+  if (is_stl(input)) return FileKind::stl;
+  if (is_gltf_json(input)) return FileKind::gltf;
   refuse_known(input);
   // The comment that begins a PCD may be missing, and its points may be no text.
   const std::string_view word = first_word(input);

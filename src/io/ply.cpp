@@ -1,4 +1,4 @@
-// Reads the vertices of PLY files, as text or as bytes of either order.
+// Reads the vertices and faces of PLY files, as text or as bytes of either order.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/mesh.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
@@ -76,6 +77,21 @@ VertexColumns columns_of(const PlyElement& element) {
   return result;
 }
 
+// The list of a face's corners.
+bool is_corner_list(const PlyElement& element, const PlyProperty& property) {
+  return element.name == "face" && property.list_count && !is_floating(property.type) &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+bool has_faces(const PlyElement& element) {
+  return std::ranges::any_of(element.properties,
+                             [&](const PlyProperty& p) { return is_corner_list(element, p); });
+}
+
+bool has_points(const PlyElement& element) {
+  return columns_of(element).roles.has_point();
+}
+
 template <class Cursor>
 class PlyReader {
  public:
@@ -83,26 +99,41 @@ class PlyReader {
       : input_(input), header_(header), cursor_(std::move(cursor)) {}
 
   CloudFile run(std::string format) {
-    for (const PlyElement& element : header_.elements) {
-      const VertexColumns columns = columns_of(element);
-      if (columns.roles.has_point()) return read_vertices(element, columns, std::move(format));
-      skip_element(element);
+    const auto& elements = header_.elements;
+    const auto points = std::ranges::find_if(elements, has_points);
+    const auto faces = std::ranges::find_if(elements, has_faces);
+    if (points == elements.end()) {
+      fail(input_, "no element of this PLY file has the properties x, y and z",
+           "Export it again with its vertices");
     }
-    fail(input_, "no element of this PLY file has the properties x, y and z",
-         "Export it again with its vertices");
+    vertices_ = points->count;
+    has_faces_ = faces != elements.end();
+    const auto last = has_faces_ ? std::max(points, faces) : points;
+    CloudFile file;
+    for (auto element = elements.begin(); element <= last; ++element) {
+      if (element == points) {
+        file = read_vertices(*element, format);
+      } else {
+        read_element(*element);
+      }
+    }
+    return choose_cloud(input_, mesh_, std::move(file));
   }
 
  private:
-  CloudFile read_vertices(const PlyElement& element, const VertexColumns& columns,
-                          std::string format) {
+  CloudFile read_vertices(const PlyElement& element, std::string format) {
+    const VertexColumns columns = columns_of(element);
     const std::size_t room = (input_.bytes.size() - cursor_.offset() + 1) / least_row(element);
     CloudBuilder builder(input_, columns.roles.columns(), columns.color_scale,
                          std::min(element.count, room));
+    mesh_.columns = columns.roles.columns();
+    mesh_.color_scale = columns.color_scale;
     Progress progress(input_.options, input_.bytes.size());
     Row row{};
     for (std::size_t i = 0; i < element.count; ++i) {
       if (!read_row(element, columns, row)) fail_cut(element, i);
       builder.add(row);
+      if (has_faces_) mesh_.vertices.push_back(mesh_vertex(row));
       progress.at(cursor_.offset());
     }
     return builder.finish(std::move(format));
@@ -125,26 +156,51 @@ class PlyReader {
     return true;
   }
 
-  void skip_element(const PlyElement& element) {
+  // Takes the faces of an element and skips all else.
+  void read_element(const PlyElement& element) {
     if (element.properties.empty()) return;
+    Progress progress(input_.options, input_.bytes.size());
     for (std::size_t i = 0; i < element.count; ++i) {
       for (const PlyProperty& property : element.properties) {
-        const bool there =
-            property.list_count ? skip_list(property) : cursor_.skip(property.type, 1);
+        const bool there = is_corner_list(element, property) ? read_face(property)
+                           : property.list_count             ? skip_list(property)
+                                                             : cursor_.skip(property.type, 1);
         if (!there) fail_cut(element, i);
       }
+      progress.at(cursor_.offset());
     }
   }
 
-  bool skip_list(const PlyProperty& property) {
-    const std::size_t begin = cursor_.offset();
+  bool read_face(const PlyProperty& property) {
     double length = 0;
-    if (!cursor_.next(*property.list_count, length)) return false;
-    if (!(length >= 0 && length <= 4294967295.0)) {
-      fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
-                   "The file is damaged: export it again");
+    if (!read_length(property, length)) return false;
+    for (double k = 0; k < length; ++k) {
+      const std::size_t begin = cursor_.offset();
+      double corner = 0;
+      if (!cursor_.next(property.type, corner)) return false;
+      if (!(corner >= 0 && corner < static_cast<double>(vertices_))) {
+        fail_at_byte(input_, begin,
+                     fmt::format("a face has vertex {}, but there are {}", corner, vertices_),
+                     "The file is damaged: export it again");
+      }
+      mesh_.add_corner(static_cast<std::size_t>(corner));
     }
-    return cursor_.skip(property.type, static_cast<std::size_t>(length));
+    mesh_.close_face();
+    return true;
+  }
+
+  bool skip_list(const PlyProperty& property) {
+    double length = 0;
+    return read_length(property, length) &&
+           cursor_.skip(property.type, static_cast<std::size_t>(length));
+  }
+
+  bool read_length(const PlyProperty& property, double& length) {
+    const std::size_t begin = cursor_.offset();
+    if (!cursor_.next(*property.list_count, length)) return false;
+    if (length >= 0 && length <= 4294967295.0) return true;
+    fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
+                 "The file is damaged: export it again");
   }
 
   static std::size_t least_row(const PlyElement& element) {
@@ -167,6 +223,9 @@ class PlyReader {
   const Input& input_;
   const PlyHeader& header_;
   Cursor cursor_;
+  std::size_t vertices_ = 0;
+  bool has_faces_ = false;
+  Mesh mesh_;
 };
 
 }  // namespace

@@ -19,22 +19,34 @@ struct ReadOptions {
   double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
   std::optional<Pinhole> intrinsics{};  ///< of a depth image; needed for one
   double depth_unit = 1e-3;             ///< metres a step of a depth image
+  double mesh_spacing = 0;              ///< m, of points that faces are sampled into; 0: chosen
   /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
   std::function<void(double)> progress{};
+};
+
+/// What a file's faces became.
+struct MeshFacts {
+  std::size_t triangles = 0;   ///< that are used; a face of n corners counts as n - 2
+  std::size_t dropped = 0;     ///< faces without an area or with a corner that is not finite
+  std::size_t duplicates = 0;  ///< faces left out, as another has the same corners
+  double spacing = 0;          ///< m, of points sampled from the faces; 0: the vertices are felt
 };
 
 /// A cloud and what its file said of itself.
 struct CloudFile {
   PointCloud cloud;
-  std::string format;        ///< such as "PLY, binary little endian"
-  std::size_t declared = 0;  ///< points that the file announces; of a depth image its pixels
-  std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
+  std::string format;               ///< such as "PLY, binary little endian"
+  std::size_t declared = 0;         ///< points that the file announces; of a depth image its pixels
+  std::size_t dropped = 0;          ///< of them not finite, beyond 10^12 m, or marked invalid
+  std::optional<MeshFacts> mesh{};  ///< of a file with faces
 };
 
-/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS (LAZ through the user's liblaszip), 16-bit depth PNG and
-/// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
-/// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
-/// depth, and those beyond ten times the image's median depth, too.
+/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS (LAZ through the user's liblaszip), 16-bit
+/// depth PNG and PGM; gzip around any of them. The kind is told from the bytes first and from the
+/// name second; "-" is standard input. Points that are not finite are dropped and counted; pixels
+/// without a depth, and those beyond ten times the image's median depth, too.
+///
+/// Faces are sampled into points, unless the vertices lie as densely and evenly as those of a scan.
 ///
 /// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
 /// a round point near the median of the cloud.
@@ -44,6 +56,7 @@ struct CloudFile {
                                         const ReadOptions& options = {});
 
 /// The same for bytes in memory. `name` stands for the file in messages and gives its extension.
+/// A glTF file whose data lie in further files is refused.
 [[nodiscard]] CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
                                          const ReadOptions& options = {});
 
