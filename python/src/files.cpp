@@ -12,9 +12,10 @@
 namespace palpate::python {
 namespace {
 
-constexpr const char* kRead = R"(Reads PLY, PCD, XYZ, OBJ, LAS, LAZ or a depth image, also gzipped.
+constexpr const char* kRead =
+    R"(Reads PLY, PCD, XYZ, OBJ, STL, glTF, GLB, LAS, LAZ or a depth image, also gzipped.
 
-scale: metres for one of the file's units. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
+scale: metres for one of the file's units. mesh_spacing: m between the points that faces are sampled into; 0: chosen. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
 
 constexpr const char* kWrite = R"(Writes PLY or PCD, by the path's ending.
 
@@ -26,8 +27,9 @@ constexpr const char* kSynthetic =
 spacing: m between points; noise: its standard deviation along the normal, m.)";
 
 PointCloud read_file(const std::filesystem::path& path, double scale,
-                     const std::optional<std::array<double, 4>>& K, double unit) {
-  ReadOptions options{.scale = scale, .depth_unit = unit};
+                     const std::optional<std::array<double, 4>>& K, double unit,
+                     double mesh_spacing) {
+  ReadOptions options{.scale = scale, .depth_unit = unit, .mesh_spacing = mesh_spacing};
   if (K) options.intrinsics = {(*K)[0], (*K)[1], (*K)[2], (*K)[3]};
   return read_cloud(path, options);
 }
@@ -51,7 +53,7 @@ void define_files(py::module_& module) {
   using py::arg;
   using Free = py::call_guard<py::gil_scoped_release>;
   module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(), arg("scale") = 1.0,
-             arg("K") = py::none(), arg("unit") = 1e-3, kRead);
+             arg("K") = py::none(), arg("unit") = 1e-3, arg("mesh_spacing") = 0.0, kRead);
   module.def("write_cloud", &write_file, arg("path"), arg("cloud"), py::kw_only(),
              arg("ascii") = false, kWrite);
   module.def("synthetic_cloud", &synthetic, Free(), arg("name"), py::kw_only(),

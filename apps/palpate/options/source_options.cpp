@@ -111,8 +111,8 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, depth PNG or PGM, optionally "
-      "gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
+      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ, depth PNG or PGM, "
+      "optionally gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
       names);
 }
 
@@ -124,6 +124,10 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
       .only_for({&RunFacts::is_static,
                  "applies only to files; cameras report their own, and sequences store it in "
                  "sequence.json"});
+  table
+      .add("--mesh-spacing", o.mesh_spacing, "METRES", positive(),
+           "spacing of the points that the faces of a mesh are sampled into (chosen from its size)")
+      .only_for({&RunFacts::is_static, "applies only to files with faces; no source is a file"});
   table
       .add_text(
           "--intrinsics", KeyKind::numbers, "FX,FY,CX,CY",

@@ -53,6 +53,7 @@ Report cloud_report(const LoadedSource& cloud) {
   const Prepared::Report& r = cloud.prepared;
   Report report = file_report(cloud);
   report.data["points_declared"] = cloud.declared;
+  if (cloud.mesh) add_mesh(report, *cloud.mesh, r.points_in);
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
@@ -177,6 +178,15 @@ void add_trust(Report& report, const Prepared::Report& prepared) {
              "[{?}{trust/untrusted_share} of this cloud has low trust and is rendered as a "
              "metaball]",
              prepared.untrusted >= 0.01, prepared.untrusted);
+}
+
+void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points) {
+  const bool sampled = mesh.spacing > 0;
+  report.row("mesh",
+             "of {mesh/triangles} triangles: felt as {} points[{?} sampled from it, "
+             "{mesh/spacing_m} apart|, its vertices][, {mesh/faces_duplicate} duplicate faces]"
+             "[, {mesh/faces_dropped} without an area]",
+             mesh.triangles, points, sampled, mesh.spacing, mesh.duplicates, mesh.dropped);
 }
 
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed) {

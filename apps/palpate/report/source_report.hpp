@@ -20,6 +20,9 @@ inline constexpr const char* kNoSurface =
 /// Says how much of a cloud has low trust, where it is a hundredth or more.
 void add_trust(Report& report, const Prepared::Report& prepared);
 
+/// Adds the row "mesh": "of 12 triangles: felt as `points` points sampled from it, ...".
+void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points);
+
 /// Adds the row "organised": "640 x 480 pixels, focal length 525 px, `processed`".
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed);
 

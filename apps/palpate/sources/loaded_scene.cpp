@@ -108,6 +108,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
+  result.mesh = loaded.file.mesh;
   result.read_seconds = loaded.seconds;
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   if (plan.reading.scale == 1) result.units = guess_units(core_of(*cloud), result.format);
@@ -234,6 +235,9 @@ std::string title_of(const LoadedScene& loaded) {
   std::string title;
   for (const LoadedSource& source : loaded.sources) {
     title += fmt::format("{}{}", title.empty() ? "" : " + ", source.plan.argument.name);
+    if (!source.mesh || source.mesh->spacing == 0) continue;
+    title += fmt::format(" (mesh of {} triangles, felt as {} points)",
+                         grouped(source.mesh->triangles), grouped(source.prepared.points_in));
   }
   return title;
 }
