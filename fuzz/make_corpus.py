@@ -5,6 +5,7 @@ beside them as found-* and are left alone."""
 
 import base64
 import gzip
+import json
 import math
 import pathlib
 import struct
@@ -223,7 +224,47 @@ def text():
          + "".join(f"v {x} {y} {z}\nvn 0 0 2\n" for x, y, z in POINTS) + "f 1//1 2//2 3//3\n")
     seed("obj", "colors", "".join(f"v {x} {y} {z} {r / 255} {g / 255} {b / 255}\n"
                                   for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("obj", "faces", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nf 1/1 2/2/1 3//1 4\nf -1 -2 -4\nf 1 1 2\n")
     seed("trajectory", "plain", "t,hip_x,hip_y,hip_z,more\n0,0,0,0.1,a\n0.001,0,0,0.099,b\n")
+
+
+def stl():
+    corners = [POINTS[0], POINTS[1], POINTS[2], POINTS[1], POINTS[3], POINTS[2]]
+    seed("stl", "ascii", "solid a\n" + "".join(
+        "facet normal 0 0 1\n outer loop\n" + "".join(f"  vertex {x} {y} {z}\n" for x, y, z in corners[i:i + 3])
+        + " endloop\nendfacet\n" for i in (0, 3)) + "endsolid a\n")
+    seed("stl", "binary", b"a seed".ljust(80) + struct.pack("<I", 2) + b"".join(
+        struct.pack("<3f", 0, 0, 1) + b"".join(struct.pack("<3f", *p) for p in corners[i:i + 3]) + b"\0\0"
+        for i in (0, 3)))
+
+
+def gltf():
+    data = b"".join(struct.pack("<3f", *p) for p in POINTS) + struct.pack("<6H", 0, 1, 2, 1, 3, 2) \
+        + b"".join(bytes([*c, 255]) for c in COLORS)
+    scene = {
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+        "nodes": [{"children": [1, 2], "scale": [1, 2, 1]}, {"mesh": 0, "translation": [0, 1, 0]},
+                  {"mesh": 0, "rotation": [0, 0, 1, 0]}],
+        "meshes": [{"primitives": [
+            {"attributes": {"POSITION": 0, "COLOR_0": 2}, "indices": 1, "material": 0},
+            {"attributes": {"POSITION": 0}, "mode": 5}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+                      {"bufferView": 2, "componentType": 5121, "count": 4, "type": "VEC4", "normalized": True}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12},
+                        {"buffer": 0, "byteOffset": 60, "byteLength": 16, "byteStride": 4}],
+        "buffers": [{"byteLength": len(data)}]}
+
+    def glb(text):
+        text += b" " * (-len(text) % 4)
+        return (b"glTF" + struct.pack("<2I", 2, 28 + len(text) + len(data)) + struct.pack("<I", len(text)) + b"JSON"
+                + text + struct.pack("<I", len(data)) + b"BIN\0" + data)
+    seed("gltf", "glb", glb(json.dumps(scene).encode()))
+    scene["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    seed("gltf", "embedded", json.dumps(scene))
+    scene["buffers"][0]["uri"] = "data.bin"
+    seed("gltf", "beside", json.dumps(scene))
 
 
 def packed():
@@ -515,6 +556,6 @@ def zstd_stored(data):
             + (len(data) << 3 | 1).to_bytes(3, "little") + data)
 
 
-for make in (ply, pcd, las, laz, depth, text, packed, e57, sequences, remote, client_messages, haply, mcap,
+for make in (ply, pcd, las, laz, depth, text, stl, gltf, packed, e57, sequences, remote, client_messages, haply, mcap,
              messages, splats):
     make()

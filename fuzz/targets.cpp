@@ -34,10 +34,10 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr auto kNames = std::to_array<std::string_view>(
-    {"any",         "cdr", "copc",       "depth",        "e57",          "frame_list", "gzip",
-     "haply_frame", "las", "laz",        "mcap",         "obj",          "pcd",        "pgm",
-     "ply",         "png", "poses",      "remote_frame", "remote_state", "sequence",   "splat",
-     "splat_ply",   "spz", "trajectory", "xyz"});
+    {"any",   "cdr",         "copc", "depth", "e57",          "frame_list",   "gltf",
+     "gzip",  "haply_frame", "las",  "laz",   "mcap",         "obj",          "pcd",
+     "pgm",   "ply",         "png",  "poses", "remote_frame", "remote_state", "sequence",
+     "splat", "splat_ply",   "spz",  "stl",   "trajectory",   "xyz"});
 
 void expect(bool promise, const char* name) {
   if (!promise) throw std::logic_error(name);
@@ -49,7 +49,8 @@ void check_promises(const CloudFile& file) {
   const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
   expect(n > 0, "a cloud without points");
   expect(fits(cloud.normals) && fits(cloud.colors) && fits(cloud.intensities), "column lengths");
-  expect(file.splats || file.declared == n + file.dropped, "counts that do not add up");
+  const bool sampled = file.splats || (file.mesh && file.mesh->spacing > 0);
+  expect(sampled || file.declared == n + file.dropped, "counts that do not add up");
   expect(cloud.origin.allFinite(), "origin");
   expect(!cloud.viewpoint || cloud.viewpoint->allFinite(), "viewpoint");
   for (const auto& p : cloud.positions) expect(p.allFinite(), "a position that is not finite");
@@ -237,6 +238,7 @@ bool run_sequence_target(std::string_view name, const io::Input& input) {
 }
 
 CloudFile read_as(std::string_view name, const io::Input& input) {
+  if (name == "gltf") return io::read_gltf(input);
   if (name == "las" || name == "laz") return io::read_las(input);
   if (name == "obj") return io::read_obj(input);
   if (name == "pcd") return io::read_pcd(input);
@@ -246,6 +248,7 @@ CloudFile read_as(std::string_view name, const io::Input& input) {
   if (name == "splat") return io::shell_file(input, io::read_dot_splat);
   if (name == "splat_ply") return io::shell_file(input, io::read_splat_ply);
   if (name == "spz") return io::shell_file(input, io::read_spz);
+  if (name == "stl") return io::read_stl(input);
   if (name == "xyz") return io::read_xyz(input);
   return read_cloud_bytes(input.bytes, input.name, input.options);
 }

@@ -13,11 +13,11 @@ namespace palpate::python {
 namespace {
 
 constexpr const char* kRead =
-    R"(Reads PLY, PCD, XYZ, OBJ, LAS, LAZ, E57, Gaussian splats or a depth image, also gzipped.
+    R"(Reads clouds (PLY, PCD, XYZ, LAS, LAZ, E57), meshes (OBJ, PLY, STL, glTF, GLB), Gaussian splats or a depth image, also gzipped.
 
 The scans of an E57 file are joined; "a.e57#2" is the second one.
 
-scale: metres for one of the file's units; or length: m, of the cloud's longest side. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
+scale: metres for one of the file's units; or length: m, of the cloud's longest side. mesh_spacing: m between the points that faces are sampled into; 0: chosen. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
 
 constexpr const char* kWrite = R"(Writes PLY or PCD, by the path's ending.
 
@@ -29,8 +29,10 @@ constexpr const char* kSynthetic =
 spacing: m between points; noise: its standard deviation along the normal, m.)";
 
 PointCloud read_file(const std::filesystem::path& path, double scale, std::optional<double> length,
-                     const std::optional<std::array<double, 4>>& K, double unit) {
-  ReadOptions options{.scale = scale, .length = length, .depth_unit = unit};
+                     const std::optional<std::array<double, 4>>& K, double unit,
+                     double mesh_spacing) {
+  ReadOptions options{
+      .scale = scale, .length = length, .depth_unit = unit, .mesh_spacing = mesh_spacing};
   if (K) options.intrinsics = {(*K)[0], (*K)[1], (*K)[2], (*K)[3]};
   return read_cloud(path, options);
 }
@@ -54,7 +56,8 @@ void define_files(py::module_& module) {
   using py::arg;
   using Free = py::call_guard<py::gil_scoped_release>;
   module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(), arg("scale") = 1.0,
-             arg("length") = py::none(), arg("K") = py::none(), arg("unit") = 1e-3, kRead);
+             arg("length") = py::none(), arg("K") = py::none(), arg("unit") = 1e-3,
+             arg("mesh_spacing") = 0.0, kRead);
   module.def("write_cloud", &write_file, arg("path"), arg("cloud"), py::kw_only(),
              arg("ascii") = false, kWrite);
   module.def("synthetic_cloud", &synthetic, Free(), arg("name"), py::kw_only(),

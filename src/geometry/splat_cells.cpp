@@ -20,8 +20,10 @@ constexpr float kFaintest = 1.F / 255;  // opacity; renderers pass over less (fo
 constexpr float kMostOpaque = 0.99F;    // opacity; renderers clamp to it (format)
 constexpr int kMostSteps = 35;          // from a splat's middle: 71 x 71 samples (judgement)
 constexpr double kUsualSamples = 400;   // a splat, on the mean; more would fill memory (judgement)
-constexpr double kCoarser = 1.25;       // edges are tried in steps of this (judgement)
-constexpr float kSureShare = 0.5F;      // of the trace, by which l3 has to exceed l2 (measured)
+constexpr double kMostSamples = 2e8;    // of all splats: 3 GB as shares (judgement)
+constexpr std::size_t kMostCells = 16'000'000;  // 3 GB with all that is found of them (judgement)
+constexpr double kCoarser = 1.25;               // edges are tried in steps of this (judgement)
+constexpr float kSureShare = 0.5F;  // of the trace, by which l3 has to exceed l2 (measured)
 constexpr std::size_t kSplatsAtOnce = 4096;  // that one thread samples (judgement)
 
 // A splat's sampling: a lattice in the plane of its two long axes.
@@ -198,10 +200,36 @@ float typical_size(std::span<const Splat> splats) {
   return 0;
 }
 
-double samples_at(std::span<const Splat> splats, float edge) {
+// Samples of splats whose two long sigmas these are, m.
+double samples_at(std::span<const std::array<float, 2>> sigmas, float edge) {
   double sum = 0;
-  for (const Splat& splat : splats) sum += lattice_of(splat, edge).size();
+  for (const auto& [b, c] : sigmas) {
+    sum += (2 * steps_for(b, edge) + 1) * (2 * steps_for(c, edge) + 1);
+  }
   return sum;
+}
+
+// The smallest edge, in steps from `edge`, at which samples do not fill memory, m.
+float bounded_edge(std::span<const Splat> splats, float edge) {
+  const auto count = static_cast<double>(splats.size());
+  const double most = std::min(kUsualSamples * (count + 1000), std::max(kMostSamples, 2 * count));
+  std::vector<std::array<float, 2>> sigmas;
+  sigmas.reserve(splats.size());
+  for (const Splat& splat : splats) {
+    const auto [a, b, c] = sorted_axes(splat);
+    sigmas.push_back({splat.sigma[b], splat.sigma[c]});
+  }
+  while (samples_at(sigmas, edge) > most) edge *= static_cast<float>(kCoarser);
+  return edge;
+}
+
+// Where each cell begins among sorted shares.
+std::vector<std::size_t> begins_of(std::span<const Share> shares) {
+  std::vector<std::size_t> begins;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    if (i == 0 || shares[i].key != shares[i - 1].key) begins.push_back(i);
+  }
+  return begins;
 }
 
 }  // namespace
@@ -210,8 +238,7 @@ SplatGrid grid_for(std::span<const Splat> splats) {
   SplatGrid grid;
   grid.edge = typical_size(splats);
   if (!(grid.edge > 0)) return grid;
-  const double most = kUsualSamples * (static_cast<double>(splats.size()) + 1000);
-  while (samples_at(splats, grid.edge) > most) grid.edge *= static_cast<float>(kCoarser);
+  grid.edge = bounded_edge(splats, grid.edge);
   std::vector<float> values(splats.size());
   for (int axis = 0; axis < 3; ++axis) {
     std::ranges::transform(splats, values.begin(),
@@ -221,11 +248,14 @@ SplatGrid grid_for(std::span<const Splat> splats) {
   return grid;
 }
 
-std::vector<SplatCell> cells_of(std::span<const Splat> splats, const SplatGrid& grid) {
-  const std::vector<Share> shares = shares_of(splats, grid);
-  std::vector<std::size_t> begins;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    if (i == 0 || shares[i].key != shares[i - 1].key) begins.push_back(i);
+std::vector<SplatCell> cells_of(std::span<const Splat> splats, SplatGrid& grid) {
+  std::vector<Share> shares = shares_of(splats, grid);
+  std::vector<std::size_t> begins = begins_of(shares);
+  while (begins.size() > kMostCells) {
+    grid.edge *= static_cast<float>(kCoarser);
+    shares = {};  // both would fill memory
+    shares = shares_of(splats, grid);
+    begins = begins_of(shares);
   }
   std::vector<SplatCell> cells(begins.size());
   parallel_each(cells.size(), 256, [&](std::size_t c) {

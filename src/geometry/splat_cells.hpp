@@ -60,7 +60,8 @@ struct SplatCell {
 /// The grid whose cells suit the splats. Its edge is 0 where no splat is opaque or has an extent.
 [[nodiscard]] SplatGrid grid_for(std::span<const Splat> splats);
 
-/// The cells that splats show in, sorted by key.
-[[nodiscard]] std::vector<SplatCell> cells_of(std::span<const Splat> splats, const SplatGrid& grid);
+/// The cells that splats show in, sorted by key. Makes the grid coarser where they would fill
+/// memory.
+[[nodiscard]] std::vector<SplatCell> cells_of(std::span<const Splat> splats, SplatGrid& grid);
 
 }  // namespace palpate::detail

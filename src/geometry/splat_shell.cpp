@@ -55,7 +55,8 @@ std::vector<OnLine> lines_of(std::span<const SplatCell> cells, const Step& step)
   detail::parallel_each(cells.size(), 4096, [&](std::size_t c) {
     const auto at = SplatGrid::place_of(cells[c].key);
     std::uint64_t line = 0;
-    for (std::size_t k = 0; k < 3; ++k) {  // where it meets place 0; all but 64 bits never change
+    for (std::size_t k = 0; k < 3;
+         ++k) {  // where it meets place 0; of 66 bits the upper two never change
       const std::int64_t meets = at[k] - step[k] * at[axis] + 2 * SplatGrid::kHalf;
       line = line << (SplatGrid::kBits + 2) | static_cast<std::uint64_t>(meets);
     }
@@ -265,11 +266,11 @@ SplatShell shell_of(std::span<const Splat> splats, const std::function<void(doub
   SplatShell shell;
   shell.visible = static_cast<std::size_t>(std::ranges::count_if(
       splats, [](const Splat& splat) { return splat.opacity >= kLeastOpacity; }));
-  const SplatGrid grid = detail::grid_for(splats);
-  shell.spacing = static_cast<double>(grid.edge);
+  SplatGrid grid = detail::grid_for(splats);
   if (!(grid.edge > 0)) return shell;
   tell(0.05);
   std::vector<SplatCell> cells = detail::cells_of(splats, grid);
+  shell.spacing = static_cast<double>(grid.edge);
   tell(0.3);
   const Light light = light_of(cells, [&](double done) { tell(0.3 + 0.3 * done); });
   cells = lit_cells(cells, light);

@@ -36,7 +36,7 @@ inline constexpr std::size_t kSmallestPiece = 60;  ///< cells; smaller ones floa
 /// The shell of splats (docs/touch.md, "Gaussian splats"): samples them, adds up their optical
 /// depth in cells, keeps the cells that light reaches, and draws these together to a sheet. Without
 /// points where no splat is opaque. The result does not depend on the number of threads.
-/// `progress` is told 0 ... 1 now and then; it may throw to give up.
+/// `progress` is called with 0 ... 1 now and then; it may throw to give up.
 [[nodiscard]] SplatShell shell_of(std::span<const Splat> splats,
                                   const std::function<void(double)>& progress = {});
 

@@ -50,9 +50,7 @@ constexpr std::pair<std::string_view, Role> kRoleNames[] = {
 }  // namespace
 
 std::optional<Role> role_of(std::string_view name) {
-  std::string lower{name};
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  const std::string lower = lower_case(name);
   const auto* found = std::find_if(std::begin(kRoleNames), std::end(kRoleNames),
                                    [&](const auto& entry) { return entry.first == lower; });
   return found == std::end(kRoleNames) ? std::nullopt : std::optional{found->second};
@@ -159,12 +157,22 @@ std::vector<std::array<std::uint8_t, 3>> byte_colors(
 void check_options(const Input& input) {
   const double scale = input.options.scale;
   const double length = input.options.length.value_or(1);
+  const double spacing = input.options.mesh_spacing;
+  if (!(std::isfinite(scale) && scale > 0)) {
+    fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
+         "Give a scale above zero, e.g. 0.001 for millimetres or 0.3048 for feet");
+  }
   if (!(std::isfinite(length) && length > 0)) {
     fail(input, fmt::format("no cloud can be {} m long", length), "Give a length above zero");
   }
-  if (std::isfinite(scale) && scale > 0) return;
-  fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
-       "Give a scale above zero, e.g. 0.001 for millimetres or 0.3048 for feet");
+  if (!(std::isfinite(spacing) && spacing >= 0)) {
+    fail(input, fmt::format("cannot sample faces at a spacing of {} m", spacing),
+         "Give a spacing above zero, or zero to have one chosen");
+  }
+  if (spacing > 0 && input.options.length) {
+    fail(input, "a spacing in metres needs the file's unit, which a length does not tell",
+         "Give a scale in place of the length");
+  }
 }
 
 void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped) {

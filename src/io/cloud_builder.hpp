@@ -121,7 +121,8 @@ class CloudBuilder {
 [[nodiscard]] std::vector<std::array<std::uint8_t, 3>> byte_colors(
     const std::vector<std::array<float, 3>>& colors, ColorScale scale);
 
-/// @throws Error unless scale and length of the options are finite numbers above zero.
+/// @throws Error unless scale and length of the options are finite numbers above zero, and the
+/// mesh's spacing is one that is not below. A length and a spacing exclude each other.
 void check_options(const Input& input);
 
 /// @throws Error that says so when a file had points but none that can be used, or none at all.

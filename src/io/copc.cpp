@@ -25,7 +25,7 @@ constexpr std::size_t kRootSize = 48;
 constexpr std::size_t kInfoSize = 160;
 
 constexpr std::size_t kEntrySize = 32;  // bytes of an entry of a page
-constexpr std::int32_t kDeepest = 30;   // level: its cells have numbers of 31 bits
+constexpr std::int32_t kDeepest = 30;   // level: 30 bits of a coordinate's 32 (judgement)
 
 class CopcReader {
  public:
@@ -37,8 +37,10 @@ class CopcReader {
     for (int k = 0; k < 3; ++k) copc_.center[k] = load_as<double>(info + 8 * k);
     copc_.half_size = load_as<double>(info + kHalfSize);
     copc_.spacing = load_as<double>(info + kSpacing);
-    const bool possible = copc_.center.allFinite() && std::isfinite(copc_.half_size) &&
-                          copc_.half_size > 0 && std::isfinite(copc_.spacing) && copc_.spacing > 0;
+    // The sum bounds the corners of all cubes, so that these are finite, too.
+    const double farthest = copc_.center.cwiseAbs().sum() + 2 * copc_.half_size;
+    const bool possible = std::isfinite(farthest) && copc_.half_size > 0 &&
+                          std::isfinite(copc_.spacing) && copc_.spacing > 0;
     if (!possible) wrong(info_, "an octree without a finite size, center and spacing");
     add_page(info_ + kRootPlace, load_as<std::uint64_t>(info + kRootPlace),
              load_as<std::uint64_t>(info + kRootSize));
@@ -123,9 +125,15 @@ class CopcReader {
         wrong(info_, fmt::format("{} is listed, but its parent is not", name(node.key)));
       }
     }
-    if (points == header_.points) return;
-    wrong(info_, fmt::format("the nodes have {} points, but the header announces {}", points,
-                             header_.points));
+    if (points != header_.points) {
+      wrong(info_, fmt::format("the nodes have {} points, but the header announces {}", points,
+                               header_.points));
+    }
+    // Nodes may share bytes: each holds its points, but not all of them together.
+    if (!laz::can_hold(header_, input_.bytes.size(), points)) {
+      wrong(info_, fmt::format("{} points in a file of {} bytes, which cannot hold them", points,
+                               input_.bytes.size()));
+    }
   }
 
   static std::string name(const CopcKey& key) {

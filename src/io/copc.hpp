@@ -35,8 +35,8 @@ struct Copc {
   std::vector<CopcNode> nodes;  ///< by their keys; the parent of each is there
 };
 
-/// The octree, where the file is a COPC file. All nodes lie within the file, and together they have
-/// the points that the header announces.
+/// The octree, where the file is a COPC file. All nodes with points lie within the file, and
+/// together they have the points that the header announces, no more than its bytes can hold.
 /// @throws Error that names the byte of what is wrong.
 [[nodiscard]] std::optional<Copc> read_copc(const Input& input, const LasHeader& header);
 

@@ -57,12 +57,12 @@ bool seen_from_origin(const E57Scan& scan) {
          !scan.T_file_scan.linear().isIdentity();
 }
 
-// How the columns of a scan become points.
+// Says which columns of a scan become points, and how.
 struct E57Layout {
   Roles roles;  // one a field
   bool spherical = false;
-  std::optional<std::size_t> invalid{};  // the field that marks invalid points
-  std::vector<bool> used{};              // one a field
+  std::vector<std::size_t> used{};  // fields with a role, and the one that marks invalid points
+  std::optional<std::size_t> invalid{};  // its index in `used`
 };
 
 E57Layout layout_of(const Input& input, const E57Scan& scan) {
@@ -76,8 +76,10 @@ E57Layout layout_of(const Input& input, const E57Scan& scan) {
       result.spherical ? "sphericalInvalidState" : "cartesianInvalidState";
   for (std::size_t k = 0; k < scan.fields.size(); ++k) {
     const E57Field& field = scan.fields[k];
-    if (field.name == state && field.kind != E57Field::Kind::skipped) result.invalid = k;
-    result.used.push_back(result.roles[k] || result.invalid == k);
+    const bool marks =
+        !result.invalid && field.name == state && field.kind != E57Field::Kind::skipped;
+    if (marks) result.invalid = result.used.size();
+    if (marks || result.roles[k]) result.used.push_back(k);
   }
   return result;
 }
@@ -104,17 +106,19 @@ class E57ScanReader {
   }
 
  private:
+  // `column`: an index in `used`.
   [[nodiscard]] double value(std::size_t column, Role role, std::size_t i) const {
     const double number = packets_.values(column)[i];
     if (role != Role::red && role != Role::green && role != Role::blue) return number;
-    const E57Field& field = scan_.fields[column];
+    const E57Field& field = scan_.fields[layout_.used[column]];
     return 255 * (number - field.black) / (field.white - field.black);
   }
 
   [[nodiscard]] Row row(std::size_t i) const {
     Row row{};
-    for (std::size_t k = 0; k < layout_.roles.size(); ++k) {
-      if (const auto role = layout_.roles[k]) row[index_of(*role)] = value(k, *role, i);
+    for (std::size_t k = 0; k < layout_.used.size(); ++k) {
+      const std::optional<Role> role = layout_.roles[layout_.used[k]];
+      if (role) row[index_of(*role)] = value(k, *role, i);
     }
     Eigen::Map<Eigen::Vector3d> point(row.data() + index_of(Role::x));
     if (layout_.spherical) point = cartesian(point);

@@ -75,7 +75,7 @@ class E57XmlParser {
     for (const pugi::xml_node& column : points.child("prototype").children()) {
       if (column.type() == pugi::node_element) result.fields.push_back(field(column));
     }
-    for (E57Field& each : result.fields) limit(each, node.child("colorLimits"));
+    limit_colors(result, node.child("colorLimits"));
     return result;
   }
 
@@ -129,13 +129,22 @@ class E57XmlParser {
     result.white = static_cast<double>(maximum) * result.scale + result.offset;
   }
 
-  // What the scan says of its colours goes before what their type can hold.
-  void limit(E57Field& field, const pugi::xml_node& limits) const {
-    const pugi::xml_node least = limits.child((field.name + "Minimum").c_str());
-    const pugi::xml_node most = limits.child((field.name + "Maximum").c_str());
-    if (!least || !most) return;
-    field.black = real(least.child_value(), least.name(), 0);
-    field.white = real(most.child_value(), most.name(), 0);
+  // The scan's own limits of a colour replace those of the column's type. They are looked up once a
+  // colour, not once a column: an XML may list a million of either.
+  void limit_colors(E57Scan& scan, const pugi::xml_node& limits) const {
+    for (const char* name : {"colorRed", "colorGreen", "colorBlue"}) {
+      const std::string color(name);
+      const pugi::xml_node least = limits.child((color + "Minimum").c_str());
+      const pugi::xml_node most = limits.child((color + "Maximum").c_str());
+      if (!least || !most) continue;
+      const double black = real(least.child_value(), least.name(), 0);
+      const double white = real(most.child_value(), most.name(), 0);
+      for (E57Field& field : scan.fields) {
+        if (field.name != color) continue;
+        field.black = black;
+        field.white = white;
+      }
+    }
   }
 
   const Input& input_;

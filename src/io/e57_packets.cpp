@@ -59,7 +59,7 @@ double E57Column::number(std::uint64_t bits) const {
 }
 
 E57Packets::E57Packets(const Input& input, E57Pages& pages, const E57Scan& scan,
-                       const std::vector<bool>& used)
+                       const std::vector<std::size_t>& used)
     : input_(input), pages_(pages), scan_(scan), used_(used) {
   constexpr std::uint64_t kSectionHeader = 32;  // bytes (format)
   pages.read(scan.section, kSectionHeader, packet_, "the section of a scan");
@@ -76,14 +76,14 @@ E57Packets::E57Packets(const Input& input, E57Pages& pages, const E57Scan& scan,
     fail_at_byte(input, E57Pages::byte_of(scan.section + 16), "points outside their section",
                  kFetchAgain);
   }
-  for (const E57Field& field : scan.fields) columns_.emplace_back(field);
+  for (const std::size_t field : used_) columns_.emplace_back(scan.fields[field]);
   check_room();
 }
 
 // A point takes a bit at least, so that a count alone allocates nothing.
 void E57Packets::check_room() const {
   std::uint64_t bits = 0;
-  for (std::size_t k = 0; k < used_.size(); ++k) bits += used_[k] ? scan_.fields[k].bits : 0;
+  for (const std::size_t field : used_) bits += scan_.fields[field].bits;
   const std::uint64_t most = 8 * bytes() / std::max<std::uint64_t>(bits, 1);
   if (scan_.points <= most) return;
   fail_at_byte(
@@ -101,13 +101,11 @@ std::size_t E57Packets::next() {
 }
 
 std::size_t E57Packets::take() {
-  std::uint64_t count = scan_.points - done_;
-  for (std::size_t k = 0; k < used_.size(); ++k) {
-    if (used_[k]) count = std::min(count, columns_[k].available());
-  }
-  for (std::size_t k = 0; k < used_.size() && count > 0; ++k) {
-    if (used_[k]) columns_[k].take(count);
-  }
+  constexpr std::uint64_t kMostAtOnce = 4096;  // points; their numbers fit a cache (judgement)
+  std::uint64_t count = std::min(scan_.points - done_, kMostAtOnce);
+  for (const E57Column& column : columns_) count = std::min(count, column.available());
+  if (count == 0) return 0;
+  for (E57Column& column : columns_) column.take(count);
   done_ += count;
   return count;
 }
@@ -141,11 +139,13 @@ void E57Packets::split_packet() {
   const std::span<const std::byte> packet(packet_);
   const std::size_t count = packet.size() < kSizes ? 0 : load_as<std::uint16_t>(packet.data() + 4);
   std::size_t at = kSizes + 2 * count;
-  bool whole = count == columns_.size() && at <= packet.size();
+  bool whole = count == scan_.fields.size() && at <= packet.size();
+  std::size_t column = 0;  // the next used one
   for (std::size_t k = 0; k < count && whole; ++k) {
     const std::size_t size = load_as<std::uint16_t>(packet.data() + kSizes + 2 * k);
     whole = size <= packet.size() - at;
-    if (whole && used_[k]) columns_[k].append(packet.subspan(at, size));
+    const bool used = column < used_.size() && used_[column] == k;
+    if (whole && used) columns_[column++].append(packet.subspan(at, size));
     at += size;
   }
   if (whole) return;

@@ -41,19 +41,21 @@ class E57Column {
 /// bytes of each its writer had.
 class E57Packets {
  public:
-  /// `used`: the columns that are wanted, one a field. All arguments must outlive this but `used`.
+  /// `used`: the scan's fields that are wanted, by rising index. All arguments must outlive this
+  /// but `used`. The time for a point or a packet depends on these fields alone, not on how many
+  /// the XML lists.
   /// @throws Error unless there are points of that size where the scan says.
   E57Packets(const Input& input, E57Pages& pages, const E57Scan& scan,
-             const std::vector<bool>& used);
+             const std::vector<std::size_t>& used);
 
   /// Bytes of the scan's points, with their packets.
   [[nodiscard]] std::uint64_t bytes() const { return end_ - scan_.section; }
 
-  /// Decodes the next points; 0 when all are done. @throws Error when packets are damaged or
-  /// missing.
+  /// Decodes some of the next points; 0 when all are done. @throws Error when packets are damaged
+  /// or missing.
   [[nodiscard]] std::size_t next();
 
-  /// The numbers of a used column, of the points of the last next().
+  /// The numbers of the field `used[column]`, of the points of the last next().
   [[nodiscard]] const std::vector<double>& values(std::size_t column) const {
     return columns_[column].values();
   }
@@ -67,11 +69,11 @@ class E57Packets {
   const Input& input_;
   E57Pages& pages_;
   const E57Scan& scan_;
-  std::vector<bool> used_;
-  std::vector<E57Column> columns_;
-  std::uint64_t place_ = 0;  // of the next packet
-  std::uint64_t end_ = 0;    // of the section
-  std::uint64_t done_ = 0;   // points
+  std::vector<std::size_t> used_;   // fields
+  std::vector<E57Column> columns_;  // one for each used field
+  std::uint64_t place_ = 0;         // of the next packet
+  std::uint64_t end_ = 0;           // of the section
+  std::uint64_t done_ = 0;          // points
   std::vector<std::byte> packet_;
 };
 

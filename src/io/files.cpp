@@ -32,6 +32,10 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return read_e57(input);
     case FileKind::obj:
       return read_obj(input);
+    case FileKind::stl:
+      return read_stl(input);
+    case FileKind::gltf:
+      return read_gltf(input);
     case FileKind::text:
       return read_xyz(input);
     case FileKind::png:
@@ -95,27 +99,24 @@ void fit_length(const Input& input, CloudFile& file) {
   cloud.origin *= factor;
   if (cloud.viewpoint) *cloud.viewpoint *= factor;
   if (file.splats) file.splats->spacing *= factor;
+  if (file.mesh) file.mesh->spacing *= factor;
 }
 
 CloudFile read_packed(const Input& input) {
   const Bytes unpacked = unpack(input, name_inside(input.name));
-  const Input inside{unpacked.span(), name_inside(input.name), input.options};
+  const Input inside{unpacked.span(), name_inside(input.name), input.options, input.folder};
   CloudFile file = read_kind(inside, kind_of(inside));
   file.format += ", gzip";
   return file;
 }
 
-}  // namespace
-
-CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
-                           const ReadOptions& options) {
-  const Input input{bytes, name, options};
+CloudFile read_input(const Input& input) {
   check_options(input);
   try {
     const FileKind kind = kind_of(input);
     CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
     fit_length(input, file);
-    if (options.progress) options.progress(1.0);
+    if (input.options.progress) input.options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {
     fail(input, "not enough memory for its points",
@@ -123,15 +124,23 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
   }
 }
 
+}  // namespace
+
+CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
+                           const ReadOptions& options) {
+  return read_input({bytes, name, options});
+}
+
 CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string name = path == "-" ? "standard input" : path.string();
+  const bool piped = path == "-";
   try {
     const bool is_file = std::filesystem::exists(path);
     const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
-    return read_cloud_bytes(bytes.span(), name, options);
+    if (piped) return read_cloud_bytes(bytes.span(), "standard input", options);
+    return read_input({bytes.span(), path.string(), options, path.parent_path() / "."});
   } catch (const std::bad_alloc&) {
     throw Error(
-        name +
+        (piped ? "standard input" : path.string()) +
         ": not enough memory to read it. Downsample the cloud or split it into tiles first.");
   }
 }
@@ -146,15 +155,21 @@ std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path) {
   if (extension(path.string()) != ".e57" || !std::filesystem::is_regular_file(path, none)) {
     return {path};
   }
-  const Bytes bytes = read_bytes(path);
-  const ReadOptions options;
-  const Input input{bytes.span(), path.string(), options};
-  if (!input.text().starts_with(kE57)) return {path};
-  std::vector<std::filesystem::path> scans;
-  for (const std::size_t number : e57_scans_with_points(input)) {
-    scans.emplace_back(fmt::format("{}#{}", path.string(), number));
+  try {
+    const Bytes bytes = read_bytes(path);
+    const ReadOptions options;
+    const Input input{bytes.span(), path.string(), options};
+    if (!input.text().starts_with(kE57)) return {path};
+    std::vector<std::filesystem::path> scans;
+    for (const std::size_t number : e57_scans_with_points(input)) {
+      scans.emplace_back(fmt::format("{}#{}", path.string(), number));
+    }
+    return scans.size() > 1 ? scans : std::vector{path};
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string() +
+                ": not enough memory to read which scans it holds. Close other programs, or split "
+                "it into files of one scan first.");
   }
-  return scans.size() > 1 ? scans : std::vector{path};
 }
 
 namespace {

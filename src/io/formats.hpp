@@ -42,8 +42,9 @@ struct PlyHeader {
 [[nodiscard]] PlyHeader read_ply_header(const Input& input);
 
 /// PLY: ascii, binary little and big endian; any order and type of properties. Points are the
-/// first element that has x, y and z; other elements and lists are skipped. Kept of a point: its
-/// normal, colour and the first scalar whose name says intensity or quality.
+/// first element that has x, y and z. Kept of a point: its normal, colour and the first scalar
+/// whose name says intensity or quality. Faces are "vertex_indices" (or "vertex_index") of the
+/// element "face"; other elements and lists are skipped.
 [[nodiscard]] CloudFile read_ply(const Input& input);
 
 enum class PcdEncoding { ascii, binary, compressed };
@@ -158,9 +159,21 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// The numbers of the scans that hold points, from 1 on.
 [[nodiscard]] std::vector<std::size_t> e57_scans_with_points(const Input& input);
 
-/// The vertices of a Wavefront OBJ file ("v x y z", with "r g b" where the first vertex has them),
-/// and its normals where there are as many "vn" as "v". Everything else is skipped.
+/// The faces of a Wavefront OBJ file (lines "f"), or its vertices ("v x y z", with "r g b" where
+/// the first vertex has them) with its normals where there are as many "vn" as "v". Everything else
+/// is skipped.
 [[nodiscard]] CloudFile read_obj(const Input& input);
+
+/// STL, as text or bytes: the faces; what it says of normals and colours is not used.
+[[nodiscard]] CloudFile read_stl(const Input& input);
+
+/// Is it an STL file? One of bytes has no mark, but the size that its count of triangles asks for.
+[[nodiscard]] bool is_stl(const Input& input);
+
+/// glTF 2.0, as JSON or in one binary file (GLB): the triangles of its scene, y up turned to z up.
+/// Data may lie in the file, or in files beside it where `input` has a folder.
+/// @throws Error for compressed (Draco, meshopt) and sparse data.
+[[nodiscard]] CloudFile read_gltf(const Input& input);
 
 /// A point a line, numbers separated by blanks, tabs, commas or semicolons. Lines that start with
 /// #, // or % are comments; a first line of one whole number announces a count (PTS).

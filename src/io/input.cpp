@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/formats.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
@@ -35,13 +36,18 @@ std::string excerpt(std::string_view text) {
   return text.size() > kLongest ? result + "..." : result;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result{text};
+  std::ranges::transform(result, result.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  });
+  return result;
+}
+
 std::string extension(std::string_view name) {
   const std::size_t dot = name.find_last_of("./");
   if (dot == std::string_view::npos || name[dot] != '.') return {};
-  std::string result{name.substr(dot)};
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return result;
+  return lower_case(name.substr(dot));
 }
 
 ScanName split_scan(const std::string& name) {
@@ -56,8 +62,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, SPZ, .splat, 16-bit depth PNG and "
-    "PGM, "
+    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ, E57, SPZ, .splat, 16-bit "
+    "depth "
+    "PNG and PGM, "
     "optionally gzipped";
 
 struct Known {
@@ -69,7 +76,7 @@ constexpr Known kKnown[] = {
     {"ply\n", FileKind::ply},  {"ply\r", FileKind::ply},    {"ply ", FileKind::ply},
     {"LASF", FileKind::las},   {"ASTM-E57", FileKind::e57}, {"\x89PNG\r\n\x1a\n", FileKind::png},
     {"P5", FileKind::pgm},     {"NGSP", FileKind::spz},     {"\x1f\x8b", FileKind::gzip},
-    {"# .PCD", FileKind::pcd},
+    {"# .PCD", FileKind::pcd}, {"glTF", FileKind::gltf},
 };
 
 struct Refused {
@@ -96,10 +103,8 @@ constexpr Refused kRefused[] = {
     {"MM\0*"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
     {"P6", "a colour picture (PPM)", "Give the 16-bit depth image of the camera"},
     {"P2", "a PGM written as text", "Convert it to binary PGM (P5) or to 16-bit PNG"},
-    {"glTF", "a binary glTF model", kExport},
     {"\x89HDF", "an HDF5 file", "Export the points as PLY or text"},
     {"OFF", "an OFF model", kExport},
-    {"solid ", "an STL model", kExport},
     {"Kaydara FBX", "an FBX model", kExport},
     {"#ROSBAG", "a ROS bag", "Export one cloud from it as PCD"},
     {"\x89MCAP", "an MCAP recording", "Touch what it recorded: palpate touch bag:{}"},
@@ -131,6 +136,14 @@ std::string_view first_word(const Input& input) {
   return {};
 }
 
+// JSON that is named as glTF, or whose first words say so.
+bool is_gltf_json(const Input& input) {
+  constexpr std::size_t kFirst = 4096;  // bytes in which "asset" is looked for (judgement)
+  const std::string_view head = input.text().substr(0, kFirst);
+  if (!trim(head).starts_with('{')) return false;
+  return extension(input.name) == ".gltf" || head.find("\"asset\"") != std::string_view::npos;
+}
+
 FileKind text_kind(const Input& input, std::string_view word) {
   constexpr std::string_view kObjWords[] = {"v", "vn", "vt", "mtllib", "o", "g", "s", "usemtl"};
   const bool is_obj =
@@ -158,8 +171,6 @@ void refuse_splats(const Input& input) {
 }
 
 [[noreturn]] void refuse_unknown(const Input& input) {
-  const std::string ending = extension(input.name);
-  if (ending == ".stl") fail(input, "this is an STL model", kExport);
   std::string head;
   for (const std::byte b : input.bytes.first(std::min<std::size_t>(input.bytes.size(), 8))) {
     head += fmt::format(" {:02x}", std::to_integer<unsigned>(b));
@@ -178,6 +189,8 @@ FileKind kind_of(const Input& input) {
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
+  if (is_stl(input)) return FileKind::stl;
+  if (is_gltf_json(input)) return FileKind::gltf;
   refuse_known(input);
   // The comment that begins a PCD may be missing, and its points may be no text.
   const std::string_view word = first_word(input);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@ struct Input {
   std::span<const std::byte> bytes;
   std::string name;
   const ReadOptions& options;
+  std::filesystem::path folder{};  ///< of the file, where others may lie beside it; empty: none
 
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -40,6 +42,9 @@ struct Input {
 
 /// Foreign text made fit for a message: cut to 40 characters, unprintable ones replaced.
 [[nodiscard]] std::string excerpt(std::string_view text);
+
+/// With capital letters A to Z made small.
+[[nodiscard]] std::string lower_case(std::string_view text);
 
 /// The last extension of a name, lower case, with its dot: ".las"; "" without one.
 [[nodiscard]] std::string extension(std::string_view name);
@@ -82,11 +87,12 @@ class Progress {
   std::size_t next_;
 };
 
-enum class FileKind { ply, pcd, las, e57, obj, text, png, pgm, spz, splat, gzip };
+enum class FileKind { ply, pcd, las, e57, obj, stl, gltf, text, png, pgm, spz, splat, gzip };
 
 /// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
-/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, STL,
-///   JSON, a web page, ...) and about bytes that are nothing we know.
+/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, JSON, a
+/// web
+///   page, ...) and about bytes that are nothing we know.
 [[nodiscard]] FileKind kind_of(const Input& input);
 
 }  // namespace palpate::io

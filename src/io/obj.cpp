@@ -1,4 +1,4 @@
-// Reads the vertices and normals of Wavefront OBJ files.
+// Reads the faces, vertices and normals of Wavefront OBJ files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/mesh.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
@@ -16,6 +17,7 @@ namespace {
 struct Counts {
   std::size_t vertices = 0;
   std::size_t normals = 0;
+  std::size_t faces = 0;
   std::size_t first_normal = 0;  // byte offset of the first "vn" line
 };
 
@@ -27,6 +29,7 @@ Counts count_lines(const Input& input) {
     std::string_view line = scanner.next_line();
     const std::string_view word = take_word(line);
     if (word == "v") ++counts.vertices;
+    if (word == "f") ++counts.faces;
     if (word == "vn" && counts.normals++ == 0) counts.first_normal = begin;
   }
   return counts;
@@ -49,8 +52,9 @@ class ObjReader {
       const std::size_t numbers = read_line(vertices_, "v", 7, values_);
       const bool colors = numbers >= 6;
       if (!builder) {
-        builder.emplace(input_, Columns{.normals = normals, .colors = colors}, ColorScale::guess,
+        builder.emplace(input_, Columns{.normals = normals, .colors = colors}, mesh_.color_scale,
                         counts_.vertices);
+        mesh_.columns.colors = colors;
       }
       set(row, Role::x);
       if (colors) std::copy_n(values_.begin() + 3, 3, row.begin() + index_of(Role::red));
@@ -59,11 +63,14 @@ class ObjReader {
         set(row, Role::normal_x);
       }
       builder->add(row);
+      if (counts_.faces > 0) mesh_.vertices.push_back(mesh_vertex(row));
       progress.at(vertices_.offset());
     }
     if (!builder)
       fail(input_, "this OBJ file has no vertices (lines \"v x y z\")", "Export it again");
-    return builder->finish("OBJ");
+    CloudFile file = builder->finish("OBJ");
+    if (counts_.faces > 0) read_faces();
+    return choose_cloud(input_, mesh_, std::move(file));
   }
 
  private:
@@ -94,6 +101,37 @@ class ObjReader {
     return count;
   }
 
+  void read_faces() {
+    TextScanner scanner(input_);
+    Progress progress(input_.options, input_.bytes.size());
+    std::size_t before = 0;  // vertices, from which negative numbers count back
+    while (!scanner.at_end()) {
+      const std::size_t begin = scanner.offset();
+      std::string_view line = scanner.next_line();
+      const std::string_view word = take_word(line);
+      if (word == "v") ++before;
+      if (word == "f") read_face(begin, line, before);
+      progress.at(scanner.offset());
+    }
+  }
+
+  // Corners as "vertex", "vertex/texture", "vertex//normal" or "vertex/texture/normal".
+  void read_face(std::size_t begin, std::string_view line, std::size_t before) {
+    for (std::string_view cell = take_word(line); !cell.empty() && cell[0] != '#';
+         cell = take_word(line)) {
+      const std::string_view vertex = cell.substr(0, cell.find('/'));
+      const bool back = vertex.starts_with('-');
+      const std::optional<std::size_t> number = parse_count(vertex.substr(back ? 1 : 0));
+      const std::size_t most = back ? before : counts_.vertices;
+      if (!number || *number < 1 || *number > most) {
+        wrong(begin,
+              fmt::format("a face has vertex \"{}\", but there are {}", excerpt(vertex), most));
+      }
+      mesh_.add_corner(back ? before - *number : *number - 1);
+    }
+    mesh_.close_face();
+  }
+
   [[noreturn]] void wrong(std::size_t offset, std::string_view what) const {
     fail_at_line(input_, offset, what, "Correct this line, or export the file again");
   }
@@ -103,6 +141,7 @@ class ObjReader {
   TextScanner vertices_;
   TextScanner normals_;
   Values values_{};
+  Mesh mesh_{.color_scale = ColorScale::guess};
 };
 
 }  // namespace

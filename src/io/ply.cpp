@@ -1,10 +1,13 @@
-// Reads the vertices of PLY files as points, or as splats where that is what they are.
+// Reads the vertices and faces of PLY files as a cloud, or as splats where that is what they are.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/mesh.hpp"
 #include "io/ply_rows.hpp"
 #include "io/splats.hpp"
 
@@ -29,22 +32,75 @@ VertexColumns columns_of(const PlyElement& element) {
   return result;
 }
 
-CloudFile read_vertices(const Input& input, const PlyHeader& header, const PlyElement& element,
-                        const VertexColumns& columns) {
-  CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
-                       most_rows(input, header, element));
-  PlyTable table{&element, {}, std::vector<double>(kRoleCount, 0), {}};
-  for (std::size_t k = 0; k < columns.roles.size(); ++k) {
-    const std::optional<Role> role = columns.roles[k];
-    table.places.push_back(role ? std::optional(index_of(*role)) : std::nullopt);
+bool has_points(const PlyElement& element) {
+  return columns_of(element).roles.has_point();
+}
+
+// Is it the list of a face's corners?
+bool is_corner_list(const PlyProperty& property) {
+  return property.list_count && !is_floating(property.type) &&
+         (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+bool has_faces(const PlyElement& element) {
+  return element.name == "face" && std::ranges::any_of(element.properties, is_corner_list);
+}
+
+PlyTable table_of_points(const PlyElement& element, const Roles& roles) {
+  PlyTable table{.element = &element, .row = std::vector<double>(kRoleCount, 0)};
+  for (std::size_t k = 0; k < roles.size(); ++k) {
+    table.places.push_back(roles[k] ? std::optional(index_of(*roles[k])) : std::nullopt);
   }
-  table.take = [&](std::span<const double> values) {
+  return table;
+}
+
+PlyTable table_of_faces(const PlyElement& element) {
+  PlyTable table{.element = &element};
+  table.places.resize(element.properties.size());
+  const auto list = std::ranges::find_if(element.properties, is_corner_list);
+  table.list = static_cast<std::size_t>(list - element.properties.begin());
+  return table;
+}
+
+void add_face(const Input& input, const PlyTable& table, std::size_t vertices, Mesh& mesh) {
+  for (const double corner : table.items) {
+    if (!(corner >= 0 && corner < static_cast<double>(vertices))) {
+      fail_at_byte(input, table.list_begin,
+                   fmt::format("a face has vertex {}, but there are {}", corner, vertices),
+                   "The file is damaged: export it again");
+    }
+    mesh.add_corner(static_cast<std::size_t>(corner));
+  }
+  mesh.close_face();
+}
+
+// `faces`: null where the file has none.
+CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElement& points,
+                      const PlyElement* faces) {
+  const VertexColumns columns = columns_of(points);
+  CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
+                       most_rows(input, header, points));
+  Mesh mesh{.columns = columns.roles.columns(), .color_scale = columns.color_scale};
+  // In the file's order from the start: the face table's `take` refers to its place.
+  const bool faces_first = faces && faces < &points;
+  std::vector<PlyTable> tables(faces ? 2 : 1);
+  PlyTable& vertex_table = tables[faces_first ? 1 : 0];
+  vertex_table = table_of_points(points, columns.roles);
+  vertex_table.take = [&](std::span<const double> values) {
     Row row;
     std::ranges::copy(values, row.begin());
     builder.add(row);
+    if (faces) mesh.vertices.push_back(mesh_vertex(row));
   };
-  read_ply_rows(input, header, {&table, 1});
-  return builder.finish(std::string(name_of(header.encoding)));
+  if (faces) {
+    PlyTable& face_table = tables[faces_first ? 0 : 1];
+    face_table = table_of_faces(*faces);
+    face_table.take = [&](std::span<const double>) {
+      add_face(input, face_table, points.count, mesh);
+    };
+  }
+  read_ply_rows(input, header, tables);
+  return choose_cloud(input, mesh, builder.finish(std::string(name_of(header.encoding))));
 }
 
 }  // namespace
@@ -52,12 +108,14 @@ CloudFile read_vertices(const Input& input, const PlyHeader& header, const PlyEl
 CloudFile read_ply(const Input& input) {
   const PlyHeader header = read_ply_header(input);
   if (holds_splats(header)) return shell_file(input, read_splat_ply);
-  for (const PlyElement& element : header.elements) {
-    const VertexColumns columns = columns_of(element);
-    if (columns.roles.has_point()) return read_vertices(input, header, element, columns);
+  const auto points = std::ranges::find_if(header.elements, has_points);
+  if (points == header.elements.end()) {
+    fail(input, "no element of this PLY file has the properties x, y and z",
+         "Export it again with its vertices");
   }
-  fail(input, "no element of this PLY file has the properties x, y and z",
-       "Export it again with its vertices");
+  const auto faces = std::ranges::find_if(header.elements, has_faces);
+  const bool has_mesh = faces != header.elements.end() && faces != points;
+  return read_points(input, header, *points, has_mesh ? &*faces : nullptr);
 }
 
 }  // namespace palpate::io

@@ -101,7 +101,7 @@ class PlyReader {
       const PlyProperty& property = element.properties[k];
       double value = 0;
       if (property.list_count) {
-        if (!skip_list(property)) return false;
+        if (!(table.list == k ? read_list(property, table) : skip_list(property))) return false;
       } else if (!table.places[k]) {
         if (!cursor_.skip(property.type, 1)) return false;
       } else if (cursor_.next(property.type, value)) {
@@ -121,18 +121,33 @@ class PlyReader {
             property.list_count ? skip_list(property) : cursor_.skip(property.type, 1);
         if (!there) fail_cut(element, i);
       }
+      progress_.at(cursor_.offset());
     }
   }
 
   bool skip_list(const PlyProperty& property) {
-    const std::size_t begin = cursor_.offset();
     double length = 0;
-    if (!cursor_.next(*property.list_count, length)) return false;
-    if (!(length >= 0 && length <= 4294967295.0)) {
-      fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
-                   "The file is damaged: export it again");
+    return read_length(property, length) &&
+           cursor_.skip(property.type, static_cast<std::size_t>(length));
+  }
+
+  bool read_list(const PlyProperty& property, PlyTable& table) {
+    table.list_begin = cursor_.offset();
+    table.items.clear();
+    double length = 0;
+    if (!read_length(property, length)) return false;
+    for (double k = 0; k < length; ++k) {
+      if (!cursor_.next(property.type, table.items.emplace_back())) return false;
     }
-    return cursor_.skip(property.type, static_cast<std::size_t>(length));
+    return true;
+  }
+
+  bool read_length(const PlyProperty& property, double& length) {
+    const std::size_t begin = cursor_.offset();
+    if (!cursor_.next(*property.list_count, length)) return false;
+    if (length >= 0 && length <= 4294967295.0) return true;
+    fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
+                 "The file is damaged: export it again");
   }
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::size_t present) const {
@@ -153,7 +168,7 @@ class PlyReader {
 
 PlyTable table_of(const PlyElement& element, std::span<const std::string_view> names,
                   double absent) {
-  PlyTable table{&element, {}, std::vector<double>(names.size(), absent), {}};
+  PlyTable table{.element = &element, .row = std::vector<double>(names.size(), absent)};
   for (const PlyProperty& property : element.properties) {
     const auto found = std::ranges::find(names, property.name);
     const bool wanted = found != names.end() && !property.list_count;

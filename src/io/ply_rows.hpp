@@ -16,9 +16,13 @@ namespace palpate::io {
 /// What is wanted of an element's rows, and who takes it.
 struct PlyTable {
   const PlyElement* element = nullptr;
-  std::vector<std::optional<std::size_t>> places;  ///< of each property's value in `row`, if wanted
-  std::vector<double> row;  ///< values as they are where the file has no such property
-  std::function<void(std::span<const double>)> take;  ///< gets each row in turn
+  std::vector<std::optional<std::size_t>>
+      places{};               ///< of each property's value in `row`, if wanted
+  std::vector<double> row{};  ///< values as they are where the file has no such property
+  std::function<void(std::span<const double>)> take{};  ///< gets each row in turn
+  std::optional<std::size_t> list{};                    ///< the property whose lists are wanted
+  std::vector<double> items{};                          ///< of the list of this row
+  std::size_t list_begin = 0;                           ///< its byte in the file
 };
 
 /// The table of the properties called `names`, whose values come in that order. Those that the

@@ -14,13 +14,12 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t kNewest = 4;              // version (format)
-constexpr std::size_t kSmallHeader = 16;        // bytes, up to version 3 (format)
-constexpr std::size_t kLargeHeader = 32;        // bytes, version 4 (format)
-constexpr std::size_t kTableRow = 16;           // bytes a stream (format)
-constexpr std::size_t kLargestSpzRatio = 1024;  // unpacked over packed bytes (format)
-constexpr std::uint8_t kMostFraction = 23;      // bits of a coordinate of 24 (format)
-constexpr const char* kAgain = "Download or export it again";
+constexpr std::size_t kNewest = 4;          // version (format)
+constexpr std::size_t kSmallHeader = 16;    // bytes, up to version 3 (format)
+constexpr std::size_t kLargeHeader = 32;    // bytes, version 4 (format)
+constexpr std::size_t kTableRow = 16;       // bytes a stream (format)
+constexpr std::uint8_t kMostFraction = 23;  // bits of a coordinate of 24 (format)
+constexpr const char* kDownload = "Download or export it again";
 
 struct SpzHeader {
   std::size_t version = 0;
@@ -45,7 +44,7 @@ std::array<std::size_t, 5> sizes_of(const SpzHeader& header) {
 SpzHeader read_spz_header(const Input& input) {
   const std::byte* bytes = input.bytes.data();
   if (input.bytes.size() < kSmallHeader) {
-    fail_at_byte(input, input.bytes.size(), "the header is cut", kAgain);
+    fail_at_byte(input, input.bytes.size(), "the header is cut", kDownload);
   }
   SpzHeader header;
   header.version = load_as<std::uint32_t>(bytes + 4);
@@ -58,11 +57,11 @@ SpzHeader read_spz_header(const Input& input) {
                  "Export it as PLY");
   }
   if (header.version > 1 && header.fraction > kMostFraction) {
-    fail_at_byte(input, 13, fmt::format("{} fractional bits of 24", header.fraction), kAgain);
+    fail_at_byte(input, 13, fmt::format("{} fractional bits of 24", header.fraction), kDownload);
   }
   if (header.version < 4) return header;
   if (input.bytes.size() < kLargeHeader) {
-    fail_at_byte(input, input.bytes.size(), "the header is cut", kAgain);
+    fail_at_byte(input, input.bytes.size(), "the header is cut", kDownload);
   }
   header.streams = std::to_integer<std::uint8_t>(bytes[15]);
   header.table = load_as<std::uint32_t>(bytes + 16);
@@ -76,10 +75,10 @@ using SpzColumns = std::array<std::span<const std::byte>, 5>;
   fail(input,
        fmt::format("stream {} ({}) ends after {} of {} bytes", column, kColumnNames[column], there,
                    wanted),
-       kAgain);
+       kDownload);
 }
 
-// SpzColumns that follow one another, as up to version 3.
+// Columns that follow one another, as up to version 3.
 SpzColumns plain_columns(const Input& input, const SpzHeader& header) {
   SpzColumns columns;
   std::size_t at = kSmallHeader;
@@ -103,7 +102,7 @@ Bytes unpack_stream(const Input& input, std::size_t column, std::span<const std:
     fail(input,
          fmt::format("stream {} ({}) cannot be unpacked: {}", column, kColumnNames[column],
                      ZSTD_getErrorName(got)),
-         kAgain);
+         kDownload);
   }
   if (got != wanted) fail_column(input, column, got, wanted);
   return bytes;
@@ -113,7 +112,7 @@ void check_streams(const Input& input, const SpzHeader& header) {
   const std::size_t size = header.streams * kTableRow;
   if (header.streams < kColumnNames.size()) {
     fail_at_byte(input, 15, fmt::format("{} streams; a scene has 5 at least", header.streams),
-                 kAgain);
+                 kDownload);
   }
   const bool inside = header.table >= kLargeHeader && header.table <= input.bytes.size() &&
                       input.bytes.size() - header.table >= size;
@@ -121,12 +120,14 @@ void check_streams(const Input& input, const SpzHeader& header) {
     fail_at_byte(
         input, 16,
         fmt::format("the table of streams is at byte {} of {}", header.table, input.bytes.size()),
-        kAgain);
+        kDownload);
   }
-  if (header.count / kLargestSpzRatio > input.bytes.size() / 9) {
+  std::size_t row = 0;
+  for (const std::size_t size_of_column : sizes_of(header)) row += size_of_column;
+  if (header.count > largest_unpacked(input.bytes.size()) / row) {
     fail_at_byte(input, 8,
                  fmt::format("{} splats do not fit {} bytes", header.count, input.bytes.size()),
-                 kAgain);
+                 kDownload);
   }
 }
 

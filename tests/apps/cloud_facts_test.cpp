@@ -22,6 +22,7 @@ TEST(CloudFacts, UnitsAreGuessedWithAReason) {
   EXPECT_EQ(feet.units, "metres or feet");
   EXPECT_NE(feet.advice.find("0.3048"), std::string::npos);
   EXPECT_EQ(guess_units(box({515380, 4918340, 2300}, {40, 40, 20}), "LAS 1.4").units, "metres");
+  EXPECT_EQ(guess_units(box({0, 0, 0}, {500, 1, 1}), "glTF, binary").units, "metres");
   EXPECT_EQ(guess_units(box({1, 2, 3}, {0, 0, 0}), "XYZ").units, "unknown");
   const UnitsGuess far = guess_units(box({1e12, 0, 0}, {0, 0.4, 0}), "XYZ");
   EXPECT_NE(far.reason.find("beyond 1e+09 m"), std::string::npos) << far.reason;

@@ -21,6 +21,7 @@ noise = [0.001, 0, 0.002, 1.5]
 [[source]]
 from = "scans/mug.ply"
 scale = 0.001
+mesh_spacing = 0.002
 
 [stream]
 policy = "morph"
@@ -62,6 +63,7 @@ TEST(SetupFile, FillsInWhatTheCommandLineDoesNotSay) {
   EXPECT_EQ(sources[1].argument.path, shell.path("scans/mug.ply"));
   EXPECT_EQ(sources[1].kind, SourceKind::cloud);
   EXPECT_EQ(sources[1].reading.scale, 0.001);
+  EXPECT_EQ(sources[1].reading.mesh_spacing, 0.002);
   EXPECT_EQ(sources[1].options.policy.policy, Policy::morph)
       << "of [stream], for sources that say nothing else";
 }
@@ -132,7 +134,7 @@ TEST(SetupFile, EveryPartAndKeyIsDocumented) {
   }
   EXPECT_EQ(sections, (std::set<std::string>{"reading", "stream", "surface", "material", "hand",
                                              "guard", "servo", "ros"}));
-  EXPECT_EQ(of_sources, 19);
+  EXPECT_EQ(of_sources, 20);
 }
 
 TEST(SetupFile, CommandLineWins) {

@@ -15,9 +15,9 @@ LoadedSource fed(double rate, double prepare_ms, bool simulated) {
   return source;
 }
 
-std::string printed(const LoadedSource& source) {
+std::string printed(const Report& report) {
   std::FILE* file = std::tmpfile();
-  camera_report(source).print(file);
+  report.print(file);
   std::rewind(file);
   std::array<char, 4096> text{};
   const std::size_t size = std::fread(text.data(), 1, text.size(), file);
@@ -27,7 +27,7 @@ std::string printed(const LoadedSource& source) {
 
 TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
   const LoadedSource slow = fed(30, 570, true);
-  const std::string text = printed(slow);
+  const std::string text = printed(camera_report(slow));
   EXPECT_NE(text.find("preparing a frame takes 570 ms, but frames arrive every 33.3 ms: live, 95 % "
                       "would be dropped"),
             std::string::npos)
@@ -35,13 +35,28 @@ TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
   EXPECT_NEAR(camera_report(slow).data["would_drop_live"].get<double>(), 1 - 1 / (30 * 0.57),
               1e-12);
   const auto expect_silence = [](const LoadedSource& quick) {
-    EXPECT_EQ(printed(quick).find("would be dropped"), std::string::npos);
+    EXPECT_EQ(printed(camera_report(quick)).find("would be dropped"), std::string::npos);
     EXPECT_EQ(camera_report(quick).data["would_drop_live"], 0.0);
   };
   expect_silence(fed(30, 12, true));
   expect_silence(fed(30, 570, false));
   expect_silence(fed(0, 570, true));
   expect_silence(fed(30, 0, true));
+}
+
+TEST(SourceReport, AMeshIsToldWithWhatItIsFeltAs) {
+  LoadedSource source;
+  source.prepared.points_in = 400000;
+  source.mesh = MeshFacts{.triangles = 12, .dropped = 3, .spacing = 4e-4};
+  const Report sampled = source_report(source);
+  EXPECT_NE(printed(sampled).find("mesh       of 12 triangles: felt as 400 000 points sampled from "
+                                  "it, 400 um apart, 3 without an area\n"),
+            std::string::npos)
+      << printed(sampled);
+  EXPECT_EQ(sampled.data["mesh"]["triangles"], 12);
+  source.mesh->spacing = 0;
+  EXPECT_NE(printed(source_report(source)).find("points, its vertices, 3 without"),
+            std::string::npos);
 }
 
 }  // namespace

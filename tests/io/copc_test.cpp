@@ -162,9 +162,21 @@ TEST(Copc, RefusesAnOctreeWithoutSizeOrRoot) {
     return refusal_of(bytes);
   };
   EXPECT_THAT(broken(24, 0.0), HasSubstr("without a finite size"));
+  EXPECT_THAT(broken(24, 1e308), HasSubstr("without a finite")) << "cubes twice as large";
   EXPECT_THAT(broken(0, std::numeric_limits<double>::quiet_NaN()), HasSubstr("without a finite"));
   EXPECT_THAT(broken(40, ~std::uint64_t{0}), HasSubstr("at byte 18446744073709551615"));
   EXPECT_THAT(broken(48, std::uint64_t{0}), HasSubstr("have 0 points"));
+}
+
+// Each node may have as many points as it says, but not all of them together.
+TEST(Copc, HoldsNoMorePointsInAllThanItsBytesCan) {
+  std::string bytes = copc_bytes([](std::vector<Entry>& entries) {
+    for (Entry& entry : entries) {
+      if (entry.points > 0) entry.points = 2'000'000;
+    }
+  });
+  overwrite<std::uint64_t>(bytes, 247, 5 * 2'000'000);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("10000000 points in a file of"));
 }
 
 TEST(Copc, NamesTheNodeThatIsDamaged) {

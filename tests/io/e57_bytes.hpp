@@ -62,7 +62,7 @@ struct E57TestScan {
   std::string xml = {};  ///< more about the scan: its pose, its colours' limits
   std::string name = "a scan";
   std::size_t packet = 700;  ///< bytes of its columns in a packet, about
-  /// As web-e57 wants it: data packets alone, each of which completes a point.
+  /// Only data packets, each of which completes a point: web-e57 reads no others.
   bool simple = false;
 
   [[nodiscard]] std::size_t points() const { return fields.front().raw.size(); }

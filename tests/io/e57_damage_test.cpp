@@ -28,13 +28,13 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
   return text.replace(at, what.size(), by);
 }
 
-// What the reader says to a file whose XML says `by` in the place of `what`.
+// The reader's refusal of a file whose XML says `by` in the place of `what`.
 std::string refused_with(std::string_view what, std::string_view by) {
   const E57TestFile file({scan_of(5)});
   return refusal(file.with_xml(replaced(file.xml(), what, by)), "a.e57");
 }
 
-// The same of a file whose data bytes differ from `place` on.
+// Its refusal of a file whose data bytes differ from `place` on.
 template <class T>
 std::string refused_at(std::size_t place, T value) {
   std::string data = E57TestFile({scan_of(100)}).data();
@@ -148,6 +148,25 @@ TEST(E57Damage, TakesAMillionNestedElements) {
   EXPECT_EQ(refusal(file.with_xml(replaced(file.xml(), "<data3D", nested + "<data3D"))),
             "no error");
   EXPECT_THAT(refusal(file.with_xml(nested)), HasSubstr("no e57Root"));
+}
+
+// Columns of 0 bits need no packets, so the points are read whatever else the XML lists.
+TEST(E57Damage, TakesAMillionColumnsAndElementsBesideThePoints) {
+  constexpr std::size_t kCount = 100'000;
+  const std::vector<std::int64_t> threes(kCount, 3);
+  const E57TestField filler{"words", R"(type="String")", 8, std::vector<std::uint64_t>(kCount)};
+  const E57TestFile file(
+      {{{e57_integers("cartesianX", 3, 3, threes), e57_integers("cartesianY", 3, 3, threes),
+         e57_integers("cartesianZ", 3, 3, threes), filler}}});
+  std::string columns;
+  std::string elements;
+  for (std::size_t i = 0; i < 1'000'000; ++i) {
+    columns += "<a/>";
+    elements += "<b/>";
+  }
+  const std::string xml = replaced(replaced(file.xml(), "</prototype>", columns + "</prototype>"),
+                                   "<points ", elements + "<points ");
+  EXPECT_EQ(read_text(file.with_xml(xml), "a.e57").cloud.size(), kCount);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ std::vector<double> column_of(const E57TestField& field, std::size_t packet) {
   const io::Input input{std::as_bytes(std::span(bytes)), "a.e57", options};
   io::E57Pages pages(input);
   const io::E57Contents contents = io::read_e57_contents(input, pages);
-  io::E57Packets packets(input, pages, contents.scans.at(0), {true});
+  io::E57Packets packets(input, pages, contents.scans.at(0), {0});
   std::vector<double> all;
   while (const std::size_t count = packets.next()) {
     EXPECT_EQ(packets.values(0).size(), count);
@@ -81,6 +81,26 @@ TEST(E57, ReadsIntegersOfEveryWidth) {
       EXPECT_EQ(column_of(e57_integers("n", least, most, values), packet), expected) << bits;
     }
   }
+}
+
+// A column of 0 bits has all its numbers at once; they are still given in small pieces.
+TEST(E57, GivesTheNumbersOfAConstantColumnInPieces) {
+  constexpr std::size_t kCount = 50'000;
+  const E57TestField filler{"words", R"(type="String")", 8, std::vector<std::uint64_t>(kCount)};
+  const std::string bytes =
+      E57TestFile({{{e57_integers("n", 3, 3, Numbers(kCount, 3)), filler}}}).bytes();
+  const ReadOptions options;
+  const io::Input input{std::as_bytes(std::span(bytes)), "a.e57", options};
+  io::E57Pages pages(input);
+  const io::E57Contents contents = io::read_e57_contents(input, pages);
+  io::E57Packets packets(input, pages, contents.scans.at(0), {0});
+  std::size_t all = 0;
+  while (const std::size_t count = packets.next()) {
+    ASSERT_LE(count, 10'000u);
+    EXPECT_EQ(packets.values(0), std::vector<double>(count, 3));
+    all += count;
+  }
+  EXPECT_EQ(all, kCount);
 }
 
 TEST(E57, ReadsScaledIntegersAndFloatsToTheLastBit) {
@@ -211,7 +231,7 @@ TEST(E57, SaysWhichScansThereAre) {
               HasSubstr("h.e57: no scan holds points (2 images)"));
 }
 
-// A cloud that a program exported has a scan, too, whose origin nobody stood at.
+// A cloud that a program exported has a scan, too, but no scanner was at its origin.
 TEST(E57, KnowsAViewpointOnlyWhereAScannerStood) {
   const auto viewpoint = [](const E57TestScan& scan) { return read_scans({scan}).cloud.viewpoint; };
   EXPECT_FALSE(viewpoint({line(1)}));

@@ -58,7 +58,7 @@ struct Channel14 {
   TimeEncoder time;
 };
 
-// What follows the 30 bytes that all formats have.
+// The state of the bytes behind the 30 that all formats have.
 struct Rest14 {
   explicit Rest14(std::string_view record) : last(record) {}
 

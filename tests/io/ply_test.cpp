@@ -68,6 +68,48 @@ TEST(Ply, ReadsAsciiAndSkipsOtherElements) {
   EXPECT_EQ(file.cloud.origin, Eigen::Vector3d::Zero());
 }
 
+// The file's order of elements says nothing of what they mean.
+TEST(Ply, FacesMayComeBeforeTheirVertices) {
+  const std::string faces =
+      "element face 1\nproperty uchar flags\nproperty list uchar int more\n"
+      "property list uchar int vertex_indices\n";
+  const std::string vertices = "element vertex 3\n" + std::string(kXyz);
+  const std::string begin = "ply\nformat ascii 1.0\n";
+  const std::string face_row = "7 2 5 6 3 0 1 2\n";
+  const std::string vertex_rows = "0 0 0\n1 0 0\n0 1 0\n";
+  const CloudFile first =
+      read_text(begin + faces + vertices + "end_header\n" + face_row + vertex_rows);
+  const CloudFile last =
+      read_text(begin + vertices + faces + "end_header\n" + vertex_rows + face_row);
+  ASSERT_TRUE(first.mesh);
+  EXPECT_EQ(first.mesh->triangles, 1u);
+  EXPECT_EQ(first.mesh->dropped, 0u);
+  EXPECT_EQ(first.cloud.positions, last.cloud.positions);
+  EXPECT_THAT(refusal(begin + faces + vertices + "end_header\n7 2 5 6 3 0 1 3\n" + vertex_rows),
+              HasSubstr("a face has vertex 3, but there are 3"));
+}
+
+// Such an element is points; rows behind it are not read.
+TEST(Ply, AnElementOfFacesThatHasPlacesIsPoints) {
+  const CloudFile file = read_text(
+      "ply\nformat ascii 1.0\nelement face 1\n" + std::string(kXyz) +
+      "property list uchar int vertex_indices\nelement more 9\nproperty float a\nend_header\n"
+      "1 2 3 1 0\n");
+  EXPECT_EQ(file.cloud.size(), 1u);
+  EXPECT_FALSE(file.mesh);
+}
+
+TEST(Ply, TellsHowFarItIsInElementsThatItSkips) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement more 900\nproperty float a\n"
+      "element vertex 1\n" +
+      std::string(kXyz) + "end_header\n";
+  for (int i = 0; i < 900; ++i) text += "1\n";
+  int calls = 0;
+  (void)read_text(text + "1 2 3\n", "a.ply", {.progress = [&](double) { ++calls; }});
+  EXPECT_GT(calls, 50);
+}
+
 TEST(Ply, ReadsBothByteOrdersWithPropertiesInAnyOrder) {
   expect_rich_ply(
       read_text(header("binary_little_endian", 2, kRich) + rich_rows(std::endian::little)));

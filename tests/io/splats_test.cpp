@@ -173,6 +173,9 @@ TEST(Splats, OfSpzThatIsDamagedSayWhatAndWhere) {
   EXPECT_THAT(with(40, ~std::uint64_t{0}), HasSubstr("(positions) ends after"));
   EXPECT_THAT(with(48, ~std::uint64_t{0}), HasSubstr("(positions) ends after"));
   EXPECT_THAT(with(120, std::uint32_t{0}), HasSubstr("(positions) cannot be unpacked"));
+  std::string padded = whole + std::string(100'000, '\0');  // 250 times as much is too little
+  overwrite(padded, 8, std::uint32_t{5'000'000});
+  EXPECT_THAT(refusal(padded, "room.spz"), HasSubstr("5000000 splats do not fit"));
   std::string old = test::spz(splats, 2);
   overwrite(old, 8, std::uint32_t{1} << 31);
   EXPECT_THAT(refusal(old, "room.spz"), HasSubstr("(positions) ends after"));

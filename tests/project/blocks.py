@@ -87,6 +87,8 @@ class Desk:
         self.write("scan.pcd", f"VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {len(rows)}\n"
                                f"HEIGHT 1\nPOINTS {len(rows)}\nDATA ascii\n{text}")
         (self.folder / "scan.las").write_bytes(las(rows))
+        (self.folder / "room.splat").write_bytes(b"".join(
+            struct.pack("<6f8B", *row, 2e-3, 2e-3, 2e-4, 200, 180, 160, 230, 255, 128, 128, 128) for row in rows))
         self.write("hand.csv", "t,hip_x,hip_y,hip_z\n" + "".join(
             f"{1e-3 * k:.3f},0.06,0.06,{0.02 - 1e-4 * k:.4f}\n" for k in range(300)))
         self.write("rough.toml", "".join(f'[[source]]\nfrom = "{name}.ply"\n' for name in "ab"))

@@ -116,6 +116,14 @@ class Files(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "absent.ply"):
                 pp.Scene().add("scan", os.path.join(folder, "absent.ply"))
 
+    def test_a_mesh_is_sampled(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.obj")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+            self.assertEqual(len(pp.read_cloud(path, mesh_spacing=0.1)), 100)
+            self.assertGreater(len(pp.read_cloud(path)), 100_000)
+
     def test_preparation_reports(self):
         prepared = pp.prepare(pp.synthetic_cloud("sphere"), voxel=0)
         self.assertEqual(prepared.report.points_out, len(prepared.points))

@@ -56,6 +56,7 @@ void add_points(Report& report, const InfoReport& info) {
   report.row("points",
              "{points}[, {points_invalid} of {points_declared} declared dropped as invalid]",
              cloud.size(), dropped, file.declared);
+  if (file.mesh) add_mesh(report, *file.mesh, cloud.size());
   add_grid(report, info);
   report.note("holds", columns_of(cloud));
   report.data.update({{"normals", !cloud.normals.empty()},

@@ -111,9 +111,9 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE of type PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ, E57, Gaussian splats (PLY, SPZ, "
-      ".splat), depth PNG or PGM, optionally gzipped; - for standard input; or synthetic:NAME with "
-      "NAME one of {}",
+      "[NAME=]FILE: a cloud (PLY, PCD, XYZ/TXT/CSV, LAS, LAZ, E57), a mesh (OBJ, PLY, STL, glTF, "
+      "GLB), Gaussian splats (PLY, SPZ, .splat) or a depth image (PNG, PGM), optionally gzipped; - "
+      "for standard input; or synthetic:NAME with NAME one of {}",
       names);
 }
 
@@ -141,6 +141,10 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
            "length of the cloud's longest side, instead of --scale; splats have no unit of their "
            "own")
       .only_for(kCloud);
+  table
+      .add("--mesh-spacing", o.mesh_spacing, "METRES", positive(),
+           "spacing of the points that the faces of a mesh are sampled into (chosen from its size)")
+      .only_for({&RunFacts::is_static, "applies only to files with faces; no source is a file"});
   table
       .add_text(
           "--intrinsics", KeyKind::numbers, "FX,FY,CX,CY",

@@ -56,6 +56,7 @@ Report cloud_report(const LoadedSource& cloud) {
   if (cloud.splats) {
     add_splats(report, *cloud.splats, cloud.declared, cloud.dropped, r.points_in);
   }
+  if (cloud.mesh) add_mesh(report, *cloud.mesh, r.points_in);
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
@@ -191,6 +192,15 @@ void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, 
              "less than 60 cells dropped]",
              declared, dropped, splats.visible, points, splats.spacing, splats.unsure,
              splats.pieces);
+}
+
+void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points) {
+  const bool sampled = mesh.spacing > 0;
+  report.row("mesh",
+             "of {mesh/triangles} triangles: felt as {} points[{?} sampled from it, "
+             "{mesh/spacing_m} apart|, its vertices][, {mesh/faces_duplicate} duplicate faces]"
+             "[, {mesh/faces_dropped} without an area]",
+             mesh.triangles, points, sampled, mesh.spacing, mesh.duplicates, mesh.dropped);
 }
 
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed) {

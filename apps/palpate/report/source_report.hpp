@@ -25,6 +25,9 @@ void add_trust(Report& report, const Prepared::Report& prepared);
 void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, std::size_t dropped,
                 std::size_t points);
 
+/// Adds the row "mesh": "of 12 triangles: felt as `points` points sampled from it, ...".
+void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points);
+
 /// Adds the row "organised": "640 x 480 pixels, focal length 525 px, `processed`".
 void add_organised(Report& report, const CameraModel& camera, const std::string& processed);
 

@@ -56,6 +56,7 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
                         far, Proxy::kLargestCoordinate),
             "give --scale with the metres per unit of the file, or move the points"};
   }
+  if (format.starts_with("glTF")) return {"metres", size + "; glTF is in metres", ""};
   if (is_survey(bounds)) return survey_units(bounds);
   if (format.starts_with("LAS") || format.starts_with("LAZ")) {
     return {"metres or feet", size + "; LAS files use either",

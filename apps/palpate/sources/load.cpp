@@ -103,6 +103,14 @@ LoadedCloud load(const CloudArgument& argument, const ReadOptions& options) {
   return result;
 }
 
+void check_intensities(const LoadedCloud& loaded) {
+  if (!loaded.file.cloud.intensities.empty()) return;
+  throw Error(
+      fmt::format("--soft-stiffness and --soft-friction need an intensity per point, but {} has no "
+                  "intensity column; remove them or give a file with one",
+                  loaded.argument.path));
+}
+
 void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options) {
   if (!loaded.file.splats || options.voxel.value_or(0) == 0) return;
   throw Error(

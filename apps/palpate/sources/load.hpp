@@ -22,6 +22,9 @@ struct LoadedCloud {
 /// @throws Error as read_cloud_file() does, and when it holds no point.
 [[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadOptions& options);
 
+/// @throws Error when the points have no intensities, which materials are made of.
+void check_intensities(const LoadedCloud& loaded);
+
 /// @throws Error when a voxel filter is wanted for splats, whose points are one a cell already.
 void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options);
 

@@ -25,14 +25,6 @@ double seconds_since(WallClock::time_point start) {
   return std::chrono::duration<double>(WallClock::now() - start).count();
 }
 
-void check_intensities(const LoadedCloud& loaded) {
-  if (!loaded.file.cloud.intensities.empty()) return;
-  throw Error(
-      fmt::format("--soft-stiffness and --soft-friction need an intensity per point, but {} has no "
-                  "intensity column; remove them or give a file with one",
-                  loaded.argument.path));
-}
-
 void refuse_material(const CloudArgument& source) {
   throw Error(
       fmt::format("--soft-stiffness and --soft-friction need an intensity per point, but {} has "
@@ -109,6 +101,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.format = loaded.file.format;
   result.declared = loaded.file.declared;
   result.dropped = loaded.file.dropped;
+  result.mesh = loaded.file.mesh;
   result.read_seconds = loaded.seconds;
   result.splats = loaded.file.splats;
   if (plan.reading.scale == 1 && !plan.reading.length) {
@@ -238,6 +231,9 @@ std::string title_of(const LoadedScene& loaded) {
   std::string title;
   for (const LoadedSource& source : loaded.sources) {
     title += fmt::format("{}{}", title.empty() ? "" : " + ", source.plan.argument.name);
+    if (!source.mesh || source.mesh->spacing == 0) continue;
+    title += fmt::format(" (mesh of {} triangles, felt as {} points)",
+                         grouped(source.mesh->triangles), grouped(source.prepared.points_in));
   }
   return title;
 }

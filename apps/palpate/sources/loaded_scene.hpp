@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/scene/on_demand.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
@@ -38,6 +40,7 @@ struct LoadedSource {
   std::size_t declared = 0;
   std::size_t dropped = 0;
   std::optional<SplatFacts> splats = {};  ///< of a scene of splats
+  std::optional<MeshFacts> mesh = {};     ///< of a file with faces
   double read_seconds = 0;
   UnitsGuess units;                     ///< of a file that was read without --scale and --length
   double prepare_seconds = 0;           ///< wall time of everything between reading and touching

@@ -22,6 +22,7 @@ struct ReadOptions {
   std::optional<double> length{};
   std::optional<Pinhole> intrinsics{};  ///< of a depth image; needed for one
   double depth_unit = 1e-3;             ///< metres a step of a depth image
+  double mesh_spacing = 0;              ///< m, of points that faces are sampled into; 0: chosen
   /// Called with 0 ... 1 now and then, on this thread; may throw to give up.
   std::function<void(double)> progress{};
 };
@@ -34,6 +35,14 @@ struct SplatFacts {
   std::size_t pieces = 0;   ///< groups of fewer than 60 cells that were dropped
 };
 
+/// What a file's faces became.
+struct MeshFacts {
+  std::size_t triangles = 0;   ///< that are used; a face of n corners counts as n - 2
+  std::size_t dropped = 0;     ///< faces without an area or with a corner that is not finite
+  std::size_t duplicates = 0;  ///< faces left out, as another has the same corners
+  double spacing = 0;          ///< m, of points sampled from the faces; 0: the vertices are felt
+};
+
 /// A cloud and what its file said of itself.
 struct CloudFile {
   PointCloud cloud;
@@ -41,15 +50,18 @@ struct CloudFile {
   std::size_t declared = 0;  ///< points or splats of the file; of a depth image its pixels
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
   std::optional<SplatFacts> splats{};  ///< of a scene of splats
+  std::optional<MeshFacts> mesh{};     ///< of a file with faces
 };
 
-/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, LAS, LAZ (COPC too), E57, 16-bit depth PNG and PGM; gzip around
-/// any of them. All scans of an E57 file are joined in the file's frame; "house.e57#2" is the second
-/// one alone, with its viewpoint where a scanner stood there. Gaussian splats (PLY, compressed PLY,
-/// .splat, .spz) become points on the surface that they show, with normals and colours. The kind is
-/// told from the bytes first and from the name second;
+/// Reads PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ (COPC too), E57, 16-bit depth PNG and
+/// PGM; gzip around any of them. The kind is told from the bytes first and from the name second;
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
+///
+/// Faces are sampled into points, unless the vertices lie as densely and evenly as those of a scan.
+/// Gaussian splats (PLY, compressed PLY, .splat, .spz) become points on the surface that they show,
+/// with normals and colours. All scans of an E57 file are joined in the file's frame; "house.e57#2"
+/// is the second one alone, with its viewpoint where a scanner stood there.
 ///
 /// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
 /// a round point near the median of the cloud.
@@ -59,6 +71,7 @@ struct CloudFile {
                                         const ReadOptions& options = {});
 
 /// The same for bytes in memory. `name` stands for the file in messages and gives its extension.
+/// A glTF file whose data lie in further files is refused.
 [[nodiscard]] CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
                                          const ReadOptions& options = {});
 

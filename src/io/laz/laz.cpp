@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "geometry/parallel.hpp"
-#include "io/file_bytes.hpp"
 #include "io/laz/laz_file.hpp"
 #include "io/laz/points.hpp"
 
@@ -13,8 +12,7 @@ namespace palpate::io::laz {
 namespace {
 
 void check_memory(const Input& input, const LasHeader& header) {
-  const std::size_t most = largest_unpacked(input.bytes.size()) / sizeof(LasPoint);
-  if (header.points <= most) return;
+  if (can_hold(header, input.bytes.size(), header.points)) return;
   fail(input,
        fmt::format("announces {} points in {} bytes, more than any survey is compressed",
                    header.points, input.bytes.size()),

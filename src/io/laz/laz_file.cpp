@@ -145,7 +145,7 @@ class ChunkTableReader {
     if (place == ~std::uint64_t{0}) {  // a writer that could not go back to write it
       place = load_as<std::uint64_t>(input_.bytes.data() + size - 8);
     }
-    if (place < begin() || size < 8 || place > size - 8) {
+    if (place < begin() || place > size - 8) {
       fail_at_byte(
           input_, header_.points_offset,
           fmt::format("the chunk table at byte {} is outside the file of {} bytes", place, size),

@@ -22,7 +22,7 @@ struct Chunk {
 [[nodiscard]] std::optional<std::size_t> read_chunk_size(const Input& input,
                                                          const LasHeader& header);
 
-/// False where so few bytes cannot be a chunk of so many points.
+/// False where so few bytes cannot be one or more chunks of so many points.
 [[nodiscard]] bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points);
 
 /// The chunks in the order of their points, all of them within the file. There are no more points

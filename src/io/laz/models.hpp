@@ -10,7 +10,7 @@
 
 namespace palpate::io::laz {
 
-/// How likely a bit is 0, learnt from those before it. The numbers are the format's.
+/// Learns how likely a bit is 0 from those before it. The numbers are the format's.
 class BitModel {
  public:
   /// Share of the bits that are 0, in steps of 2^-13.
@@ -31,13 +31,13 @@ class BitModel {
   std::uint32_t left_ = 4;
 };
 
-/// How likely each of n symbols is, learnt from those before. Takes memory when first used: most
-/// of the many models of a chunk never are.
+/// Learns how likely each of n symbols is from those before. Takes memory when first used: most of
+/// the many models of a chunk never are.
 class SymbolModel {
  public:
   explicit SymbolModel(std::uint32_t symbols) : symbols_(symbols) {}
 
-  /// Before anything else of a model is asked for.
+  /// Makes the model ready; call it before anything else below.
   void prepare() {
     if (counts_.empty()) start();
   }
@@ -80,7 +80,7 @@ class SymbolModel {
   std::vector<std::uint16_t> slots_;  // the symbol at the start of each slot, to find others from
 };
 
-/// So many models of one kind.
+/// Makes `count` models of one kind.
 template <std::size_t count>
 std::array<SymbolModel, count> symbol_models(std::uint32_t symbols) {
   return [&]<std::size_t... i>(std::index_sequence<i...>) {

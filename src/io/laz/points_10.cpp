@@ -86,7 +86,8 @@ class TimeModel {
   std::size_t begun_ = 0;
 };
 
-// What precedes coordinates: flags, intensity, class, angle, user's byte and source of a point.
+// Decodes the part of a point before its coordinates: flags, intensity, class, angle, user's byte
+// and source.
 class HeadModel {
  public:
   explicit HeadModel(const std::byte* record)

@@ -45,7 +45,7 @@ struct Layers {
   }
 };
 
-// What the next point of a scanner channel is predicted from.
+// The last point of a scanner channel, which predicts the next one.
 struct LastPoint {
   explicit LastPoint(const LasHeader& header, const std::byte* record)
       : point(las_point(header, record)),

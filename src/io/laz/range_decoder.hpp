@@ -2,6 +2,7 @@
 // 2004).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,7 +16,6 @@ namespace palpate::io::laz {
 /// of range; behind the last byte it reads zeros.
 class RangeDecoder {
  public:
-  RangeDecoder() = default;
   explicit RangeDecoder(std::span<const std::byte> bytes)
       : next_(bytes.data()), end_(bytes.data() + bytes.size()) {
     for (int i = 0; i < 4; ++i) value_ = value_ << 8U | next_byte();

@@ -1,0 +1,224 @@
+// Decides how a mesh is felt, and samples its faces into points.
+#include "io/mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "base/numbers.hpp"
+#include "io/face_sampler.hpp"
+
+namespace palpate::io {
+namespace {
+
+using Eigen::Vector3d;
+
+// Spacings along the diagonal of a mesh's box. R is 2.5 spacings: what is a hundredth as large as
+// the mesh is 1.6 R thick, and its rims hold (measured: tests/contact/mesh_test.cpp)
+constexpr double kAlongDiagonal = 400;
+// Samples that even simple meshes get: prepared as a whole, in some 2 s (docs/preparation.md)
+constexpr double kFewestSamples = 400'000;
+constexpr double kMostSamples = 1'000'000;  // prepared block by block in some seconds (judgement)
+constexpr double kMostAsked = 20'000'000;  // samples where the caller gives the spacing (judgement)
+constexpr double kFinestAsked = 1e5;       // spacings along the diagonal, then (judgement)
+// Spacings along the diagonal that thin rods may have; bounds the rows of a face (judgement)
+constexpr double kFinest = 2000;
+// Samples that faces may get, over those that their areas ask for, or over kMostSamples. Areas
+// foretell them unless faces cross themselves or many narrow ones lie on one line (judgement)
+constexpr double kSurplus = 4;
+
+// The vertices of a mesh say all that its faces do where they lie as those of a scan: in spacings
+// of vertices the diagonal is at least this long (judgement) ...
+constexpr double kScanned = 64;
+// ... and no edge is longer than this, in those spacings or in those of samples: R grows with the
+// spacing around a point, and bridges such edges (measured on the dragon, whose longest are 8)
+constexpr double kLongEdge = 10;
+
+// Twice the area of a face, over the square of its longest edge, below which rounding decides where
+// its normal points (derived: the square root of a double's digits)
+constexpr double kFlat = 1e-8;
+
+// Faces that are used, and what is measured of them.
+struct FaceSurvey {
+  std::vector<std::size_t> used;  // ascending
+  MeshFacts facts;
+  Box box;
+  double area = 0;
+  double samples = 0;  // areas as seen along the axis that each face is sampled along
+};
+
+double longest_edge(const Mesh& mesh, std::span<const std::uint32_t> face) {
+  double longest = 0;
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const std::uint32_t next = face[(i + 1) % face.size()];
+    const Vector3d edge = (mesh.vertices[next] - mesh.vertices[face[i]]).head<3>();
+    longest = std::max(longest, edge.squaredNorm());
+  }
+  return std::sqrt(longest);
+}
+
+bool has_area(const Input& input, const Mesh& mesh, std::span<const std::uint32_t> face) {
+  for (const std::uint32_t corner : face) {
+    if (!is_usable(input.options.scale * mesh.vertices[corner].head<3>())) return false;
+  }
+  const double twice_area = face_normal(mesh, face).norm();
+  const double edge = longest_edge(mesh, face);
+  return std::isfinite(twice_area) && twice_area > kFlat * edge * edge;
+}
+
+std::uint64_t mixed(std::uint64_t x) {
+  return Random(x).bits();
+}
+
+// A number that faces with the same corners share, whichever comes first and whichever way round.
+std::uint64_t key_of(const Mesh& mesh, std::span<const std::uint32_t> face) {
+  std::uint64_t sum = face.size();
+  for (const std::uint32_t corner : face) {
+    std::uint64_t place = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = mesh.vertices[corner][axis] + 0.0;  // -0 becomes 0
+      place = mixed(place ^ std::bit_cast<std::uint64_t>(x));
+    }
+    sum += place;
+  }
+  return sum;
+}
+
+// Leaves out faces without an area, and those that were there before.
+void keep_faces(const Input& input, const Mesh& mesh, FaceSurvey& survey) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> keyed;
+  for (std::size_t i = 0; i < mesh.ends.size(); ++i) {
+    const auto face = mesh.face(i);
+    if (has_area(input, mesh, face)) keyed.emplace_back(key_of(mesh, face), i);
+  }
+  survey.facts.dropped = mesh.ends.size() - keyed.size();
+  std::ranges::sort(keyed);
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+  const auto repeated = std::ranges::unique(keyed, same);
+  survey.facts.duplicates = repeated.size();
+  keyed.erase(repeated.begin(), repeated.end());
+  for (const auto& [key, face] : keyed) survey.used.push_back(face);
+  std::ranges::sort(survey.used);
+}
+
+FaceSurvey survey_faces(const Input& input, const Mesh& mesh) {
+  FaceSurvey survey;
+  keep_faces(input, mesh, survey);
+  for (const std::size_t i : survey.used) {
+    const auto face = mesh.face(i);
+    survey.facts.triangles += face.size() - 2;
+    const Vector3d twice = face_normal(mesh, face);
+    survey.area += twice.norm() / 2;
+    survey.samples += twice.cwiseAbs().maxCoeff() / 2;
+    for (const std::uint32_t corner : face) survey.box.extend(mesh.vertices[corner].head<3>());
+  }
+  return survey;
+}
+
+// In the file's unit.
+double fitting_spacing(const FaceSurvey& survey) {
+  const double diagonal = survey.box.size().norm();
+  const double wanted =
+      std::clamp(diagonal / kAlongDiagonal, std::sqrt(survey.samples / kMostSamples),
+                 std::sqrt(survey.samples / kFewestSamples));
+  return std::max(wanted, diagonal / kFinest);
+}
+
+bool vertices_suffice(const Mesh& mesh, const FaceSurvey& survey) {
+  const double spacing = std::sqrt(survey.area / static_cast<double>(mesh.vertices.size()));
+  if (!(kScanned * spacing < survey.box.size().norm())) return false;
+  const double longest = kLongEdge * std::max(spacing, fitting_spacing(survey));
+  return std::ranges::all_of(survey.used, [&](std::size_t face) {
+    return longest_edge(mesh, mesh.face(face)) <= longest;
+  });
+}
+
+// The spacing asked for, or a fitting one. In the file's unit.
+double choose_spacing(const Input& input, const FaceSurvey& survey) {
+  const double asked = input.options.mesh_spacing / input.options.scale;
+  if (!(asked > 0)) return fitting_spacing(survey);
+  const double least =
+      std::max(std::sqrt(survey.samples / kMostAsked), survey.box.size().norm() / kFinestAsked);
+  if (asked >= least) return asked;
+  fail(input,
+       fmt::format("faces sampled every {:.3g} m would be more than {} million points",
+                   input.options.mesh_spacing, kMostAsked / 1e6),
+       fmt::format("Give a spacing of {:.2g} m or more", 1.1 * input.options.scale * least));
+}
+
+CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::string format) {
+  const double spacing = choose_spacing(input, survey);
+  survey.facts.spacing = input.options.scale * spacing;
+  Columns columns = mesh.columns;
+  columns.normals = true;
+  const Lattice lattice(survey.box, spacing);
+  CloudBuilder builder(input, columns, mesh.color_scale, lattice.room(survey.samples));
+  const double asked = survey.samples / (spacing * spacing);
+  const double most = kSurplus * std::max(asked, kMostSamples);
+  FaceSampler sampler(mesh, lattice, builder, most);
+  Progress progress(input.options, survey.used.size());
+  for (std::size_t i = 0; i < survey.used.size(); ++i) {
+    sampler.add(mesh.face(survey.used[i]));
+    if (static_cast<double>(builder.size()) > most) {
+      fail(input,
+           fmt::format("its faces cross themselves or lie on one another: more than {:.0f} million "
+                       "points where their areas ask for {:.2g}",
+                       most / 1e6, asked),
+           "Simplify the mesh, or export the part that is to be felt alone");
+    }
+    progress.at(i);
+  }
+  if (builder.size() == 0) {
+    fail(input, "its faces are too thin or too scattered to be sampled",
+         "Export the part that is to be felt alone");
+  }
+  CloudFile file = builder.finish(std::move(format));
+  file.declared = mesh.vertices.size();
+  file.mesh = survey.facts;
+  return file;
+}
+
+}  // namespace
+
+MeshVertex mesh_vertex(const Row& row) {
+  MeshVertex vertex;
+  std::copy_n(row.begin(), 3, vertex.data());
+  std::copy_n(row.begin() + index_of(Role::red), 4, vertex.data() + 3);
+  return vertex;
+}
+
+void Mesh::add_triangle(std::size_t a, std::size_t b, std::size_t c) {
+  for (const std::size_t vertex : {a, b, c}) add_corner(vertex);
+  close_face();
+}
+
+std::span<const std::uint32_t> Mesh::face(std::size_t i) const {
+  const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+  return std::span(corners).subspan(begin, ends[i] - begin);
+}
+
+CloudFile sample_faces(const Input& input, const Mesh& mesh, std::string format) {
+  FaceSurvey survey = survey_faces(input, mesh);
+  if (survey.used.empty()) {
+    fail(input, fmt::format("none of the {} faces is finite and has an area", mesh.ends.size()),
+         "Check how the file was generated, and its units and scale");
+  }
+  return sample(input, mesh, survey, std::move(format));
+}
+
+CloudFile choose_cloud(const Input& input, const Mesh& mesh, CloudFile vertices) {
+  if (mesh.ends.empty()) return vertices;
+  FaceSurvey survey = survey_faces(input, mesh);
+  const bool asked = input.options.mesh_spacing > 0;
+  if (!survey.used.empty() && (asked || !vertices_suffice(mesh, survey))) {
+    return sample(input, mesh, survey, std::move(vertices.format));
+  }
+  vertices.mesh = survey.facts;
+  return vertices;
+}
+
+}  // namespace palpate::io
