@@ -56,9 +56,11 @@ py::array readable(const py::object& given, const std::string& what,
            fmt::format("{}.astype(np.{})", what, name));
   }
   if (!fits(array, shape)) {
+    const bool turned = shape.size() == 2 && array.ndim() == 2 && array.shape(0) == shape[1];
+    const std::string remedy =
+        turned ? what + ".T.copy()" : fmt::format("{}.reshape({})", what, fmt::join(shape, ", "));
     refuse(what, fmt::format("has shape {}", words(array.attr("shape"))),
-           fmt::format("shape {}, such as {}.reshape({})", in_words(shape), what,
-                       fmt::join(shape, ", ")));
+           fmt::format("shape {}, such as {}", in_words(shape), remedy));
   }
   if ((array.flags() & py::array::c_style) == 0 || (array.flags() & kAligned) == 0) {
     refuse(what, "does not lie row by row in memory", what + ".copy()");

@@ -62,6 +62,8 @@ TEST(DevicePlacement, RefusesWhatIsNoValueOrNotForThatDevice) {
   EXPECT_TRUE(contains(refusal("simulated,frame=left"), "only with remote and hardware"));
   EXPECT_TRUE(contains(refusal("remote,clutch=a"), "'a' is not a finite number; write"));
   EXPECT_TRUE(contains(refusal("hapyl:04EA"), "did you mean haply?"));
+  EXPECT_TRUE(contains(refusal("omega"), "omega is a device of forcedimension"));
+  EXPECT_TRUE(contains(refusal("inverse3,scale=2"), "inverse3 is a device of haply"));
 }
 
 TEST(DevicePlacement, FrameNamesASourceThatHasACamera) {

@@ -24,6 +24,12 @@ TEST(Suggestion, NothingIsSuggestedForWhatIsNotNear) {
   EXPECT_EQ(meant("radius", {}), "");
 }
 
+TEST(Suggestion, FirstWordsCount) {
+  const std::vector<std::string> options{"--duration", "--friction-static", "--friction-dynamic"};
+  EXPECT_EQ(meant("--frction", options), "--friction-static");
+  EXPECT_EQ(meant("--duraton", options), "--duration");
+}
+
 TEST(Suggestion, IsAskedForWhereOneIsNear) {
   EXPECT_EQ(did_you_mean("tours", {"sheet", "torus"}), "; did you mean torus?");
   EXPECT_EQ(did_you_mean("horse", {"sheet", "torus"}), "");

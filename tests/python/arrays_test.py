@@ -42,8 +42,13 @@ class Refused(unittest.TestCase):
         self.refused(array, "x.copy()")
 
     def test_other_shapes(self):
-        for array in (np.zeros(3), np.zeros((3, 4)), np.zeros((4, 2)), np.zeros((2, 2, 3)), np.array(1.0)):
+        for array in (np.zeros(3), np.zeros((4, 2)), np.zeros((2, 2, 3)), np.array(1.0)):
             self.refused(array, "x.reshape(-1, 3)")
+
+    def test_points_as_columns(self):
+        array = np.zeros((3, 4))
+        self.refused(array, "x.T.copy()")
+        self.field.value(array.T.copy())
 
     def test_no_array(self):
         for thing in ([[0, 0, 0]], None, 3, "points", ball()):
@@ -60,7 +65,7 @@ class Refused(unittest.TestCase):
 
     def test_images(self):
         camera = pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48))
-        for image, words in ((np.zeros((64, 48), np.uint16), "depth.reshape"), (np.zeros((48, 64)), "float64"),
+        for image, words in ((np.zeros((64, 48), np.uint16), "depth.T.copy"), (np.zeros((48, 64)), "float64"),
                              (np.zeros((48, 64), ">u2"), "depth.astype"), (np.zeros((96, 64), np.uint16)[::2], "depth.copy")):
             with self.assertRaisesRegex(TypeError, words):
                 camera.push(image, 0.0)

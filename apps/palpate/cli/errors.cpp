@@ -44,13 +44,18 @@ std::vector<std::string> commands_of(const CLI::App& command) {
   return names;
 }
 
+// Words that belong together are often cut short: --friction is --friction-static.
+std::string_view first_word(std::string_view option) {
+  return option.substr(0, option.find('-', option.find_first_not_of('-')));
+}
+
 }  // namespace
 
 std::string meant(std::string_view word, const std::vector<std::string>& names) {
   std::string best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& name : names) {
-    const std::size_t away = distance(word, name);
+    const std::size_t away = std::min(distance(word, name), distance(word, first_word(name)));
     if (away >= least) continue;
     least = away;
     best = name;

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
@@ -96,10 +98,24 @@ constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind:
                                                         {"simulated", DeviceKind::simulated},
                                                         {"remote", DeviceKind::remote}}};
 
+// What makers print on their devices.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kProducts = {
+    {{"omega", "forcedimension"},
+     {"delta", "forcedimension"},
+     {"sigma", "forcedimension"},
+     {"lambda", "forcedimension"},
+     {"falcon", "forcedimension"},
+     {"phantom", "openhaptics"},
+     {"touch", "openhaptics"},
+     {"inverse3", "haply"}}};
+
 std::string device_meant_by(const std::string& text) {
+  const std::string word = text.substr(0, text.find_first_of(":,"));
+  for (const auto& [product, driver] : kProducts) {
+    if (word.starts_with(product)) return fmt::format("; {} is a device of {}", word, driver);
+  }
   return did_you_mean(
-      text.substr(0, text.find_first_of(":,")),
-      {"scripted", "simulated", "remote", "forcedimension", "openhaptics", "haply"});
+      word, {"scripted", "simulated", "remote", "forcedimension", "openhaptics", "haply"});
 }
 
 // The device without its placement. Drivers say themselves which other options there are.
