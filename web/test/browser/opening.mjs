@@ -1,6 +1,7 @@
 // A file that is dropped on the page, or chosen, is touched next.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { openPage, until } from "./browser.mjs";
 import { startProgram } from "./real_program.mjs";
 
@@ -14,6 +15,15 @@ function ball(radius) {
   }
   return rows.join("\n");
 }
+
+/** A cube of 0.1 m as OBJ: eight vertices and six faces. */
+function cube() {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${0.1 * (k & 1)} ${0.05 * (k & 2)} ${0.025 * (k & 4)}`);
+  const faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"].map((face) => `f ${face}`);
+  return [...corners, ...faces].join("\n");
+}
+
+const seed = (path) => readFile(new URL(`../../../fuzz/corpus/${path}`, import.meta.url));
 
 /** As a person does who drags a file from elsewhere over the page: first it is over it, then it is let go. */
 async function drag(page, name, text, types) {
@@ -50,6 +60,12 @@ export async function opens(browser) {
     assert.equal(await scene(), "Größe 点 (1)", "of the same name");
     await connected();
     await until("it is felt", async () => Number(await page.locator("#force").innerText()) > 0);
+    const others = { "cube.obj": Buffer.from(cube()), "survey.laz": await seed("laz/format_8"), "room.spz": await seed("spz/version3") };
+    for (const [name, buffer] of Object.entries(others)) {
+      await page.setInputFiles("#open-file", { name, mimeType: "application/octet-stream", buffer });
+      await until(name, async () => (await scene()).startsWith(name.split(".")[0]));
+      await connected();
+    }
   } finally {
     await page.context().close();
     assert.equal(await program.stop(), 0);
