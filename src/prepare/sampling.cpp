@@ -22,13 +22,15 @@ constexpr double kLeafSpacings = 2;  // edge of a voxel of a noisy cloud; judgem
 
 std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
   std::vector<std::uint8_t> later(grid.size());  // 1: another one stands there before it
+  std::vector<Eigen::Vector3f> places;           // of the cell; all points may share one
   for (const CellGrid::Cell& cell : grid.cells()) {
     if (cell.children > 0) continue;
-    const auto points = grid.points().subspan(cell.begin, cell.size());
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto before = points.first(k);
-      const bool repeated = std::ranges::find(before, points[k]) != before.end();
-      later[grid.order()[cell.begin + k]] = repeated ? 1 : 0;
+    places.clear();
+    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+      const Eigen::Vector3f& place = grid.points()[i];
+      const bool repeated = std::ranges::find(places, place) != places.end();
+      later[grid.order()[i]] = repeated ? 1 : 0;
+      if (!repeated) places.push_back(place);
     }
   }
   std::vector<std::uint32_t> first;

@@ -117,6 +117,53 @@ TEST(NoHoles, InASphereOfRandomPoints) {
   EXPECT_EQ(passed, 0);
 }
 
+/// Of a sphere of 60 mm: two layers `apart` (spacings of 3 mm), each with half of its points.
+PointCloud thinned_layers(double apart, std::mt19937& random) {
+  constexpr double kSphere = 0.06;
+  constexpr double kSpacing = 3e-3;
+  constexpr int kCount = 5027;  // 4 pi kSphere^2 / kSpacing^2
+  std::normal_distribution<double> off(0, 0.2 * kSpacing / kSphere);
+  PointCloud cloud;
+  for (int i = 0; i < 2 * kCount; ++i) {
+    if (random() % 2 == 0) continue;
+    const double z = 1 - (i % kCount * 2 + 1.0) / kCount;
+    const double around = 2.39996 * i;  // the golden angle
+    const double across = std::sqrt(1 - z * z);
+    const Vector3d place(across * std::cos(around) + off(random),
+                         across * std::sin(around) + off(random), z + off(random));
+    const double layer = i < kCount ? -0.5 : 0.5;
+    const Vector3d p = (kSphere + layer * apart * kSpacing) * place.normalized();
+    cloud.positions.push_back(p.cast<float>());
+  }
+  return cloud;
+}
+
+TEST(NoHoles, InAShellOfTwoThinnedLayersAndItLetsGo) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] {
+    return Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
+  for (const double apart : {0.5, 1.0, 1.5, 2.0, 3.0}) {
+    Scene scene;
+    scene.add("shell", thinned_layers(apart, random));
+    SceneField field(scene);
+    Proxy proxy;
+    for (int poke = 0; poke < 20; ++poke) {
+      const Vector3d ray = direction();
+      for (int k = 0; k <= 200; ++k) {  // from 80 mm to 50 mm and out to 100 mm
+        const Vector3d hand = (k < 60 ? 0.08 - 0.5e-3 * k : 0.05 + (k - 60) * 0.357e-3) * ray;
+        if (k == 0) proxy.reset(hand);
+        field.update(1e-3 * k, hand, proxy.position());
+        const Contact contact = proxy.step(field, hand, 1e-3);
+        const bool inside = k == 60;
+        if (!inside && k < 200) continue;
+        EXPECT_EQ(contact.touching, inside) << apart << " spacings, poke " << poke;
+      }
+    }
+  }
+}
+
 TEST(NoHoles, UnderAHandThatJumpedToJustOffTheSurface) {
   constexpr double kSphere = 0.05;
   constexpr int kPoints = 12000;
