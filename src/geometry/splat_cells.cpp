@@ -21,8 +21,8 @@ constexpr float kMostOpaque = 0.99F;    // opacity; renderers clamp to it (forma
 constexpr int kMostSteps = 35;          // from a splat's middle: 71 x 71 samples (judgement)
 constexpr double kUsualSamples = 400;   // a splat, on the mean; more would fill memory (judgement)
 constexpr double kMostSamples = 2e8;    // of all splats: 3 GB as shares (judgement)
-constexpr std::size_t kMostCells = 16'000'000;  // 3 GB with all that is found of them (judgement)
-constexpr double kCoarser = 1.25;               // edges are tried in steps of this (judgement)
+constexpr std::size_t kMostCells = 8'000'000;  // 1.5 GB with all that is found of them (judgement)
+constexpr double kCoarser = 1.25;              // edges are tried in steps of this (judgement)
 constexpr float kSureShare = 0.5F;  // of the trace, by which l3 has to exceed l2 (measured)
 constexpr std::size_t kSplatsAtOnce = 4096;  // that one thread samples (judgement)
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -57,7 +58,7 @@ void FaceSampler::add(std::span<const std::uint32_t> face) {
     for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
       fill(crossings_[i], crossings_[i + 1], row);
     }
-    if (static_cast<double>(builder_.size()) > most_) return;
+    if (points_spent() || work_spent()) return;
   }
 }
 
@@ -76,6 +77,9 @@ void FaceSampler::find_crossings(std::span<const std::uint32_t> face, double row
     crossings_.push_back({lattice_.cells(vertex[across_], across_), vertex});
   }
   std::ranges::sort(crossings_, {}, &Crossing::column);
+  const std::size_t sorting =
+      crossings_.size() * static_cast<std::size_t>(std::bit_width(crossings_.size()));
+  work_ += static_cast<double>(face.size() + sorting);
 }
 
 void FaceSampler::fill(const Crossing& from, const Crossing& to, double row) {

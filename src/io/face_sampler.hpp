@@ -43,12 +43,25 @@ class Lattice {
 /// normal. An edge that two faces share belongs to one of them.
 class FaceSampler {
  public:
-  /// All three must outlive it. Stops where the builder has more than `most` points.
-  FaceSampler(const Mesh& mesh, const Lattice& lattice, CloudBuilder& builder, double most)
-      : mesh_(mesh), lattice_(lattice), builder_(builder), most_(most) {}
+  /// Bounds at which it stops.
+  struct Bounds {
+    double points = 0;  ///< of the builder
+    double work = 0;    ///< comparisons
+  };
+
+  /// All but the bounds must outlive it.
+  FaceSampler(const Mesh& mesh, const Lattice& lattice, CloudBuilder& builder, const Bounds& bounds)
+      : mesh_(mesh), lattice_(lattice), builder_(builder), bounds_(bounds) {}
 
   /// Corners of a face that is finite and has an area.
   void add(std::span<const std::uint32_t> face);
+
+  /// Has it stopped, as there are more points than its bounds allow?
+  [[nodiscard]] bool points_spent() const {
+    return static_cast<double>(builder_.size()) > bounds_.points;
+  }
+  /// Has it stopped, as there was more work?
+  [[nodiscard]] bool work_spent() const { return work_ > bounds_.work; }
 
  private:
   // Where a row of cells crosses an edge.
@@ -63,7 +76,8 @@ class FaceSampler {
   const Mesh& mesh_;
   const Lattice& lattice_;
   CloudBuilder& builder_;
-  double most_;
+  Bounds bounds_;
+  double work_ = 0;  // comparisons so far
   Eigen::Vector3d normal_;
   int across_ = 0;  // axis of columns
   int up_ = 0;      // axis of rows

@@ -30,6 +30,10 @@ constexpr double kFinest = 2000;
 // Samples that faces may get, over those that their areas ask for, or over kMostSamples. Areas
 // foretell them unless faces cross themselves or many narrow ones lie on one line (judgement)
 constexpr double kSurplus = 4;
+// Comparisons to find and sort the crossings of lines and edges: so many, and some for each corner.
+// A polygon that zigzags a million times would take minutes (judgement: 3 s)
+constexpr double kMostWork = 5e8;
+constexpr double kWorkPerCorner = 64;
 
 // The vertices of a mesh say all that its faces do where they lie as those of a scan: in spacings
 // of vertices the diagonal is at least this long (judgement) ...
@@ -150,6 +154,19 @@ double choose_spacing(const Input& input, const FaceSurvey& survey) {
        fmt::format("Give a spacing of {:.2g} m or more", 1.1 * input.options.scale * least));
 }
 
+void check_bounds(const Input& input, const FaceSampler& sampler, double most, double asked) {
+  constexpr const char* kSimplify =
+      "Simplify the mesh, or export the part that is to be felt alone";
+  if (sampler.points_spent()) {
+    fail(input,
+         fmt::format("its faces cross themselves or lie on one another: more than {:.0f} million "
+                     "points where their areas ask for {:.2g}",
+                     most / 1e6, asked),
+         kSimplify);
+  }
+  if (sampler.work_spent()) fail(input, "its faces have too many corners in a row", kSimplify);
+}
+
 CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::string format) {
   const double spacing = choose_spacing(input, survey);
   survey.facts.spacing = input.options.scale * spacing;
@@ -159,17 +176,13 @@ CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::
   CloudBuilder builder(input, columns, mesh.color_scale, lattice.room(survey.samples));
   const double asked = survey.samples / (spacing * spacing);
   const double most = kSurplus * std::max(asked, kMostSamples);
-  FaceSampler sampler(mesh, lattice, builder, most);
+  FaceSampler sampler(
+      mesh, lattice, builder,
+      {most, kMostWork + kWorkPerCorner * static_cast<double>(mesh.corners.size())});
   Progress progress(input.options, survey.used.size());
   for (std::size_t i = 0; i < survey.used.size(); ++i) {
     sampler.add(mesh.face(survey.used[i]));
-    if (static_cast<double>(builder.size()) > most) {
-      fail(input,
-           fmt::format("its faces cross themselves or lie on one another: more than {:.0f} million "
-                       "points where their areas ask for {:.2g}",
-                       most / 1e6, asked),
-           "Simplify the mesh, or export the part that is to be felt alone");
-    }
+    check_bounds(input, sampler, most, asked);
     progress.at(i);
   }
   if (builder.size() == 0) {

@@ -186,6 +186,13 @@ TEST(Mesh, FacesThatNeedFarMoreSamplesThanTheirAreasSayAreRefused) {
   EXPECT_THAT(refusal(ties, "a", {.mesh_spacing = 2e-5}), HasSubstr("more than 4 million points"));
 }
 
+TEST(Mesh, AFaceThatZigzagsWithoutEndIsRefused) {
+  std::string face = "f 5";
+  for (int i = 0; i < 300'000; ++i) face += " 1 2 3 4";
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0.5 0.7 0\n" + face + "\n"),
+              HasSubstr("too many corners in a row"));
+}
+
 TEST(Mesh, NamesThePlaceOfWhatIsWrong) {
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_THAT(refusal(triangle + "f 1 2 4\n"),
