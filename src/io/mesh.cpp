@@ -102,9 +102,9 @@ void keep_faces(const Input& input, const Mesh& mesh, FaceSurvey& survey) {
   survey.facts.dropped = mesh.ends.size() - keyed.size();
   std::ranges::sort(keyed);
   const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
-  const auto repeated = std::ranges::unique(keyed, same);
-  survey.facts.duplicates = repeated.size();
-  keyed.erase(repeated.begin(), repeated.end());
+  const auto repeated = std::unique(keyed.begin(), keyed.end(), same);
+  survey.facts.duplicates = static_cast<std::size_t>(keyed.end() - repeated);
+  keyed.erase(repeated, keyed.end());
   for (const auto& [key, face] : keyed) survey.used.push_back(face);
   std::ranges::sort(survey.used);
 }

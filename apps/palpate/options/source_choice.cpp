@@ -132,11 +132,12 @@ std::vector<DescribedSource> scans_apart(const std::vector<DescribedSource>& sou
 
 // A pose of a file is of all its scans, unless one has a pose of its own.
 void place_and_split(std::vector<DescribedSource>& sources, std::vector<PoseArgument> poses) {
-  const auto of_scans = std::ranges::stable_partition(
-      poses, [&](const PoseArgument& pose) { return named(sources, pose.name) != sources.end(); });
-  place(sources, std::span(poses.begin(), of_scans.begin()));
+  const auto of_scans = std::stable_partition(
+      poses.begin(), poses.end(),
+      [&](const PoseArgument& pose) { return named(sources, pose.name) != sources.end(); });
+  place(sources, std::span(poses.begin(), of_scans));
   sources = scans_apart(sources);
-  place(sources, of_scans);
+  place(sources, std::span(of_scans, poses.end()));
 }
 
 // A tool of that size can be felt with no smaller R, m.
