@@ -17,7 +17,7 @@ struct CopcKey {
   std::int32_t level = 0;
   std::array<std::int32_t, 3> cell{};  ///< 0 ... 2^level - 1 along x, y and z
 
-  auto operator<=>(const CopcKey&) const = default;
+  auto operator<=>(const CopcKey&) const = default;  // NOLINT(modernize-use-nullptr): its 0
 };
 
 /// Points in a cube that are not in those around it: a chunk of the file.
