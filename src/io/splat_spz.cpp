@@ -32,7 +32,7 @@ struct SpzHeader {
 };
 
 // The columns in the order of the file; those behind them are not read.
-enum Column { positions, alphas, colors, scales, turns };
+enum Column { kPositions, kAlphas, kColors, kScales, kTurns };
 constexpr std::array<const char*, 5> kColumnNames{"positions", "alphas", "colours", "scales",
                                                   "rotations"};
 
@@ -194,16 +194,16 @@ Splat splat_at(const SpzHeader& header, const SpzColumns& columns, std::size_t i
     return columns[column].data() + i * sizes_of(header)[column];
   };
   Splat splat;
-  const Eigen::Vector3f position = position_at(header, at(positions));
+  const Eigen::Vector3f position = position_at(header, at(kPositions));
   splat.position = {position.x(), -position.y(), -position.z()};
-  splat.opacity = number_of(*at(alphas)) / 255;
+  splat.opacity = number_of(*at(kAlphas)) / 255;
   Eigen::Vector3d color;
   for (int k = 0; k < 3; ++k) {
-    color[k] = (static_cast<double>(number_of(at(colors)[k])) / 255 - 0.5) / 0.15;
-    splat.sigma[k] = std::exp(number_of(at(scales)[k]) / 16 - 10);
+    color[k] = (static_cast<double>(number_of(at(kColors)[k])) / 255 - 0.5) / 0.15;
+    splat.sigma[k] = std::exp(number_of(at(kScales)[k]) / 16 - 10);
   }
   splat.color = color_of(color);
-  const Eigen::Vector4f turn = turn_at(header, at(turns));
+  const Eigen::Vector4f turn = turn_at(header, at(kTurns));
   splat.rotation = {turn[3], turn[0], -turn[1], -turn[2]};
   return splat;
 }
