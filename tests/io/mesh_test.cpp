@@ -187,6 +187,7 @@ TEST(Mesh, FacesThatNeedFarMoreSamplesThanTheirAreasSayAreRefused) {
 }
 
 TEST(Mesh, AFaceThatZigzagsWithoutEndIsRefused) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   std::string face = "f 5";
   for (int i = 0; i < 300'000; ++i) face += " 1 2 3 4";
   EXPECT_THAT(refusal("v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0.5 0.7 0\n" + face + "\n"),
