@@ -101,12 +101,15 @@ void keep_faces(const Input& input, const Mesh& mesh, FaceSurvey& survey) {
   }
   survey.facts.dropped = mesh.ends.size() - keyed.size();
   std::ranges::sort(keyed);
-  const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
-  const auto repeated = std::unique(keyed.begin(), keyed.end(), same);
-  survey.facts.duplicates = static_cast<std::size_t>(keyed.end() - repeated);
-  keyed.erase(repeated, keyed.end());
-  for (const auto& [key, face] : keyed) survey.used.push_back(face);
-  std::ranges::sort(survey.used);
+  std::vector<std::uint8_t> used(mesh.ends.size());
+  for (std::size_t k = 0; k < keyed.size(); ++k) {
+    const bool repeated = k > 0 && keyed[k].first == keyed[k - 1].first;
+    if (repeated) ++survey.facts.duplicates;
+    used[keyed[k].second] = repeated ? 0 : 1;
+  }
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] != 0) survey.used.push_back(i);
+  }
 }
 
 FaceSurvey survey_faces(const Input& input, const Mesh& mesh) {
