@@ -57,6 +57,20 @@ float side_of_square(float gap, float along) {
   return std::sqrt((gap * gap + along * along) / 2);
 }
 
+/// Calls find(reach) once `near` holds the points within `reach` of a point, then within twice as
+/// much each time that it finds 0, `times` in all. @return what it found
+template <class Find>
+float widen(const CellGrid& grid, std::uint32_t i, float reach, int times,
+            std::vector<std::uint32_t>& near, const Find& find) {
+  for (int k = 0; k < times; ++k, reach *= 2) {
+    near.clear();
+    grid.within(grid.points()[i], reach, near);
+    if (near.size() > kEnough) break;
+    if (const float found = find(reach); found > 0) return found;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
@@ -78,13 +92,7 @@ Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighb
 
 float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
                  std::vector<std::uint32_t>& near) {
-  for (int k = 0; k < times; ++k, reach *= 2) {
-    near.clear();
-    grid.within(grid.points()[i], reach, near);
-    if (near.size() > kEnough) break;
-    if (const float gap = gap_among(grid, i, line, near); gap > 0) return gap;
-  }
-  return 0;
+  return widen(grid, i, reach, times, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
 bool lies_in_lines(const CellGrid& grid) {
@@ -104,12 +112,7 @@ namespace {
 /// there is none. The square of a gap is at most 2 s^2 (side_of_square).
 float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
                      std::span<const float> spacings, std::vector<std::uint32_t>& near) {
-  float reach = 2 * line.spacing;
-  for (int k = 0; k < kLineWidenings; ++k, reach *= 2) {
-    near.clear();
-    grid.within(grid.points()[i], reach, near);
-    if (near.size() > kEnough) break;
-    float nearest = reach;
+  return widen(grid, i, 2 * line.spacing, kLineWidenings, near, [&](float nearest) {
     float spacing = 0;
     for (const std::uint32_t j : near) {
       const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
@@ -119,9 +122,8 @@ float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
       nearest = length;
       spacing = spacings[j];
     }
-    if (spacing > 0) return spacing;
-  }
-  return 0;
+    return spacing;
+  });
 }
 
 /// The side of the square grid whose holes are as wide as those between lines, m, at each point of
