@@ -4,10 +4,10 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "geometry/parallel.hpp"
+#include "geometry/signed_sets.hpp"
 #include "geometry/splat_cells.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
@@ -54,9 +54,9 @@ std::vector<OnLine> lines_of(std::span<const SplatCell> cells, const Step& step)
   std::vector<OnLine> lines(cells.size());
   detail::parallel_each(cells.size(), 4096, [&](std::size_t c) {
     const auto at = SplatGrid::place_of(cells[c].key);
+    // A line's name is where it meets place 0; the upper two of its 66 bits never change.
     std::uint64_t line = 0;
-    for (std::size_t k = 0; k < 3;
-         ++k) {  // where it meets place 0; of 66 bits the upper two never change
+    for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t meets = at[k] - step[k] * at[axis] + 2 * SplatGrid::kHalf;
       line = line << (SplatGrid::kBits + 2) | static_cast<std::uint64_t>(meets);
     }
@@ -130,47 +130,29 @@ std::vector<SplatCell> lit_cells(std::span<const SplatCell> cells, const Light& 
   return kept;
 }
 
-// Which cells hang together.
-class Pieces {
- public:
-  explicit Pieces(std::size_t count) : parents_(count), sizes_(count, 1) {
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-  }
-
-  void join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    if (a == b) return;
-    if (sizes_[a] < sizes_[b]) std::swap(a, b);
-    parents_[b] = a;
-    sizes_[a] += sizes_[b];
-  }
-  [[nodiscard]] std::size_t root(std::size_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  [[nodiscard]] std::size_t size(std::size_t i) { return sizes_[root(i)]; }
-
- private:
-  std::vector<std::size_t> parents_;
-  std::vector<std::size_t> sizes_;
-};
-
 // Removes small pieces. @return how many
 std::size_t drop_small_pieces(std::vector<SplatCell>& cells) {
-  Pieces pieces(cells.size());
+  detail::SignedSets pieces(cells.size());
   for (const Step& step : half_of_directions()) {
     const std::uint64_t ahead = SplatGrid::step(step[0], step[1], step[2]);
     for (std::size_t a = 0, b = 0; a < cells.size(); ++a) {
       while (b < cells.size() && cells[b].key < cells[a].key + ahead) ++b;
-      if (b < cells.size() && cells[b].key == cells[a].key + ahead) pieces.join(a, b);
+      if (b < cells.size() && cells[b].key == cells[a].key + ahead) {
+        pieces.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), 1);
+      }
     }
   }
+  const auto root_of = [&](std::size_t c) {
+    return pieces.find(static_cast<std::uint32_t>(c)).first;
+  };
+  std::vector<std::size_t> sizes(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) ++sizes[root_of(c)];
   std::size_t dropped = 0;
   std::size_t kept = 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {
-    const bool small = pieces.size(c) < kSmallestPiece;
-    dropped += small && pieces.root(c) == c ? 1 : 0;
+    const std::size_t root = root_of(c);
+    const bool small = sizes[root] < kSmallestPiece;
+    dropped += small && root == c ? 1 : 0;
     if (!small) cells[kept++] = cells[c];
   }
   cells.resize(kept);
