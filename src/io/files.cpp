@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <new>
 
+#include "geometry/inner_box.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/depth_image.hpp"
 #include "io/file_bytes.hpp"
@@ -66,30 +67,13 @@ Bytes unpack(const Input& input, const std::string& inside) {
   return gunzip(input);
 }
 
-// The longest side of the cloud without the outermost half percent at either end, m.
-double typical_length(const PointCloud& cloud) {
-  constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)
-  const std::size_t left_out = cloud.size() / kOutermost;
-  std::vector<float> values(cloud.size());
-  float longest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(cloud.positions, values.begin(),
-                           [&](const Eigen::Vector3f& p) { return p[axis]; });
-    const auto low = values.begin() + static_cast<std::ptrdiff_t>(left_out);
-    const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(left_out);
-    std::nth_element(values.begin(), low, values.end());
-    const float lower = *low;
-    std::nth_element(values.begin(), high, values.end());
-    longest = std::max(longest, *high - lower);
-  }
-  return static_cast<double>(longest);
-}
-
 // Makes the cloud as long as the caller says it is.
 void fit_length(const Input& input, CloudFile& file) {
   if (!input.options.length) return;
+  constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)
   PointCloud& cloud = file.cloud;
-  const double length = typical_length(cloud);
+  const Box inner = detail::inner_box(cloud.positions, cloud.size() / kOutermost);
+  const double length = inner.size().maxCoeff();
   if (!(length > 0)) {
     fail(input, "all points are at one place, so no length fits",
          "Give no length, or another file");

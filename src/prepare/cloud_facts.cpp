@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/cell_builder.hpp"
+#include "geometry/inner_box.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/prepare/prepare.hpp"
@@ -91,19 +92,8 @@ PointCloud draw(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
 }
 
 Box extent_of(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
-  std::vector<float> values;
-  Box box;
-  box.lower = box.upper = cloud.origin;
-  const auto strays = static_cast<std::ptrdiff_t>(sample.size() / kOneStrayOf);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    values.clear();
-    for (const Vector3f& p : sample) values.push_back(p[axis]);
-    std::ranges::nth_element(values, values.begin() + strays);
-    box.lower[axis] += static_cast<double>(values[static_cast<std::size_t>(strays)]);
-    std::ranges::nth_element(values, values.end() - 1 - strays);
-    box.upper[axis] += static_cast<double>(*(values.end() - 1 - strays));
-  }
-  return box;
+  const Box box = detail::inner_box(sample, sample.size() / kOneStrayOf);
+  return {cloud.origin + box.lower, cloud.origin + box.upper};
 }
 
 }  // namespace
