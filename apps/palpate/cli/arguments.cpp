@@ -13,6 +13,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/matrix_pose.hpp"
+#include "io/input.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
@@ -64,10 +65,7 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 }  // namespace
 
 std::string file_of(const std::string& source) {
-  if (!source.starts_with(kBag)) {
-    const std::size_t scan = source.rfind(".e57#");
-    return scan == std::string::npos ? source : source.substr(0, scan + 4);
-  }
+  if (!source.starts_with(kBag)) return io::split_scan(source).file;
   // The file in "runs/monday.mcap:/camera/depth,frame=world".
   const std::string text = source.substr(kBag.size());
   std::error_code none;

@@ -24,8 +24,8 @@ struct InfoOptions {
   std::vector<std::string> clouds;
   ReadOptions reading;
   std::string json;
-  std::string write;    ///< alike
   std::string picture;  ///< of several clouds the first one's: numbered_path()
+  std::string write;    ///< points as PLY or PCD; of several clouds the first one's, too
 };
 
 void add_info_options(CLI::App& command, InfoOptions& options);

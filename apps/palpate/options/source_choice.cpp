@@ -10,6 +10,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/touch_options.hpp"
+#include "io/input.hpp"
 #include "palpate/scene/scene.hpp"
 
 namespace palpate::app {
@@ -17,11 +18,6 @@ namespace palpate::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name;
-}
 
 bool begins_like_an_image(const std::string& path) {
   std::array<char, 4> bytes{};
@@ -34,7 +30,7 @@ bool begins_like_an_image(const std::string& path) {
 bool is_depth_image(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
-  std::string name = lower(path);
+  std::string name = io::lower_case(path);
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   return name.ends_with(".png") || name.ends_with(".pgm") || begins_like_an_image(path);
 }
@@ -50,7 +46,7 @@ bool may_be_image(const std::string& path) {
 bool may_be_organised(const std::string& path) {
   std::error_code ignored;
   if (path.starts_with(kSynthetic)) return false;
-  if (!fs::is_regular_file(path, ignored) || lower(path).ends_with(".pcd.gz")) return true;
+  if (!fs::is_regular_file(path, ignored) || io::lower_case(path).ends_with(".pcd.gz")) return true;
   std::array<char, 2048> bytes{};
   std::ifstream(path, std::ios::binary).read(bytes.data(), bytes.size());
   const std::string_view head(bytes.data(), bytes.size());

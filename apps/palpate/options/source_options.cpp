@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "apps/palpate/options/option_table.hpp"
+#include "io/input.hpp"
 #include "palpate/io/synthetic.hpp"
 
 namespace palpate::app {
@@ -122,8 +123,8 @@ std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t 
   if (paths.size() == 1 || paths.size() > most) return {source};
   std::vector<CloudArgument> scans;
   for (const std::filesystem::path& path : paths) {
-    const std::string text = path.string();
-    scans.push_back({fmt::format("{}-{}", source.name, text.substr(text.rfind('#') + 1)), text});
+    const std::size_t number = io::split_scan(path.string()).number.value_or(0);
+    scans.push_back({fmt::format("{}-{}", source.name, number), path.string()});
   }
   return scans;
 }
