@@ -19,7 +19,7 @@ struct E57Field {
   std::string name;  ///< without the prefix of an extension: "normalX"
   Kind kind = Kind::skipped;
   unsigned bits = 0;         ///< of a value
-  std::int64_t minimum = 0;  ///< of an integer, which is stored as what it is more
+  std::int64_t minimum = 0;  ///< of an integer: integer - minimum is stored
   double scale = 1;          ///< value = integer * scale + offset
   double offset = 0;
   double black = 0;  ///< the smallest value of a colour ...

@@ -63,9 +63,7 @@ using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
     "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ, E57, SPZ, .splat, 16-bit "
-    "depth "
-    "PNG and PGM, "
-    "optionally gzipped";
+    "depth PNG and PGM, optionally gzipped";
 
 struct Known {
   std::string_view start;

@@ -90,9 +90,8 @@ class Progress {
 enum class FileKind { ply, pcd, las, e57, obj, stl, gltf, text, png, pgm, spz, splat, gzip };
 
 /// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
-/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, JSON, a
-/// web
-///   page, ...) and about bytes that are nothing we know.
+/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, JSON,
+///   a web page, ...) and about bytes that are nothing we know.
 [[nodiscard]] FileKind kind_of(const Input& input);
 
 }  // namespace palpate::io

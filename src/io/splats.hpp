@@ -12,7 +12,7 @@
 
 namespace palpate::io {
 
-/// Splats of a file, and how many rows of it were none.
+/// Splats of a file, and how many of its rows were dropped.
 struct SplatFile {
   std::string format;  ///< such as "SPZ 3"
   std::vector<Splat> splats{};
