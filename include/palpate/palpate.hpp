@@ -5,6 +5,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"

@@ -50,16 +50,38 @@ class Descriptor {
       fmt::format("{}: cannot be opened ({}). Check the path.", name, std::strerror(error)));
 }
 
+[[noreturn]] void fail_reading(const std::string& name, int error) {
+  throw Error(fmt::format("{}: reading failed ({}). Check the disk or the network, then try again.",
+                          name, std::strerror(error)));
+}
+
+int open_to_read(const std::string& name) {
+  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail_open(name, errno);
+  return descriptor;
+}
+
+// Refuses folders.
+struct stat status_of(int descriptor, const std::string& name) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) fail_open(name, errno);
+  if (S_ISDIR(status.st_mode)) {
+    throw Error(name + ": is a folder, not a file. Give a file in it.");
+  }
+  return status;
+}
+
+void check_regular(const struct stat& status, const std::string& name) {
+  if (S_ISREG(status.st_mode)) return;
+  throw Error(name +
+              ": is a device or socket, not a file. Give a file, or \"-\" to read standard input.");
+}
+
 std::size_t read_some(int fd, std::span<std::byte> into, const std::string& name) {
   while (true) {
     const ssize_t got = ::read(fd, into.data(), into.size());
     if (got >= 0) return static_cast<std::size_t>(got);
-    if (errno != EINTR) {
-      throw Error(
-          fmt::format("{}: reading failed ({}). Check the disk or the network, then try "
-                      "again.",
-                      name, std::strerror(errno)));
-    }
+    if (errno != EINTR) fail_reading(name, errno);
   }
 }
 
@@ -104,19 +126,10 @@ void Bytes::resize(std::size_t size) {
 Bytes read_bytes(const std::filesystem::path& path) {
   if (path == "-") return read_stream(STDIN_FILENO, "standard input");
   const std::string name = path.string();
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) fail_open(name, errno);
-  struct stat status {};
-  if (::fstat(file.get(), &status) != 0) fail_open(name, errno);
-  if (S_ISDIR(status.st_mode)) {
-    throw Error(name + ": is a folder, not a file. Give a file in it.");
-  }
+  const Descriptor file(open_to_read(name));
+  const struct stat status = status_of(file.get(), name);
   if (S_ISFIFO(status.st_mode)) return read_stream(file.get(), name);
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(
-        name +
-        ": is a device or socket, not a file. Give a file, or \"-\" to read standard input.");
-  }
+  check_regular(status, name);
   Bytes bytes(static_cast<std::size_t>(status.st_size));
   const std::size_t done = read_full(file.get(), bytes.span(), name);
   if (done < bytes.size()) {
@@ -124,6 +137,41 @@ Bytes read_bytes(const std::filesystem::path& path) {
         fmt::format("{}: was truncated from {} to {} bytes while it was read. Wait until the other "
                     "program is done, then try again.",
                     name, bytes.size(), done));
+  }
+  return bytes;
+}
+
+OpenFile::OpenFile(const std::filesystem::path& path)
+    : name_(path.string()), descriptor_(open_to_read(name_)) {
+  try {
+    const struct stat status = status_of(descriptor_, name_);
+    check_regular(status, name_);
+    size_ = static_cast<std::size_t>(status.st_size);
+  } catch (const Error&) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+OpenFile::~OpenFile() {
+  ::close(descriptor_);
+}
+
+Bytes OpenFile::read(std::size_t place, std::size_t size) const {
+  Bytes bytes(size);
+  std::size_t done = 0;
+  while (done < size) {
+    const std::span<std::byte> rest = bytes.span().subspan(done);
+    const ssize_t got =
+        ::pread(descriptor_, rest.data(), rest.size(), static_cast<off_t>(place + done));
+    if (got > 0) {
+      done += static_cast<std::size_t>(got);
+    } else if (got == 0) {
+      throw Error(fmt::format("{}, byte {}: the file ends here, {} bytes too early. Copy it again.",
+                              name_, place + done, size - done));
+    } else if (errno != EINTR) {
+      fail_reading(name_, errno);
+    }
   }
   return bytes;
 }

@@ -35,6 +35,27 @@ class Bytes {
 /// @throws Error that names the path and the reason: absent, a folder, no permission, a device.
 [[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);
 
+/// A file that is read in parts, by several threads at once.
+class OpenFile {
+ public:
+  /// @throws Error as read_bytes() does; of standard input and pipes, too.
+  explicit OpenFile(const std::filesystem::path& path);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::size_t size() const { return size_; }  ///< bytes, when it was opened
+
+  /// @throws Error where the file ends before that, or reading fails.
+  [[nodiscard]] Bytes read(std::size_t place, std::size_t size) const;
+
+ private:
+  std::string name_;
+  int descriptor_ = -1;
+  std::size_t size_ = 0;
+};
+
 /// The most bytes that so many packed ones may become: 64 MiB or 250 times as many. No honest
 /// cloud grows beyond that (judgement).
 [[nodiscard]] std::size_t largest_unpacked(std::size_t packed);
