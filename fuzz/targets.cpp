@@ -194,7 +194,8 @@ void check_mcap(std::span<const std::byte> bytes) {
 
 void check_copc(const io::Input& input) {
   const io::LasHeader header = io::read_las_header(input);
-  const std::optional<io::Copc> copc = io::read_copc(input, header);
+  const io::Parts file = io::parts_of(input.bytes);
+  const std::optional<io::Copc> copc = io::read_copc(input, header, file);
   if (!copc) return;
   std::size_t points = 0;
   for (const io::CopcNode& node : copc->nodes) {
@@ -202,7 +203,7 @@ void check_copc(const io::Input& input) {
     points += node.points;
     if (node.points > 10'000) continue;  // correct, but slow
     try {
-      expect(io::read_node(input, header, node).size() == node.points, "points of a node");
+      expect(io::read_node(input, header, file, node).size() == node.points, "points of a node");
     } catch (const Error&) {
       continue;
     }

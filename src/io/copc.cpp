@@ -29,11 +29,11 @@ constexpr std::int32_t kDeepest = 30;   // level: 30 bits of a coordinate's 32 (
 
 class CopcReader {
  public:
-  CopcReader(const Input& input, const LasHeader& header, std::size_t info)
-      : input_(input), header_(header), info_(info) {}
+  CopcReader(const Input& head, const LasHeader& header, const Parts& file, std::size_t info)
+      : head_(head), header_(header), file_(file), info_(info) {}
 
   Copc run() {
-    const std::byte* info = input_.bytes.data() + info_;
+    const std::byte* info = head_.bytes.data() + info_;
     for (int k = 0; k < 3; ++k) copc_.center[k] = load_as<double>(info + 8 * k);
     copc_.half_size = load_as<double>(info + kHalfSize);
     copc_.spacing = load_as<double>(info + kSpacing);
@@ -57,7 +57,7 @@ class CopcReader {
 
   // `at`: the byte that says where the page is.
   void add_page(std::size_t at, std::uint64_t place, std::uint64_t bytes) {
-    const std::size_t size = input_.bytes.size();
+    const std::size_t size = file_.size;
     if (place > size || bytes > size - place || bytes % kEntrySize != 0) {
       wrong(at, fmt::format("a page of {} bytes at byte {} of a file of {}", bytes, place, size));
     }
@@ -72,8 +72,10 @@ class CopcReader {
   void read_page() {
     const Page page = pages_.back();
     pages_.pop_back();
-    for (std::size_t at = page.place; at < page.place + page.bytes; at += kEntrySize) {
-      const std::byte* entry = input_.bytes.data() + at;
+    const Bytes entries = file_.read(page.place, page.bytes);
+    for (std::size_t offset = 0; offset < page.bytes; offset += kEntrySize) {
+      const std::byte* entry = entries.span().data() + offset;
+      const std::size_t at = page.place + offset;
       CopcNode node;
       node.key.level = load_as<std::int32_t>(entry);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -102,7 +104,7 @@ class CopcReader {
       wrong(at,
             fmt::format("no cube of level {} is at {}, {}, {}", level, cell[0], cell[1], cell[2]));
     }
-    const std::size_t size = input_.bytes.size();
+    const std::size_t size = file_.size;
     const bool outside = node.place > size || node.bytes > size - node.place;
     if (node.points > 0 && (outside || !laz::can_hold(header_, node.bytes, node.points))) {
       wrong(at, fmt::format("a node of {} points in {} bytes at byte {} of a file of {}",
@@ -130,9 +132,9 @@ class CopcReader {
                                header_.points));
     }
     // Nodes may share bytes: each holds its points, but not all of them together.
-    if (!laz::can_hold(header_, input_.bytes.size(), points)) {
+    if (!laz::can_hold(header_, file_.size, points)) {
       wrong(info_, fmt::format("{} points in a file of {} bytes, which cannot hold them", points,
-                               input_.bytes.size()));
+                               file_.size));
     }
   }
 
@@ -141,11 +143,12 @@ class CopcReader {
   }
 
   [[noreturn]] void wrong(std::size_t at, std::string_view what) const {
-    fail_at_byte(input_, at, what, kMakeAgain);
+    fail_at_byte(head_, at, what, kMakeAgain);
   }
 
-  const Input& input_;
+  const Input& head_;
   const LasHeader& header_;
+  const Parts& file_;
   std::size_t info_;  // place of the record "copc"
   Copc copc_;
   std::vector<Page> pages_;  // still to be read
@@ -155,13 +158,13 @@ class CopcReader {
 
 }  // namespace
 
-std::optional<Copc> read_copc(const Input& input, const LasHeader& header) {
-  const std::optional<LasRecord> info = find_record(input, header, "copc", 1);
+std::optional<Copc> read_copc(const Input& head, const LasHeader& header, const Parts& file) {
+  const std::optional<LasRecord> info = find_record(head, header, "copc", 1);
   if (!info || info->size < kInfoSize || !header.compressed || !header.extended()) {
     return std::nullopt;
   }
-  (void)laz::read_chunk_size(input, header);  // throws for what is not read
-  return CopcReader(input, header, info->place).run();
+  (void)laz::read_chunk_size(head, header);  // throws for what is not read
+  return CopcReader(head, header, file, info->place).run();
 }
 
 Box box_of(const Copc& copc, const CopcKey& key) {
@@ -174,13 +177,14 @@ Box box_of(const Copc& copc, const CopcKey& key) {
   return box;
 }
 
-std::vector<LasPoint> read_node(const Input& input, const LasHeader& header, const CopcNode& node) {
+std::vector<LasPoint> read_node(const Input& head, const LasHeader& header, const Parts& file,
+                                const CopcNode& node) {
   std::vector<LasPoint> points(node.points);
   if (node.points == 0) return points;
-  const std::size_t decoded =
-      laz::decode_points(header, input.bytes.subspan(node.place, node.bytes), points);
+  const Bytes chunk = file.read(node.place, node.bytes);
+  const std::size_t decoded = laz::decode_points(header, chunk.span(), points);
   if (decoded == node.points) return points;
-  fail_at_byte(input, node.place,
+  fail_at_byte(head, node.place,
                fmt::format("the node ends inside its point {} of {}", decoded + 1, node.points),
                "Download the file again");
 }

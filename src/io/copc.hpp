@@ -5,9 +5,13 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <vector>
 
+#include "io/file_bytes.hpp"
 #include "io/formats.hpp"
+#include "palpate/geometry/point_store.hpp"
 #include "palpate/geometry/shapes.hpp"
 
 namespace palpate::io {
@@ -37,14 +41,21 @@ struct Copc {
 
 /// The octree, where the file is a COPC file. All nodes with points lie within the file, and
 /// together they have the points that the header announces, no more than its bytes can hold.
-/// @throws Error that names the byte of what is wrong.
-[[nodiscard]] std::optional<Copc> read_copc(const Input& input, const LasHeader& header);
+/// `head`: the file's first bytes, up to its points. @throws Error that names the byte of what is
+/// wrong.
+[[nodiscard]] std::optional<Copc> read_copc(const Input& head, const LasHeader& header,
+                                            const Parts& file);
 
 /// The cube of a node, in the file's unit and frame.
 [[nodiscard]] Box box_of(const Copc& copc, const CopcKey& key);
 
-/// The points of a node. @throws Error where the chunk is damaged.
-[[nodiscard]] std::vector<LasPoint> read_node(const Input& input, const LasHeader& header,
-                                              const CopcNode& node);
+/// The points of a node. `head` is named where the chunk is damaged, in an Error.
+[[nodiscard]] std::vector<LasPoint> read_node(const Input& head, const LasHeader& header,
+                                              const Parts& file, const CopcNode& node);
+
+/// A COPC file as a store; null: it is none. Coordinates times `scale` are metres. @throws Error as
+/// read_copc() does.
+[[nodiscard]] std::shared_ptr<const PointStore> open_copc(const std::filesystem::path& path,
+                                                          double scale);
 
 }  // namespace palpate::io

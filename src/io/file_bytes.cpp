@@ -176,6 +176,18 @@ Bytes OpenFile::read(std::size_t place, std::size_t size) const {
   return bytes;
 }
 
+Parts parts_of(const OpenFile& file) {
+  return {file.size(), [&](std::size_t place, std::size_t size) { return file.read(place, size); }};
+}
+
+Parts parts_of(std::span<const std::byte> bytes) {
+  return {bytes.size(), [=](std::size_t place, std::size_t size) {
+            Bytes part(size);
+            std::ranges::copy(bytes.subspan(place, size), part.span().begin());
+            return part;
+          }};
+}
+
 namespace {
 
 constexpr std::size_t kAlwaysAllowed = std::size_t{64} << 20U;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -55,6 +56,14 @@ class OpenFile {
   int descriptor_ = -1;
   std::size_t size_ = 0;
 };
+
+/// Bytes that are read in parts, of a file or in memory.
+struct Parts {
+  std::size_t size = 0;  ///< of all
+  std::function<Bytes(std::size_t place, std::size_t size)> read;
+};
+[[nodiscard]] Parts parts_of(const OpenFile& file);              ///< which outlives them
+[[nodiscard]] Parts parts_of(std::span<const std::byte> bytes);  ///< which outlive them
 
 /// The most bytes that so many packed ones may become: 64 MiB or 250 times as many. No honest
 /// cloud grows beyond that (judgement).

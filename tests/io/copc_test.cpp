@@ -77,7 +77,7 @@ std::string copc_bytes(const std::function<void(std::vector<Entry>&)>& change = 
 std::optional<io::Copc> read(const std::string& bytes) {
   const ReadOptions options;
   const io::Input input = input_of(bytes, options);
-  return io::read_copc(input, io::read_las_header(input));
+  return io::read_copc(input, io::read_las_header(input), io::parts_of(input.bytes));
 }
 
 std::string refusal_of(const std::string& bytes) {
@@ -100,7 +100,8 @@ void expect_all_points(const std::string& bytes, const io::Copc& copc) {
     const auto node = std::ranges::find(copc.nodes, chunk.place, &io::CopcNode::place);
     ASSERT_NE(node, copc.nodes.end());
     EXPECT_EQ(node->bytes, chunk.bytes);
-    const std::vector<io::LasPoint> own = io::read_node(input, header, *node);
+    const std::vector<io::LasPoint> own =
+        io::read_node(input, header, io::parts_of(input.bytes), *node);
     ASSERT_EQ(own.size(), chunk.points);
     for (std::size_t i = 0; i < own.size(); ++i) {
       ASSERT_EQ(own[i].number, all[chunk.first + i].number);
@@ -186,7 +187,7 @@ TEST(Copc, NamesTheNodeThatIsDamaged) {
   const ReadOptions options;
   const io::Input input = input_of(bytes, options);
   try {
-    (void)io::read_node(input, io::read_las_header(input), node);
+    (void)io::read_node(input, io::read_las_header(input), io::parts_of(input.bytes), node);
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("byte " + std::to_string(node.place) + ": the node ends"));
@@ -202,7 +203,7 @@ TEST(Copc, PointsOfARealFileLieInTheCubesOfTheirNodes) {
   const ReadOptions options;
   const io::Input input = input_of(bytes, options);
   const io::LasHeader header = io::read_las_header(input);
-  const std::optional<io::Copc> copc = io::read_copc(input, header);
+  const std::optional<io::Copc> copc = io::read_copc(input, header, io::parts_of(input.bytes));
   ASSERT_TRUE(copc);
   EXPECT_GT(copc->nodes.size(), 1u);
   expect_all_points(bytes, *copc);
@@ -210,7 +211,8 @@ TEST(Copc, PointsOfARealFileLieInTheCubesOfTheirNodes) {
     Box box = io::box_of(*copc, node.key);
     box.lower.array() -= 1e-6;  // coordinates are rounded
     box.upper.array() += 1e-6;
-    for (const io::LasPoint& point : io::read_node(input, header, node)) {
+    for (const io::LasPoint& point :
+         io::read_node(input, header, io::parts_of(input.bytes), node)) {
       const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
       ASSERT_TRUE(box.contains(numbers.cwiseProduct(header.scale) + header.offset));
     }
