@@ -198,7 +198,8 @@ std::vector<Piece> Blocks::prepare_all() const {
   return pieces;
 }
 
-Prepared Blocks::join(std::span<const Piece* const> pieces) const {
+Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts, const Vector3d& origin,
+              Kernel kernel) {
   Stopwatch watch;
   Prepared joined;
   SurfacePoints& points = joined.points;
@@ -216,17 +217,17 @@ Prepared Blocks::join(std::span<const Piece* const> pieces) const {
     append(piece->columns.sheets, points.sheets);
     add(piece->report, joined.report);
   }
-  points.kernel = options_.kernel;
-  points.origin = cloud_.origin;
-  CellGrid::Cube cube{facts_.extent.lower - points.origin, Division::kBlockEdge * facts_.radius};
-  const double longest = facts_.extent.size().maxCoeff();
+  points.kernel = kernel;
+  points.origin = origin;
+  CellGrid::Cube cube{facts.extent.lower - points.origin, Division::kBlockEdge * facts.radius};
+  const double longest = facts.extent.size().maxCoeff();
   for (int k = 0; k < kMostHalvings && cube.edge < longest; ++k) cube.edge *= 2;
   points.grid = CellGrid(positions, cube);
   positions = {};
   each_column([&](auto& column) { column = in_grid_order(points.grid, column); }, points);
   watch.lap(joined.report.seconds_index);
-  joined.report.spacing = facts_.spacing;
-  joined.report.noise = facts_.noise.sigma;
+  joined.report.spacing = facts.spacing;
+  joined.report.noise = facts.noise.sigma;
   for (const Piece* const piece : pieces) joined.report.voxel = piece->report.voxel;
   complete(joined);
   return joined;

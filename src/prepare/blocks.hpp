@@ -37,18 +37,13 @@ class Blocks {
 
   [[nodiscard]] const CloudFacts& facts() const { return facts_; }
   [[nodiscard]] std::size_t size() const { return division_.size(); }
-
-  /// The box of a block's points, world frame, m.
-  [[nodiscard]] const Box& box(std::size_t block) const { return division_.box(block); }
+  [[nodiscard]] const Division& division() const { return division_; }
 
   /// How far around that points count for it, m.
   [[nodiscard]] double halo(std::size_t block) const;
 
   [[nodiscard]] Piece prepare(std::size_t block) const;
   [[nodiscard]] std::vector<Piece> prepare_all() const;
-
-  /// One surface of some blocks, indexed. Points have the same order whichever others are there.
-  [[nodiscard]] Prepared join(std::span<const Piece* const> pieces) const;
 
  private:
   const PointCloud& cloud_;
@@ -57,5 +52,10 @@ class Blocks {
   CloudFacts facts_;
   Division division_;
 };
+
+/// One surface of some blocks of a cloud with that origin, indexed. Points have the same order
+/// whichever other blocks are there.
+[[nodiscard]] Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts,
+                            const Eigen::Vector3d& origin, Kernel kernel);
 
 }  // namespace palpate

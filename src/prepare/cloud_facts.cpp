@@ -16,6 +16,7 @@
 #include "prepare/place.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
+#include "prepare/store_sample.hpp"
 
 namespace palpate {
 namespace {
@@ -98,19 +99,44 @@ Box extent_of(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
 
 }  // namespace
 
+namespace {
+
+/// `alone`: options without facts. `sample`: points of all of the cloud, in the frame of `drawn`.
+CloudFacts facts_of(const Placed& drawn, const PrepareOptions& alone,
+                    const std::vector<Vector3f>& sample_points) {
+  Prepared::Report report;
+  Sampling sampling = sample(drawn, alone, report);
+  sampling.facts.extent = extent_of(drawn.cloud(), sample_points);
+  sampling.facts.radius = median(choose_radii(sampling, alone).values);
+  return sampling.facts;
+}
+
+PrepareOptions without_facts(PrepareOptions options) {
+  options.facts.reset();
+  return options;
+}
+
+}  // namespace
+
 CloudFacts measure_facts(const PointCloud& cloud, const PrepareOptions& options,
                          const Eigen::Isometry3d& T_world_sensor) {
   const Placed placed = place(cloud, options, T_world_sensor);
   detail::require_finite(placed.cloud().positions);
   const std::vector<Vector3f> sample_points = sample_of(placed.cloud().positions);
-  PrepareOptions alone = options;
-  alone.facts.reset();
-  Prepared::Report report;
   const PointCloud drawn = draw(placed.cloud(), sample_points);
-  Sampling sampling = sample({drawn, {}, placed.viewpoint}, alone, report);
-  sampling.facts.extent = extent_of(placed.cloud(), sample_points);
-  sampling.facts.radius = median(choose_radii(sampling, alone).values);
-  return sampling.facts;
+  return facts_of({drawn, {}, placed.viewpoint}, without_facts(options), sample_points);
+}
+
+CloudFacts measure_facts(const PointStore& store, const PrepareOptions& options,
+                         const Eigen::Isometry3d& T_world_sensor) {
+  PrepareOptions whole = without_facts(options);
+  whole.clip.reset();
+  const StoreSample taken = sample_of(store, kAsked, kDrawnPlaces, kPointsAround);
+  const Placed all = place(taken.all, whole, T_world_sensor);
+  const Placed drawn = place(taken.places, whole, T_world_sensor);
+  detail::require_finite(all.cloud().positions);
+  detail::require_finite(drawn.cloud().positions);
+  return facts_of(drawn, whole, all.cloud().positions);
 }
 
 }  // namespace palpate

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCoarser = 4;  // times all lengths, from level to level; judgement
-constexpr int kCellShift = 4;   // cells along an edge of a cube: 16, 6 R each; judgement
+constexpr int kCoarserShift = 2;  // all lengths times 4 from level to level; judgement
+constexpr int kCellShift = 4;     // cells along an edge of a cube: 16, 6 R each; judgement
 
 // Points in a cell and those around it from which on they are prepared on its level. A flat sheet
 // has 2000 there, its corner 200. So sheets stay that are up to six times as sparse, whose R is
@@ -88,13 +88,45 @@ Division::Division(const PointCloud& cloud, const CloudFacts& facts)
     }
   }
   std::ranges::sort(blocks_, {}, [&](const Block& block) {
-    return std::pair(block.level, levels_[block.level].cubes.all[block.cube].at);
+    return Key{block.level, levels_[block.level].cubes.all[block.cube].at};
   });
+}
+
+Division::Key Division::key(std::size_t block) const {
+  return {blocks_[block].level, cube(block).at};
+}
+
+std::optional<std::size_t> Division::find(const Key& wanted) const {
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (key(k) == wanted) return k;
+  }
+  return std::nullopt;
+}
+
+Box Division::sparser(const Key& key) const {
+  if (key.level >= levels_.size()) return {};
+  const Cube* const found = levels_[key.level].cubes.find(key.at);
+  return found == nullptr ? Box{} : found->sparser;
+}
+
+Box Division::cube(const CloudFacts& facts, const Key& key) {
+  const double edge = kBlockEdge * radius(facts, key.level);
+  const Vector3d lower = facts.extent.lower + edge * Vector3d(key.at[0], key.at[1], key.at[2]);
+  return {lower, lower + Vector3d::Constant(edge)};
+}
+
+Division::Key Division::above(const Key& key) {
+  return {key.level + 1, coarser(key.at, kCoarserShift)};
+}
+
+double Division::radius(const CloudFacts& facts, std::size_t level) {
+  return std::ldexp(facts.radius, kCoarserShift * static_cast<int>(level));
 }
 
 /// Adds a level of these points and replaces them by those of the next one.
 void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::uint8_t>& waits) {
-  const double radius = levels_.empty() ? radius_ : kCoarser * levels_.back().radius;
+  const double radius =
+      levels_.empty() ? radius_ : std::ldexp(levels_.back().radius, kCoarserShift);
   Level& level = levels_.emplace_back();
   level.radius = radius;
   level.cell = std::ldexp(kBlockEdge * radius, -kCellShift);
@@ -126,6 +158,7 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
       ++cube.own;
       cube.box.extend(cloud_.point(i));
     }
+    if (waits[i] != 0) cube.sparser.extend(cloud_.point(i));
     if (waits[i] != 0 || first[k] != 0) next.push_back(i);
     more = more || waits[i] != 0;
   }

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -21,12 +23,34 @@ namespace palpate {
 /// the facts and on what lies near it alone.
 class Division {
  public:
+  using Index = std::array<std::int32_t, 3>;  ///< cell or cube in its grid
+
+  /// The cube of a block.
+  struct Key {
+    std::size_t level = 0;
+    Index at{};
+
+    auto operator<=>(const Key&) const = default;
+  };
+
   static constexpr double kBlockEdge = 96;  ///< typical R of a level: edge of its cubes
 
   /// `cloud` has to outlive it.
   Division(const PointCloud& cloud, const CloudFacts& facts);
 
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
+  [[nodiscard]] Key key(std::size_t block) const;
+  /// The block of a cube, if points belong to it.
+  [[nodiscard]] std::optional<std::size_t> find(const Key& key) const;
+  /// The tight box of the points in a cube that belong to further levels, world frame, m.
+  [[nodiscard]] Box sparser(const Key& key) const;
+
+  /// A cube, world frame, m.
+  [[nodiscard]] static Box cube(const CloudFacts& facts, const Key& key);
+  /// The cube of the next level that holds a cube.
+  [[nodiscard]] static Key above(const Key& key);
+  /// A typical R on a level, m.
+  [[nodiscard]] static double radius(const CloudFacts& facts, std::size_t level);
   /// A typical R on the block's level, m: that of the facts times a power of four.
   [[nodiscard]] double radius(std::size_t block) const;
   /// How many points belong to the block.
@@ -40,7 +64,6 @@ class Division {
   [[nodiscard]] std::vector<std::uint32_t> around(std::size_t block, double reach) const;
 
  private:
-  using Index = std::array<std::int32_t, 3>;  // cell or cube in its grid
   struct Cell {
     Index at{};
     std::uint32_t points = 0;
@@ -52,6 +75,7 @@ class Division {
     Index at{};
     std::vector<std::uint32_t> points;
     std::size_t own = 0;  // how many points belong to it
+    Box sparser = {};     // around those that belong to further levels, m
     Box box = {};         // around these, m
   };
   template <class T>

@@ -52,7 +52,7 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
   const std::vector<Piece> pieces = blocks.prepare_all();
   std::vector<const Piece*> all;
   for (const Piece& piece : pieces) all.push_back(&piece);
-  Prepared prepared = blocks.join(all);
+  Prepared prepared = join(all, blocks.facts(), placed.cloud().origin, options.kernel);
   prepared.report.points_in = report.points_in;
   prepared.report.seconds_filter += report.seconds_filter;
   return prepared;

@@ -10,14 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <mutex>
-#include <numeric>
-#include <optional>
 #include <utility>
 #include <vector>
 
-#include "prepare/blocks.hpp"
-#include "prepare/place.hpp"
+#include "scene/block_supply.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {
@@ -32,87 +30,85 @@ constexpr std::size_t kMostShown = std::size_t{1} << 19;
 // are the blocks of about a hundred million points of a surface.
 constexpr std::size_t kMostMissing = 1024;
 
-/// How far a box is beyond a ball, m; negative within.
+}  // namespace
+
 double distance(const Box& box, const Ball& ball) {
   const Eigen::Vector3d nearest = ball.center.cwiseMax(box.lower).cwiseMin(box.upper);
   return (ball.center - nearest).norm() - ball.radius;
 }
 
-}  // namespace
-
 struct OnDemand::Inside {
-  enum class State : std::uint8_t { missing, prepared, shown };
+  using State = CloudBlock::State;
 
-  Inside(std::shared_ptr<const PointCloud> given, const PrepareOptions& options,
-         const Eigen::Isometry3d& pose)
-      : cloud(std::move(given)),
-        placed(place(*cloud, options, pose)),
-        blocks(placed, options),
-        pieces(blocks.size()),
-        states(blocks.size(), State::missing),
-        distances(blocks.size()) {}
+  Inside(std::unique_ptr<BlockSupply> from, const PrepareOptions& options)
+      : supply(std::move(from)), kernel(options.kernel) {}
 
   void look(const Source& source);
-  [[nodiscard]] std::optional<std::size_t> nearest_missing(double within) const;
-  [[nodiscard]] std::vector<std::size_t> chosen() const;
-  [[nodiscard]] bool shows_more(double within) const;
+  [[nodiscard]] CloudBlock* nearest_missing(double within);
+  [[nodiscard]] std::vector<CloudBlock*> chosen();
+  [[nodiscard]] bool shows_more(double within);
+  [[nodiscard]] bool was_unlisted(double within) const;
   template <class Work>
   void beside_servos(const Work& work);
-  void prepare(std::size_t block);
+  void prepare(CloudBlock& block);
   void show_near(Source& source, double now);
   void show_all(Source& source);
   void publish(Source& source, std::span<const Piece* const> shown, Snapshot snapshot);
 
-  std::shared_ptr<const PointCloud> cloud;
-  Placed placed;
-  Blocks blocks;
-  std::vector<Piece> pieces;
-  std::vector<State> states;
-  std::vector<double> distances;  // of blocks from what tools can reach, m
+  std::unique_ptr<BlockSupply> supply;
+  Kernel kernel;
+  std::vector<CloudBlock> blocks;
+  std::vector<Box> unlisted;       // where no block is
+  std::vector<Box> told_unlisted;  // the same as it was last shown
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
   tbb::task_arena background{std::max(1, tbb::this_task_arena::max_concurrency() - 1)};
-  std::atomic<std::size_t> prepared{0};
+  std::atomic<double> share{0};
   std::atomic<bool> done{false};
   std::mutex mutex;  // of advance()
 };
 
-/// Where tools are; at the middle of the cloud before there are any.
+/// Where tools are; at the cloud's start before there are any.
 void OnDemand::Inside::look(const Source& at) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
-  if (balls.empty()) balls.push_back({blocks.facts().extent.center(), 0});
-  for (std::size_t k = 0; k < distances.size(); ++k) {
-    const Box box = blocks.box(k);
-    distances[k] = std::numeric_limits<double>::infinity();
-    for (const Ball& ball : balls) distances[k] = std::min(distances[k], distance(box, ball));
+  if (balls.empty()) balls.push_back({supply->start(), 0});
+  unlisted = supply->list(balls, blocks);
+  for (CloudBlock& block : blocks) {
+    block.distance = std::numeric_limits<double>::infinity();
+    for (const Ball& ball : balls) {
+      block.distance = std::min(block.distance, distance(block.box, ball));
+    }
   }
+  const auto ready = std::ranges::count_if(
+      blocks, [](const CloudBlock& block) { return block.state != State::missing; });
+  share = static_cast<double>(ready) / static_cast<double>(blocks.size());
 }
 
 /// The nearest block that is missing, if one is nearer than `within`, m.
-std::optional<std::size_t> OnDemand::Inside::nearest_missing(double within) const {
-  std::optional<std::size_t> found;
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    if (states[k] != State::missing || distances[k] > within) continue;
-    if (!found || distances[k] < distances[*found]) found = k;
+CloudBlock* OnDemand::Inside::nearest_missing(double within) {
+  CloudBlock* found = nullptr;
+  for (CloudBlock& block : blocks) {
+    if (block.state != State::missing || block.distance > within) continue;
+    if (found == nullptr || block.distance < found->distance) found = &block;
   }
   return found;
 }
 
 /// The blocks to show, the nearest first: all that tools can reach, and more while they are few.
-std::vector<std::size_t> OnDemand::Inside::chosen() const {
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    if (states[k] != State::missing) order.push_back(k);
+std::vector<CloudBlock*> OnDemand::Inside::chosen() {
+  std::vector<CloudBlock*> order;
+  for (CloudBlock& block : blocks) {
+    if (block.state != State::missing) order.push_back(&block);
   }
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return distances[k]; });
-  std::vector<std::size_t> found;
+  std::ranges::stable_sort(order, {}, &CloudBlock::distance);
+  std::vector<CloudBlock*> found;
   std::size_t points = 0;
-  for (const std::size_t k : order) {
-    const std::size_t more = pieces[k].positions.size();
-    if (!found.empty() && distances[k] > 0 && points + more > kMostShown) continue;
-    found.push_back(k);
+  for (CloudBlock* const block : order) {
+    const std::size_t more = block->piece.positions.size();
+    if (!found.empty() && block->distance > 0 && points + more > kMostShown) continue;
+    found.push_back(block);
     points += more;
   }
   return found;
@@ -120,9 +116,22 @@ std::vector<std::size_t> OnDemand::Inside::chosen() const {
 
 /// Is there a block nearer than `within`, m, that is to be shown and is not yet? One for which
 /// there is no room does not count: nobody is to wait for it.
-bool OnDemand::Inside::shows_more(double within) const {
-  return std::ranges::any_of(chosen(), [&](std::size_t k) {
-    return states[k] == State::prepared && distances[k] <= within;
+bool OnDemand::Inside::shows_more(double within) {
+  return std::ranges::any_of(chosen(), [&](const CloudBlock* block) {
+    return block->state == State::prepared && block->distance <= within;
+  });
+}
+
+/// Was a place nearer than `within`, m, shown as one of which nothing is known, and is it not so
+/// any more?
+bool OnDemand::Inside::was_unlisted(double within) const {
+  const auto same = [](const Box& a, const Box& b) {
+    return a.lower == b.lower && a.upper == b.upper;
+  };
+  if (std::ranges::equal(unlisted, told_unlisted, same)) return false;
+  return std::ranges::any_of(tools, [&](const Reach& tool) {
+    return std::ranges::any_of(told_unlisted,
+                               [&](const Box& box) { return distance(box, tool) <= within; });
   });
 }
 
@@ -135,32 +144,33 @@ void OnDemand::Inside::beside_servos(const Work& work) {
   }
 }
 
-void OnDemand::Inside::prepare(std::size_t block) {
-  beside_servos([&] { pieces[block] = blocks.prepare(block); });
-  states[block] = State::prepared;
-  ++prepared;
+void OnDemand::Inside::prepare(CloudBlock& block) {
+  beside_servos([&] { supply->prepare(block); });
+  block.state = State::prepared;
 }
 
 void OnDemand::Inside::show_near(Source& to, double now) {
   const bool first = source != &to;
+  const std::vector<CloudBlock*> chosen = this->chosen();
   std::vector<const Piece*> shown;
-  std::vector<std::size_t> others(states.size());
-  std::iota(others.begin(), others.end(), std::size_t{0});
-  for (const std::size_t k : chosen()) {
-    auto& [positions, columns, report] = pieces[k];
-    const bool stood = first || states[k] == State::shown;
+  for (CloudBlock* const block : chosen) {
+    auto& [positions, columns, report] = block->piece;
+    const bool stood = first || block->state == State::shown;
     columns.presences.assign(positions.size(), stood ? 1.f : 0.f);
     columns.end_presences.assign(positions.size(), 1.f);
-    states[k] = State::shown;
-    shown.push_back(&pieces[k]);
-    others[k] = states.size();
+    shown.push_back(&block->piece);
   }
-  std::erase(others, states.size());
-  std::ranges::stable_sort(others, {}, [&](std::size_t k) { return distances[k]; });
+  std::vector<const CloudBlock*> others;
+  for (CloudBlock& block : blocks) {
+    if (block.state == State::shown) block.state = State::prepared;
+    if (std::ranges::find(chosen, &block) == chosen.end()) others.push_back(&block);
+  }
+  for (CloudBlock* const block : chosen) block->state = State::shown;
+  std::ranges::stable_sort(others, {}, &CloudBlock::distance);
   Snapshot snapshot;
-  for (const std::size_t k : others) {
-    if (states[k] == State::shown) states[k] = State::prepared;
-    if (snapshot.missing.size() < kMostMissing) snapshot.missing.push_back(blocks.box(k));
+  snapshot.missing = told_unlisted = unlisted;
+  for (const CloudBlock* const block : others) {
+    if (snapshot.missing.size() < kMostMissing) snapshot.missing.push_back(block->box);
   }
   if (!first) snapshot.start = now + kLead;
   snapshot.end = snapshot.start + (first ? 0 : kAppear);
@@ -169,20 +179,21 @@ void OnDemand::Inside::show_near(Source& to, double now) {
 
 void OnDemand::Inside::show_all(Source& to) {
   std::vector<const Piece*> all;
-  for (Piece& piece : pieces) {
-    piece.columns.presences.clear();
-    piece.columns.end_presences.clear();
-    all.push_back(&piece);
+  for (CloudBlock& block : blocks) {
+    block.piece.columns.presences.clear();
+    block.piece.columns.end_presences.clear();
+    all.push_back(&block.piece);
   }
   publish(to, all, {});
-  pieces.clear();
+  blocks.clear();
+  share = 1;
   done = true;
 }
 
 void OnDemand::Inside::publish(Source& to, std::span<const Piece* const> shown, Snapshot snapshot) {
   Prepared joined;
-  beside_servos([&] { joined = blocks.join(shown); });
-  joined.report.points_in = cloud->size();
+  beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
+  joined.report.points_in = supply->points();
   {
     const std::lock_guard lock(to.inside_->mutex);
     to.inside_->report = joined.report;
@@ -205,22 +216,36 @@ bool OnDemand::suits(const PointCloud& cloud, const PrepareOptions& options) {
 
 OnDemand::OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
                    const Eigen::Isometry3d& T_world_sensor)
-    : inside_(std::make_unique<Inside>(std::move(cloud), options, T_world_sensor)) {}
+    : inside_(std::make_unique<Inside>(blocks_of(std::move(cloud), options, T_world_sensor),
+                                       options)) {}
+
+OnDemand::OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+                   const Eigen::Isometry3d& T_world_sensor, std::size_t memory)
+    : inside_(std::make_unique<Inside>(blocks_of(std::move(store), options, T_world_sensor, memory),
+                                       options)) {}
 
 OnDemand::~OnDemand() = default;
 
-void OnDemand::advance(Source& source, double now) {
+bool OnDemand::advance(Source& source, double now) {
   Inside& in = *inside_;
   const std::lock_guard lock(in.mutex);
-  if (in.done) return;
+  if (in.done) return false;
   in.look(source);
-  const double near = kAhead * in.blocks.facts().radius;
+  const double near = kAhead * in.supply->facts().radius;
   const double anywhere = std::numeric_limits<double>::infinity();
-  if (const auto needed = in.nearest_missing(near)) return in.prepare(*needed);
-  const bool waits = in.source != &source || in.shows_more(near);
-  if (waits && in.prepared > 0) return in.show_near(source, now);
-  const auto next = in.nearest_missing(anywhere);
-  next ? in.prepare(*next) : in.show_all(source);
+  if (CloudBlock* const needed = in.nearest_missing(near)) {
+    in.prepare(*needed);
+  } else if (in.share > 0 &&
+             (in.source != &source || in.shows_more(near) || in.was_unlisted(near))) {
+    in.show_near(source, now);
+  } else if (CloudBlock* const next = in.nearest_missing(anywhere)) {
+    in.prepare(*next);
+  } else if (in.supply->is_whole()) {
+    in.show_all(source);
+  } else {
+    return false;
+  }
+  return true;
 }
 
 void OnDemand::cancel() {
@@ -229,9 +254,7 @@ void OnDemand::cancel() {
 }
 
 double OnDemand::share() const noexcept {
-  if (done()) return 1;
-  const auto all = static_cast<double>(inside_->states.size());
-  return static_cast<double>(inside_->prepared) / all;
+  return done() ? 1. : inside_->share.load();
 }
 
 bool OnDemand::done() const noexcept {

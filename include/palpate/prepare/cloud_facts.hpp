@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
 #include "palpate/geometry/shapes.hpp"
 
 namespace palpate {
@@ -37,6 +38,12 @@ struct CloudFacts {
 /// @throws Error as prepare() does.
 [[nodiscard]] CloudFacts measure_facts(
     const PointCloud& cloud, const PrepareOptions& options,
+    const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
+
+/// The same of a store, of which some hundred nodes are read. A box to clip by does not count.
+/// @throws Error as prepare() and PointStore::read() do.
+[[nodiscard]] CloudFacts measure_facts(
+    const PointStore& store, const PrepareOptions& options,
     const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
 
 }  // namespace palpate

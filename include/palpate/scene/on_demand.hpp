@@ -1,20 +1,23 @@
-// Prepares a large static cloud block by block, what tools come near first.
+// Prepares a large static cloud, in memory or on disk, block by block: what tools come near first.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <memory>
 
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "palpate/scene/source.hpp"
 
 namespace palpate {
 
 /// A large static cloud that becomes a source's surface block by block: those that tools come near
-/// first, then the rest, until all is as Source::set() would make it. Where a block is there,
-/// forces are those of the whole, bit for bit. Where it is missing there is no surface, which
-/// FieldNote::not_loaded says; once it is there its presence goes from 0 to 1 in 0.1 s, so that it
-/// pushes nobody.
+/// first, then the rest, until all is as Source::set() would make it. A store on disk stays there:
+/// what is around the tools is read, prepared and kept while there is memory for it. Where a block
+/// is there, forces are those of the whole, bit for bit. Where it is missing there is no surface,
+/// which FieldNote::not_loaded says; once it is there its presence goes from 0 to 1 in 0.1 s, so
+/// that it pushes nobody.
 ///
 /// Owns no thread: one thread calls advance() again and again. What it publishes depends on how
 /// fast it is: runs that are to repeat use Source::set().
@@ -27,25 +30,33 @@ class OnDemand {
   /// @throws Error as prepare() does.
   OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
            const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
+
+  /// Reads some hundred nodes to measure the facts, if the options give none. Nodes and prepared
+  /// blocks take at most `memory` bytes; what is shown, at most half a million points, comes to it.
+  /// @throws Error as prepare() and PointStore::read() do.
+  OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+           const Eigen::Isometry3d& T_world_sensor, std::size_t memory);
   ~OnDemand();
   OnDemand(const OnDemand&) = delete;
   OnDemand& operator=(const OnDemand&) = delete;
 
   /// Prepares one block, or makes what is there the surface of `source` from `now` on (s, on the
   /// clock that SceneField::update is given). Takes up to some tenths of a second; leaves a core to
-  /// servos once there are any. Does nothing more once all is there, or after cancel(). Not
-  /// real-time.
-  /// @throws Error as prepare() does.
-  void advance(Source& source, double now);
+  /// servos once there are any. Not real-time.
+  /// @return false: there was nothing to do. That is for good if done(); around a store it is until
+  ///   a tool moves.
+  /// @throws Error as prepare() and PointStore::read() do.
+  bool advance(Source& source, double now);
 
   /// Waits until advance() is through, and publishes nothing from then on: the source becomes
   /// somebody else's. Any thread.
   void cancel();
 
-  /// The share of the blocks that is prepared, 0-1; 1 once it is done. Any thread.
+  /// The share of the blocks that is prepared, 0-1; 1 once it is done. Of a store, of those around
+  /// the tools. Any thread.
   [[nodiscard]] double share() const noexcept;
 
-  /// Is there nothing left to do? Any thread.
+  /// Is all of the cloud there, or was it cancelled? Any thread.
   [[nodiscard]] bool done() const noexcept;
 
  private:

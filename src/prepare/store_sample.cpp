@@ -1,0 +1,149 @@
+// Reads the upper nodes of a store, and the leaves at some places with all that lies over them.
+
+#include "prepare/store_sample.hpp"
+
+#include <algorithm>
+#include <compare>
+#include <map>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "geometry/parallel.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+using Layout = PointStore::Layout;
+
+/// Level and cell of a node.
+using Key = std::pair<std::int32_t, std::array<std::int32_t, 3>>;
+
+Key key_of(const PointStore::Node& node) {
+  return {node.level, node.cell};
+}
+
+Key above(Key key) {
+  --key.first;
+  for (std::int32_t& c : key.second) c >>= 1;
+  return key;
+}
+
+void append(const PointCloud& from, PointCloud& to) {
+  to.origin = from.origin;
+  to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+}
+
+/// The nodes whose points thin all of the store, the coarsest first.
+std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
+  std::vector<std::size_t> order(layout.nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return layout.nodes[k].level; });
+  std::size_t points = 0;
+  std::size_t taken = 0;
+  while (taken < order.size() && points < asked) points += layout.nodes[order[taken++]].points;
+  order.resize(taken);
+  return order;
+}
+
+/// Nodes with points under which there are none, in the order of the store.
+std::vector<std::size_t> leaves_of(const Layout& layout) {
+  std::map<Key, bool> has_child;
+  for (const PointStore::Node& node : layout.nodes) {
+    if (node.points > 0) has_child[above(key_of(node))] = true;
+  }
+  std::vector<std::size_t> leaves;
+  for (std::size_t k = 0; k < layout.nodes.size(); ++k) {
+    if (layout.nodes[k].points == 0 || has_child.contains(key_of(layout.nodes[k]))) continue;
+    leaves.push_back(k);
+  }
+  return leaves;
+}
+
+/// So many of the leaves at most, spread over their points.
+std::vector<std::size_t> drawn(const Layout& layout, const std::vector<std::size_t>& leaves,
+                               std::size_t places) {
+  std::size_t all = 0;
+  for (const std::size_t k : leaves) all += layout.nodes[k].points;
+  std::vector<std::size_t> found;
+  std::size_t before = 0;
+  std::size_t place = 0;
+  for (const std::size_t k : leaves) {
+    before += layout.nodes[k].points;
+    const std::size_t first = place;
+    while (place < places && (2 * place + 1) * all < 2 * places * before) ++place;
+    if (place > first) found.push_back(k);
+  }
+  return found;
+}
+
+/// A node and those over it.
+std::vector<std::size_t> chain(const std::map<Key, std::size_t>& numbers, Key key) {
+  std::vector<std::size_t> nodes;
+  for (; key.first >= 0; key = above(key)) {
+    const auto found = numbers.find(key);
+    if (found != numbers.end()) nodes.push_back(found->second);
+  }
+  return nodes;
+}
+
+/// Leaves the points of the box, and of these the nearest ones to the one nearest to their middle.
+void keep_middle(const Box& box, std::size_t most, PointCloud& cloud) {
+  cloud = clip(cloud, box);
+  if (cloud.size() <= most) return;
+  const auto nearest_to = [](const Vector3f& place) {
+    return [place](const Vector3f& p) { return (p - place).squaredNorm(); };
+  };
+  Vector3f middle = Vector3f::Zero();
+  for (const Vector3f& p : cloud.positions) middle += p / static_cast<float>(cloud.size());
+  const Vector3f start = *std::ranges::min_element(cloud.positions, {}, nearest_to(middle));
+  std::ranges::nth_element(cloud.positions, cloud.positions.begin() + static_cast<long>(most), {},
+                           nearest_to(start));
+  cloud.positions.resize(most);
+}
+
+/// Clouds of some nodes, by their numbers.
+std::map<std::size_t, PointCloud> read(const PointStore& store, std::vector<std::size_t> nodes) {
+  std::ranges::sort(nodes);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::vector<PointCloud> clouds(nodes.size());
+  detail::parallel_each(nodes.size(), 1, [&](std::size_t k) { clouds[k] = store.read(nodes[k]); });
+  std::map<std::size_t, PointCloud> found;
+  for (std::size_t k = 0; k < nodes.size(); ++k) found[nodes[k]] = std::move(clouds[k]);
+  return found;
+}
+
+}  // namespace
+
+StoreSample sample_of(const PointStore& store, std::size_t asked, std::size_t places,
+                      std::size_t around) {
+  const Layout& layout = store.layout();
+  std::map<Key, std::size_t> numbers;
+  for (std::size_t k = 0; k < layout.nodes.size(); ++k) numbers[key_of(layout.nodes[k])] = k;
+  const std::vector<std::size_t> upper = upper_nodes(layout, asked);
+  const std::vector<std::size_t> leaves = drawn(layout, leaves_of(layout), places);
+  std::vector<std::size_t> wanted = upper;
+  for (const std::size_t leaf : leaves) {
+    const auto over = chain(numbers, key_of(layout.nodes[leaf]));
+    wanted.insert(wanted.end(), over.begin(), over.end());
+  }
+  const std::map<std::size_t, PointCloud> clouds = read(store, wanted);
+  StoreSample sample;
+  for (const std::size_t k : upper) append(clouds.at(k), sample.all);
+  for (const std::size_t leaf : leaves) {
+    PointCloud there;
+    for (const std::size_t k : chain(numbers, key_of(layout.nodes[leaf]))) {
+      append(clouds.at(k), there);
+    }
+    keep_middle(layout.box(leaf), around, there);
+    append(there, sample.places);
+  }
+  if (sample.all.empty() || sample.places.empty()) {
+    throw Error("none of the store's points can be used: make it again");
+  }
+  return sample;
+}
+
+}  // namespace palpate

@@ -1,0 +1,65 @@
+// Declares where the blocks of a large cloud come from: memory, or a store on disk.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/blocks.hpp"
+
+namespace palpate {
+
+/// A part of a cloud that is prepared by itself.
+struct CloudBlock {
+  enum class State : std::uint8_t { missing, prepared, shown };
+
+  Division::Key key;
+  Box box;  ///< that holds its points, world frame, m
+  State state = State::missing;
+  double distance = 0;  ///< from what tools can reach, m; negative within
+  Box sparser;          ///< around points in its cube that belong to further levels, where known
+  Piece piece;          ///< once it is prepared
+};
+
+/// How far a box is beyond a ball, m; negative within.
+[[nodiscard]] double distance(const Box& box, const Ball& ball);
+
+/// The blocks of one cloud. One thread at a time uses it.
+class BlockSupply {
+ public:
+  virtual ~BlockSupply() = default;
+
+  [[nodiscard]] virtual const CloudFacts& facts() const = 0;
+  [[nodiscard]] virtual std::size_t points() const = 0;      ///< of all of the cloud
+  [[nodiscard]] virtual Eigen::Vector3d origin() const = 0;  ///< of its surface, m
+  /// Where the cloud is looked at before there are tools.
+  [[nodiscard]] virtual Eigen::Vector3d start() const = 0;
+  /// Does list() give all of the cloud?
+  [[nodiscard]] virtual bool is_whole() const = 0;
+
+  /// Adds the blocks that tools may need soon, and takes others out where memory is short.
+  /// @return boxes without a block: what is there is not known.
+  [[nodiscard]] virtual std::vector<Box> list(std::span<const Ball> tools,
+                                              std::vector<CloudBlock>& blocks) = 0;
+
+  virtual void prepare(CloudBlock& block) = 0;
+};
+
+/// All of a cloud in memory.
+[[nodiscard]] std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointCloud> cloud,
+                                                     const PrepareOptions& options,
+                                                     const Eigen::Isometry3d& T_world_sensor);
+
+/// What lies around tools of a store, in at most so many bytes of `memory`.
+[[nodiscard]] std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointStore> store,
+                                                     const PrepareOptions& options,
+                                                     const Eigen::Isometry3d& T_world_sensor,
+                                                     std::size_t memory);
+
+}  // namespace palpate

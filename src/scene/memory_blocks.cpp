@@ -1,0 +1,52 @@
+// Divides a cloud in memory into blocks, all of which are listed from the start.
+#include <utility>
+
+#include "prepare/place.hpp"
+#include "scene/block_supply.hpp"
+
+namespace palpate {
+namespace {
+
+class MemoryBlocks final : public BlockSupply {
+ public:
+  MemoryBlocks(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
+               const Eigen::Isometry3d& pose)
+      : cloud_(std::move(cloud)),
+        placed_(place(*cloud_, options, pose)),
+        blocks_(placed_, options) {}
+
+  [[nodiscard]] const CloudFacts& facts() const override { return blocks_.facts(); }
+  [[nodiscard]] std::size_t points() const override { return cloud_->size(); }
+  [[nodiscard]] Eigen::Vector3d origin() const override { return placed_.cloud().origin; }
+  [[nodiscard]] Eigen::Vector3d start() const override { return facts().extent.center(); }
+  [[nodiscard]] bool is_whole() const override { return true; }
+
+  [[nodiscard]] std::vector<Box> list(std::span<const Ball> /*tools*/,
+                                      std::vector<CloudBlock>& blocks) override {
+    const Division& division = blocks_.division();
+    for (std::size_t k = blocks.size(); k < division.size(); ++k) {
+      blocks.emplace_back().key = division.key(k);
+      blocks.back().box = division.box(k);
+    }
+    return {};
+  }
+
+  void prepare(CloudBlock& block) override {
+    block.piece = blocks_.prepare(*blocks_.division().find(block.key));
+  }
+
+ private:
+  std::shared_ptr<const PointCloud> cloud_;
+  Placed placed_;
+  Blocks blocks_;
+};
+
+}  // namespace
+
+std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointCloud> cloud,
+                                       const PrepareOptions& options,
+                                       const Eigen::Isometry3d& T_world_sensor) {
+  return std::make_unique<MemoryBlocks>(std::move(cloud), options, T_world_sensor);
+}
+
+}  // namespace palpate

@@ -1,0 +1,233 @@
+// Lists the blocks of a store that tools may need soon, and prepares them of the nodes there.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "prepare/place.hpp"
+#include "scene/block_supply.hpp"
+#include "scene/node_cache.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Key = Division::Key;
+
+// Typical R around a cube within which points count for its block. Derived: on level 0 the halo is
+// 3 and cells are 6; on further ones 12, and cells of all levels before are 2 together.
+constexpr double kAround = 6;
+constexpr double kAroundSparse = 14;
+
+// Cubes around the one that holds a tool which are prepared before it comes there; judgement.
+constexpr int kSoon = 1;
+// The same where a tool can reach far, so that a list has at most 125 cubes a tool; judgement.
+constexpr int kMostSoon = 2;
+
+// Points that are read for a block of a further level at most: a second's work; judgement. Only
+// strays and single things far above a dense surface are then without one.
+constexpr std::size_t kMostRead = std::size_t{1} << 22;
+
+constexpr double kPieces = 0.25;         // share of the memory for prepared blocks; judgement
+constexpr std::size_t kPieceBytes = 72;  // a point; derived from the columns of SurfacePoints
+
+/// A range of cubes of level 0, both ends included.
+struct Range {
+  Division::Index first{};
+  Division::Index last{};
+
+  auto operator<=>(const Range&) const = default;
+};
+
+/// What is left of a box outside another: up to six boxes.
+void subtract(const Box& from, const Box& taken, std::vector<Box>& left) {
+  const bool apart = (from.lower.array() >= taken.upper.array()).any() ||
+                     (taken.lower.array() >= from.upper.array()).any();
+  if (apart) return left.push_back(from);
+  Box rest = from;
+  for (int axis = 0; axis < 3; ++axis) {
+    Box below = rest;
+    Box above = rest;
+    below.upper[axis] = rest.lower[axis] = std::max(rest.lower[axis], taken.lower[axis]);
+    above.lower[axis] = rest.upper[axis] = std::min(rest.upper[axis], taken.upper[axis]);
+    if (below.size()[axis] > 0) left.push_back(below);
+    if (above.size()[axis] > 0) left.push_back(above);
+  }
+}
+
+/// The box around a box that is turned.
+Box moved(const Eigen::Isometry3d& pose, const Box& box) {
+  const Vector3d half = pose.linear().cwiseAbs() * (0.5 * box.size());
+  const Vector3d center = pose * box.center();
+  return {center - half, center + half};
+}
+
+class StoreBlocks final : public BlockSupply {
+ public:
+  StoreBlocks(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+              const Eigen::Isometry3d& pose, std::size_t memory)
+      : options_(options),
+        pose_(pose),
+        nodes_(store, memory - static_cast<std::size_t>(kPieces * static_cast<double>(memory))),
+        most_prepared_(static_cast<std::size_t>(kPieces * static_cast<double>(memory)) /
+                       kPieceBytes) {
+    if (!options_.facts) options_.facts = measure_facts(*store, options, pose);
+    const PointStore::Layout& layout = store->layout();
+    all_ = moved(pose_, {layout.lower, layout.lower + Vector3d::Constant(layout.edge)});
+    find_start(*store);
+  }
+
+  [[nodiscard]] const CloudFacts& facts() const override { return *options_.facts; }
+  [[nodiscard]] std::size_t points() const override { return nodes_.layout().points; }
+  [[nodiscard]] Vector3d origin() const override { return pose_ * nodes_.layout().origin; }
+  [[nodiscard]] Vector3d start() const override { return start_; }
+  [[nodiscard]] bool is_whole() const override { return false; }
+
+  [[nodiscard]] std::vector<Box> list(std::span<const Ball> tools,
+                                      std::vector<CloudBlock>& blocks) override {
+    std::vector<Range> ranges;
+    for (const Ball& ball : tools) ranges.push_back(range_of(ball));
+    std::ranges::sort(ranges);
+    ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
+    drop(ranges, blocks);
+    std::set<Key> known;
+    for (const CloudBlock& block : blocks) known.insert(block.key);
+    for (const Range& range : ranges) add(range, known, blocks);
+    add_sparser(known, blocks);
+    return unlisted(ranges);
+  }
+
+  void prepare(CloudBlock& block) override {
+    const double radius = Division::radius(facts(), block.key.level);
+    const double around = (block.key.level == 0 ? kAround : kAroundSparse) * radius;
+    Box wide = Division::cube(facts(), block.key);
+    wide.lower.array() -= around;
+    wide.upper.array() += around;
+    const Box there = moved(pose_.inverse(), wide);
+    if (block.key.level > 0 && nodes_.points_around(there) > kMostRead) return;
+    PointCloud near = nodes_.inside(there);
+    if (options_.clip) near = clip(near, *options_.clip);
+    if (near.empty()) return;
+    const Placed placed = place(near, options_, pose_);
+    const Blocks parts(placed, options_);
+    block.sparser = parts.division().sparser(block.key);
+    const std::optional<std::size_t> own = parts.division().find(block.key);
+    if (!own) return;
+    block.piece = parts.prepare(*own);
+    block.box = parts.division().box(*own);
+  }
+
+ private:
+  /// The point of the upper nodes that is nearest to the middle.
+  void find_start(const PointStore& store) {
+    const Vector3d middle = facts().extent.center();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < store.layout().nodes.size(); ++k) {
+      if (store.layout().nodes[k].level > 0) continue;
+      const PointCloud root = store.read(k);
+      for (std::size_t i = 0; i < root.size(); ++i) {
+        const Vector3d point = pose_ * root.point(i);
+        const double distance = (point - middle).squaredNorm();
+        if (distance < least) start_ = point;
+        least = std::min(least, distance);
+      }
+    }
+  }
+
+  [[nodiscard]] Range range_of(const Ball& ball) const {
+    const double edge = Division::kBlockEdge * facts().radius;
+    const Vector3d middle = (ball.center - facts().extent.lower) / edge;
+    const double reach = std::min<double>(kSoon + ball.radius / edge, kMostSoon);
+    Range range;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double at = middle[static_cast<int>(k)];
+      range.first[k] = static_cast<std::int32_t>(std::floor(at - reach));
+      range.last[k] = static_cast<std::int32_t>(std::floor(at + reach));
+    }
+    return range;
+  }
+
+  /// Takes out cubes without points that no tool may need soon, and the farthest of what is
+  /// prepared where that is too much.
+  void drop(std::span<const Range> ranges, std::vector<CloudBlock>& blocks) const {
+    const auto is_wanted = [&](const CloudBlock& block) {
+      return std::ranges::any_of(ranges, [&](const Range& range) {
+        bool within = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+          within = within && block.key.at[k] >= range.first[k] && block.key.at[k] <= range.last[k];
+        }
+        return within;
+      });
+    };
+    std::erase_if(blocks, [&](const CloudBlock& block) {
+      return block.state == CloudBlock::State::missing && block.key.level == 0 && !is_wanted(block);
+    });
+    std::size_t points = 0;
+    for (const CloudBlock& block : blocks) points += block.piece.positions.size();
+    while (points > most_prepared_) {
+      const auto farthest = std::ranges::max_element(blocks, {}, &CloudBlock::distance);
+      if (farthest->key.level == 0 && is_wanted(*farthest)) return;
+      points -= farthest->piece.positions.size();
+      blocks.erase(farthest);
+    }
+  }
+
+  void add(const Range& range, std::set<Key>& known, std::vector<CloudBlock>& blocks) const {
+    for (std::int32_t x = range.first[0]; x <= range.last[0]; ++x) {
+      for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
+        for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
+          const Key key{0, {x, y, z}};
+          if (!known.insert(key).second) continue;
+          blocks.emplace_back().key = key;
+          blocks.back().box = Division::cube(facts(), key);
+        }
+      }
+    }
+  }
+
+  /// Adds blocks of further levels for points that were found to be too sparse.
+  static void add_sparser(std::set<Key>& known, std::vector<CloudBlock>& blocks) {
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const Box sparser = blocks[k].sparser;
+      if (sparser.empty()) continue;
+      const Key key = Division::above(blocks[k].key);
+      if (known.insert(key).second) blocks.emplace_back().key = key;
+      CloudBlock& block = *std::ranges::find(blocks, key, &CloudBlock::key);
+      if (block.state == CloudBlock::State::missing) block.box.extend(sparser);
+    }
+  }
+
+  /// The store's cube without what is listed.
+  [[nodiscard]] std::vector<Box> unlisted(std::span<const Range> ranges) const {
+    std::vector<Box> left{all_};
+    for (const Range& range : ranges) {
+      Box listed = Division::cube(facts(), {0, range.first});
+      listed.extend(Division::cube(facts(), {0, range.last}));
+      std::vector<Box> less;
+      for (const Box& box : left) subtract(box, listed, less);
+      left = std::move(less);
+    }
+    return left;
+  }
+
+  PrepareOptions options_;  // with the facts
+  Eigen::Isometry3d pose_;
+  NodeCache nodes_;
+  std::size_t most_prepared_;  // points
+  Box all_;                    // that holds the store, world frame, m
+  Vector3d start_ = Vector3d::Zero();
+};
+
+}  // namespace
+
+std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointStore> store,
+                                       const PrepareOptions& options,
+                                       const Eigen::Isometry3d& T_world_sensor,
+                                       std::size_t memory) {
+  return std::make_unique<StoreBlocks>(std::move(store), options, T_world_sensor, memory);
+}
+
+}  // namespace palpate
