@@ -177,6 +177,13 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
                 "fitted normals instead of the depth filter")
       .only_for({&RunFacts::depth,
                  "applies only to depth images, organised clouds and streams; no source is one"});
+  table
+      .add_text(
+          "--cache", KeyKind::text, "SIZE",
+          [&s](const std::string& text) { s.cache = parse_bytes(text, "--cache"); },
+          "memory for a COPC file or Potree folder; a larger one stays on disk, and what is around "
+          "the tools is read: 500M, 2G (1G)")
+      .only_for(kCloud);
   add_surface_of_source(table, s);
   add_stream_options(table, s);
 }

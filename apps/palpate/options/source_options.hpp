@@ -25,6 +25,7 @@ struct SourcePlan {
   std::optional<double> farthest = {};  ///< depth, m; unset: chosen by the first frame
   bool as_cloud = false;                ///< depths are taken as points, not by the depth filter
   bool loop = false;                    ///< a sequence starts again at its end
+  std::size_t cache = std::size_t{1} << 30U;  ///< bytes of memory for a store on disk; judgement
 };
 
 /// Registers the options that say how the bytes of a file become points.

@@ -57,11 +57,15 @@ Report cloud_report(const LoadedSource& cloud) {
     add_splats(report, *cloud.splats, cloud.declared, cloud.dropped, r.points_in);
   }
   if (cloud.mesh) add_mesh(report, *cloud.mesh, r.points_in);
+  report.row("stored",
+             "[{?}{points_stored} points on disk, of which what is around tools was read]",
+             cloud.paged, cloud.declared);
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
-             r.points_in, r.points_out, r.duplicates, r.speckle, cloud.splats ? 0 : cloud.dropped);
-  if (cloud.on_demand) {
+             cloud.paged ? r.points_out + r.duplicates + r.speckle : r.points_in, r.points_out,
+             r.duplicates, r.speckle, cloud.splats ? 0 : cloud.dropped);
+  if (cloud.on_demand && !cloud.paged) {
     const double share = cloud.on_demand->share();
     report.data["prepared_share"] = share;
     report.row("so far", "[{?}{} % of the cloud when the run ended]", share < 1,

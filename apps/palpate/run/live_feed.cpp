@@ -2,12 +2,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
+#include <thread>
 #include <utility>
 
 #include "apps/palpate/run/run.hpp"
 
 namespace palpate::app {
+
+namespace {
+
+// Between looks at where tools are. A hand of 1 m/s goes 5 mm, less than a block; judgement.
+constexpr std::chrono::milliseconds kIdle{5};
+
+}  // namespace
 
 LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Recorder* recorder)
     : loaded_(loaded), clock_(clock), start_(start) {
@@ -29,7 +38,9 @@ void LiveFeed::prepare(std::size_t index, const std::stop_token& stop) {
   OnDemand& cloud = *loaded_.sources[index].on_demand;
   Source& source = loaded_.scene.source(index);
   try {
-    while (!cloud.done() && !stop.stop_requested()) cloud.advance(source, clock_.now());
+    while (!cloud.done() && !stop.stop_requested()) {
+      if (!cloud.advance(source, clock_.now())) std::this_thread::sleep_for(kIdle);
+    }
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
     problem_ = fmt::format("{}: {}; what is there stays", source.name(), error.what());

@@ -273,6 +273,12 @@ void Preparer::change_all(const Preparation& wanted) {
 }
 
 void Preparer::prepare(const Preparation& wanted) {
+  for (const LoadedSource& loaded : run_.loaded.sources) {
+    if (!loaded.paged) continue;
+    throw Error(
+        fmt::format("{} is read from disk as it was opened; start again to prepare it otherwise",
+                    loaded.plan.argument.name));
+  }
   change_all(wanted);
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
     const LoadedSource& loaded = run_.loaded.sources[i];

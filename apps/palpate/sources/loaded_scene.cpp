@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/sources/large_cloud.hpp"
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -82,19 +83,9 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
-// The blocks at the middle of a large cloud are touchable at once; the rest follows in the run.
-const Source& add_on_demand(Scene& scene, const std::string& name,
-                            const std::shared_ptr<const PointCloud>& cloud, LoadedSource& result) {
-  const SourceOptions& options = result.plan.options;
-  result.on_demand = std::make_unique<OnDemand>(cloud, options.prepare, options.T_world_sensor);
-  Source& source = scene.add(name, options);
-  const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
-  while (is_empty() && !result.on_demand->done()) result.on_demand->advance(source, 0);
-  return source;
-}
-
 void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
+  if (add_store(scene, options, result)) return;
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   check_voxel(loaded, plan.options.prepare);
@@ -115,7 +106,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
       fmt::format("preparing {} ({} points)", loaded.argument.name, grouped(cloud->size())));
   const auto start = WallClock::now();
   const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
-  const Source& source = large ? add_on_demand(scene, loaded.argument.name, cloud, result)
+  const Source& source = large ? add_on_demand(scene, cloud, result)
                                : scene.add(loaded.argument.name, *cloud, plan.options);
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();

@@ -45,6 +45,7 @@ struct LoadedSource {
   UnitsGuess units;                     ///< of a file that was read without --scale and --length
   double prepare_seconds = 0;           ///< wall time of everything between reading and touching
   std::unique_ptr<OnDemand> on_demand;  ///< of a large cloud whose blocks become ready in the run
+  bool paged = false;                   ///< it is a store on disk, of which memory holds a part
   std::shared_ptr<const PointCloud> cloud;  ///< where it may have to be prepared again
   std::shared_ptr<const DepthFrame> image;  ///< the same of a depth image
 

@@ -31,6 +31,15 @@ std::vector<SimulatedStream> make_streams(Run& run) {
   return streams;
 }
 
+// Reads all that tools may need, however long that takes: a run repeats bit for bit.
+void read_around_tools(Run& run, double time, const Interruption& interruption) {
+  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
+    OnDemand* const cloud = run.loaded.sources[i].on_demand.get();
+    if (cloud == nullptr) continue;
+    while (!interruption.asked() && cloud->advance(run.loaded.scene.source(i), time)) continue;
+  }
+}
+
 }  // namespace
 
 bool run_simulated(Run& run, const EachStep& each) {
@@ -48,6 +57,7 @@ bool run_simulated(Run& run, const EachStep& each) {
       throw Error(fmt::format("device '{}' failed: {}", device.info().name, device.reason()));
     }
     for (SimulatedStream& stream : streams) stream.advance(state.time);
+    read_around_tools(run, state.time, interruption);
     if (interruption.asked()) break;
     const double start = thread_cpu_seconds();
     const ServoState& step = servo.step(state, state.time);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
 
 namespace palpate {
 
@@ -78,6 +80,11 @@ struct CloudFile {
 /// The paths of an E57 file's scans that hold points, if it has several: "house.e57#1" and so on.
 /// Any other path alone. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path);
+
+/// Opens a COPC file to be read node by node. Coordinates times `scale` are metres. null: it is no
+/// store. @throws Error as read_cloud_file() does.
+[[nodiscard]] std::shared_ptr<const PointStore> open_store(const std::filesystem::path& path,
+                                                           double scale = 1);
 
 /// The cloud alone.
 [[nodiscard]] PointCloud read_cloud(const std::filesystem::path& path,

@@ -1,0 +1,76 @@
+// Makes the first blocks of a large cloud, or of a store on disk, a surface.
+#include "apps/palpate/sources/large_cloud.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "apps/palpate/cli/terminal.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/io/files.hpp"
+
+namespace palpate::app {
+namespace {
+
+// Bytes that a point takes while a cloud is read and prepared as a whole. Measured: 10.6 million
+// points of an airborne survey took 2.1 GB.
+constexpr double kWholeBytes = 200;
+
+const Source& first_surface(Scene& scene, LoadedSource& result) {
+  Source& source = scene.add(result.plan.argument.name, result.plan.options);
+  const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
+  while (is_empty() && result.on_demand->advance(source, 0)) continue;
+  return source;
+}
+
+// A run may need more than what is around tools.
+void refuse_needs_of_whole(const LoadedSource& result, const LoadOptions& options) {
+  const SourcePlan& plan = result.plan;
+  const char* needs = nullptr;
+  if (plan.options.prepare.material_from_intensity) {
+    needs = "--soft-stiffness and --soft-friction need";
+  }
+  if (plan.reading.length) needs = "--length needs";
+  if (plan.options.prepare.paper) needs = "the paper's preparation needs";
+  if (options.keep_clouds) needs = "--record needs";
+  if (needs == nullptr) return;
+  throw Error(
+      fmt::format("{} all of {} in memory, which is more than --cache allows; remove it, or give a "
+                  "larger --cache",
+                  needs, plan.argument.path));
+}
+
+}  // namespace
+
+const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud>& cloud,
+                            LoadedSource& result) {
+  const SourceOptions& options = result.plan.options;
+  result.on_demand = std::make_unique<OnDemand>(cloud, options.prepare, options.T_world_sensor);
+  return first_surface(scene, result);
+}
+
+bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
+  using Clock = std::chrono::steady_clock;
+  const SourcePlan& plan = result.plan;
+  const auto begin = Clock::now();
+  const auto store = open_store(plan.argument.path, plan.reading.scale);
+  if (!store) return false;
+  const PointStore::Layout& layout = store->layout();
+  const double whole = kWholeBytes * static_cast<double>(layout.points);
+  if (whole <= static_cast<double>(plan.cache)) return false;
+  refuse_needs_of_whole(result, options);
+  const Waiting waiting(
+      fmt::format("opening {} ({} points)", plan.argument.name, grouped(layout.points)));
+  result.format = layout.format;
+  result.declared = layout.points;
+  const auto opened = Clock::now();
+  result.read_seconds = std::chrono::duration<double>(opened - begin).count();
+  result.on_demand = std::make_unique<OnDemand>(store, plan.options.prepare,
+                                                plan.options.T_world_sensor, plan.cache);
+  result.paged = true;
+  result.prepared = first_surface(scene, result).report();
+  result.prepare_seconds = std::chrono::duration<double>(Clock::now() - opened).count();
+  return true;
+}
+
+}  // namespace palpate::app
