@@ -21,7 +21,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 #include "memory_file.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"

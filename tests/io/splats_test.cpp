@@ -1,5 +1,5 @@
 // Splats in each format: what is read is what was written, and damage is refused.
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

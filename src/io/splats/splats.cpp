@@ -1,5 +1,5 @@
 // Makes a cloud of the splats of a file, and reads .splat files.
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 #include <fmt/format.h>
 
