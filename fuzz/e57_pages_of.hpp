@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "io/e57_pages.hpp"
+#include "io/e57/pages.hpp"
 
 namespace palpate::fuzz {
 

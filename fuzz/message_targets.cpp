@@ -1,6 +1,5 @@
 // Bytes as messages of every type, and what is made of those that decode.
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 #include "message/cdr.hpp"
@@ -17,20 +16,16 @@ namespace {
 using namespace message;
 using Bytes = std::span<const std::uint8_t>;
 
-void keep(bool promise, const char* name) {
-  if (!promise) throw std::logic_error(name);
-}
-
 void check(const auto&) {}
 
 void check_frame(const auto& image) {
   DepthFrame frame;
   read_depth(image, frame);
-  keep(frame.camera.width > 0 && frame.camera.height > 0, "an image without pixels");
-  keep(frame.depth.size() == static_cast<std::size_t>(frame.camera.width) *
-                                 static_cast<std::size_t>(frame.camera.height),
-       "depths that are not one a pixel");
-  for (const float z : frame.depth) keep(std::isfinite(z) && z >= 0, "a depth");
+  expect(frame.camera.width > 0 && frame.camera.height > 0, "an image without pixels");
+  expect(frame.depth.size() == static_cast<std::size_t>(frame.camera.width) *
+                                   static_cast<std::size_t>(frame.camera.height),
+         "depths that are not one a pixel");
+  for (const float z : frame.depth) expect(std::isfinite(z) && z >= 0, "a depth");
 }
 
 void check(const Image& image) {
@@ -45,13 +40,13 @@ void check(const PointCloud2& points) {
   const PointCloud cloud = cloud_of(points);
   const std::size_t n = cloud.size();
   const auto fits = [n](const auto& column) { return column.empty() || column.size() == n; };
-  keep(n > 0, "a cloud without points");
-  keep(n <= points.data.size(), "more points than bytes");
-  keep(fits(cloud.normals) && fits(cloud.colors) && fits(cloud.intensities) && fits(cloud.pixels),
-       "column lengths");
-  for (const auto& p : cloud.positions) keep(p.allFinite(), "a position that is not finite");
+  expect(n > 0, "a cloud without points");
+  expect(n <= points.data.size(), "more points than bytes");
+  expect(fits(cloud.normals) && fits(cloud.colors) && fits(cloud.intensities) && fits(cloud.pixels),
+         "column lengths");
+  for (const auto& p : cloud.positions) expect(p.allFinite(), "a position that is not finite");
   for (const std::uint32_t pixel : cloud.pixels) {
-    keep(pixel < std::uint64_t{cloud.width} * cloud.height, "a pixel outside of the image");
+    expect(pixel < std::uint64_t{cloud.width} * cloud.height, "a pixel outside of the image");
   }
 }
 
@@ -60,12 +55,12 @@ void check(const message::CameraInfo& info) {
     try {
       const CameraModel camera = camera_of(info, rectified);
       const Pinhole& p = camera.pinhole;
-      keep(p.fx > 0 && p.fy > 0, "a focal length");
-      for (const double each : {p.fx, p.fy, p.cx, p.cy}) keep(std::isfinite(each), "a pinhole");
-      keep(camera.width >= 0 && camera.height >= 0, "a size");
+      expect(p.fx > 0 && p.fy > 0, "a focal length");
+      for (const double each : {p.fx, p.fy, p.cx, p.cy}) expect(std::isfinite(each), "a pinhole");
+      expect(camera.width >= 0 && camera.height >= 0, "a size");
       const auto& d = camera.distortion;
       for (const double each : {d.k1, d.k2, d.k3, d.p1, d.p2}) {
-        keep(std::isfinite(each), "a lens that is not finite");
+        expect(std::isfinite(each), "a lens that is not finite");
       }
     } catch (const Error&) {
       continue;
@@ -80,7 +75,7 @@ void check(const TFMessage& told) {
   for (const TransformStamped& each : told.transforms) {
     const double stamp = to_seconds(each.header.stamp);
     const auto found = known.find(each.header.frame_id, each.child_frame_id, stamp);
-    keep(!found || found->matrix().allFinite(), "a pose that is not finite");
+    expect(!found || found->matrix().allFinite(), "a pose that is not finite");
   }
 }
 
@@ -92,12 +87,12 @@ void check_type(Bytes bytes) {
     decode(bytes, message);
     std::vector<std::uint8_t> once;
     encode(message, once);
-    keep(once.size() <= bytes.size() + 8 * bytes.size(), "a message that grows");
+    expect(once.size() <= bytes.size() + 8 * bytes.size(), "a message that grows");
     T again;
     decode(once, again);
     std::vector<std::uint8_t> twice;
     encode(again, twice);
-    keep(once == twice, "a message that is another when encoded");
+    expect(once == twice, "a message that is another when encoded");
     check(message);
   } catch (const Error&) {
     return;  // what a reader says to bytes that it cannot use

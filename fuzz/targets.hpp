@@ -1,7 +1,9 @@
+// Declares the fuzz targets.
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
 namespace palpate::fuzz {
@@ -13,6 +15,14 @@ namespace palpate::fuzz {
 /// the promises of PointCloud and survives being written and read again.
 /// @throws std::logic_error for a broken promise.
 void run_target(std::string_view name, std::span<const std::byte> bytes);
+
+/// @throws std::logic_error for a broken promise.
+inline void expect(bool promise, const char* name) {
+  if (!promise) throw std::logic_error(name);
+}
+
+/// The targets of what devices and remote cameras send. @return whether `name` is one of them
+[[nodiscard]] bool run_device_target(std::string_view name, std::span<const std::byte> bytes);
 
 /// The target "cdr": messages of every type of ours. @throws std::logic_error for a broken promise.
 void check_messages(std::span<const std::byte> bytes);

@@ -12,7 +12,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 

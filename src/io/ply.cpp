@@ -7,9 +7,9 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/mesh.hpp"
+#include "io/mesh/mesh.hpp"
 #include "io/ply_rows.hpp"
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 namespace palpate::io {
 namespace {

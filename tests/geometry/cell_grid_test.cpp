@@ -157,6 +157,16 @@ TEST(CellGrid, HoldsNothingOneOrEqualPoints) {
   }
 }
 
+TEST(CellGrid, FindsTheNearestOfManyPointsAtFewPlaces) {
+  Points points;
+  for (int i = 0; i < 2000; ++i) points.push_back(Vector3f(static_cast<float>(i % 5), 0, 0));
+  const CellGrid grid(points);
+  expect_sound(grid, points);
+  for (const std::size_t k : {1, 9, 400, 401, 1300}) {
+    for (const float x : {0.0f, 1.9f, 2.0f, 2.5f}) expect_answers(grid, {x, 0, 0}, 1, k);
+  }
+}
+
 TEST(CellGrid, FollowsDensityOverTwelveOrdersOfMagnitude) {
   Clouds clouds;
   Points points;

@@ -7,71 +7,17 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <limits>
 
-#include "io/laz/laz_file.hpp"
-#include "io/laz_encoder.hpp"
-#include "io/laz_survey.hpp"
+#include "io/copc_bytes.hpp"
 
 namespace palpate {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr std::size_t kInfo = 375 + 54;  // the record's contents, in a file of version 1.4
-
-struct Entry {
-  std::array<std::int32_t, 4> key;  // level, x, y, z
-  std::uint64_t place;
-  std::int32_t bytes;
-  std::int32_t points;
-};
-
 io::Input input_of(const std::string& bytes, const ReadOptions& options) {
   return {std::as_bytes(std::span(bytes)), "a.copc.laz", options};
-}
-
-void append_page(std::string& bytes, std::span<const Entry> entries) {
-  for (const Entry& entry : entries) {
-    for (const std::int32_t number : entry.key) append(bytes, number);
-    append(bytes, entry.place);
-    append(bytes, entry.bytes);
-    append(bytes, entry.points);
-  }
-}
-
-// A file of five chunks under a root, whose last two are listed on a page of their own. `change`
-// may spoil the entries.
-std::string copc_bytes(const std::function<void(std::vector<Entry>&)>& change = {}) {
-  std::string record(54 + 160, '\0');
-  record.replace(2, 4, "copc");
-  overwrite<std::uint16_t>(record, 18, 1);
-  overwrite<std::uint16_t>(record, 20, 160);
-  const double octree[] = {10, 20, 30, 64, 2};
-  for (std::size_t i = 0; i < 5; ++i) overwrite(record, 54 + 8 * i, octree[i]);
-  const std::string las = survey_of({.format = 7, .points = 2000});
-  std::string bytes = laz_of(las, {.chunk = 400, .record = record});
-  const ReadOptions options;
-  const io::Input input = input_of(bytes, options);
-  const auto chunks = io::laz::read_chunk_table(input, io::read_las_header(input));
-  const std::array<std::int32_t, 4> keys[] = {
-      {0, 0, 0, 0}, {1, 0, 1, 1}, {1, 1, 0, 0}, {2, 2, 1, 0}, {3, 5, 3, 1}};
-  std::vector<Entry> entries;
-  for (std::size_t i = 0; i < 5; ++i) {
-    entries.push_back({keys[i], chunks[i].place, static_cast<std::int32_t>(chunks[i].bytes),
-                       static_cast<std::int32_t>(chunks[i].points)});
-  }
-  entries.push_back({{1, 1, 1, 1}, 0, 0, 0});  // a node without points
-  entries.push_back({{2, 2, 1, 0}, bytes.size(), 64, -1});
-  std::swap(entries[3], entries[5]);
-  std::swap(entries[4], entries[6]);  // now root, two, empty, page; the page's two
-  if (change) change(entries);
-  append_page(bytes, std::span(entries).subspan(5));
-  overwrite<std::uint64_t>(bytes, kInfo + 40, bytes.size());
-  overwrite<std::uint64_t>(bytes, kInfo + 48, 32 * 5);
-  append_page(bytes, std::span(entries).first(5));
-  return bytes;
 }
 
 std::optional<io::Copc> read(const std::string& bytes) {
@@ -137,7 +83,7 @@ TEST(Copc, OtherFilesHaveNoOctree) {
 }
 
 TEST(Copc, RefusesNodesThatCannotBe) {
-  const auto spoilt = [](const std::function<void(std::vector<Entry>&)>& change) {
+  const auto spoilt = [](const std::function<void(std::vector<CopcEntry>&)>& change) {
     return refusal_of(copc_bytes(change));
   };
   EXPECT_EQ(spoilt([](auto&) {}), "no error");
@@ -159,7 +105,7 @@ TEST(Copc, RefusesNodesThatCannotBe) {
 TEST(Copc, RefusesAnOctreeWithoutSizeOrRoot) {
   const auto broken = [](std::size_t offset, auto value) {
     std::string bytes = copc_bytes();
-    overwrite(bytes, kInfo + offset, value);
+    overwrite(bytes, kCopcInfo + offset, value);
     return refusal_of(bytes);
   };
   EXPECT_THAT(broken(24, 0.0), HasSubstr("without a finite size"));
@@ -171,8 +117,8 @@ TEST(Copc, RefusesAnOctreeWithoutSizeOrRoot) {
 
 // Each node may have as many points as it says, but not all of them together.
 TEST(Copc, HoldsNoMorePointsInAllThanItsBytesCan) {
-  std::string bytes = copc_bytes([](std::vector<Entry>& entries) {
-    for (Entry& entry : entries) {
+  std::string bytes = copc_bytes([](std::vector<CopcEntry>& entries) {
+    for (CopcEntry& entry : entries) {
       if (entry.points > 0) entry.points = 2'000'000;
     }
   });

@@ -1,48 +1,29 @@
 // Another reader, web-e57 (npm), finds the same points in the files that the tests write.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <sstream>
 
 #include "io/e57_bytes.hpp"
-#include "support/folder.hpp"
+#include "support/peer_test.hpp"
 
 namespace palpate {
 namespace {
-
-std::string contents_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 struct PeerPoint {
   Eigen::Vector3d position;
   std::array<int, 3> color{};
 };
 
-class E57Peer : public testing::Test {
+class E57Peer : public test::PeerTest {
  protected:
-  void SetUp() override {
-    if (std::system("node --version >/dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "node is absent (Debian: nodejs)";
-    }
-    if (!std::filesystem::exists(std::filesystem::path(PALPATE_PEER) / "node_modules/web-e57")) {
-      GTEST_SKIP() << "tests/peer/node_modules lacks web-e57: run npm ci in tests/peer";
-    }
-  }
+  E57Peer() : PeerTest("web-e57") {}
 
   [[nodiscard]] std::vector<PeerPoint> read(const std::string& bytes) const {
     folder_.write("a.e57", bytes);
-    const std::string command = fmt::format("cd {} && node e57.mjs {} >{} 2>{}", PALPATE_PEER,
-                                            folder_ / "a.e57", folder_ / "out", folder_ / "err");
-    EXPECT_EQ(std::system(command.c_str()), 0) << contents_of(folder_ / "err");
     std::vector<PeerPoint> points;
-    std::istringstream lines(contents_of(folder_ / "out"));
+    std::istringstream lines(run("e57.mjs", folder_ / "a.e57"));
     for (std::string line; std::getline(lines, line);) {
       std::istringstream row(line);
       PeerPoint& point = points.emplace_back();
@@ -67,8 +48,6 @@ class E57Peer : public testing::Test {
       for (std::size_t k = 0; k < 3; ++k) ASSERT_EQ(theirs[i].color[k], ours.cloud.colors[i][k]);
     }
   }
-
-  test::Folder folder_;
 };
 
 constexpr std::size_t kCount = 3000;

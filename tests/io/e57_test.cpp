@@ -7,9 +7,9 @@
 #include <numbers>
 #include <random>
 
+#include "io/e57/contents.hpp"
+#include "io/e57/packets.hpp"
 #include "io/e57_bytes.hpp"
-#include "io/e57_contents.hpp"
-#include "io/e57_packets.hpp"
 #include "support/folder.hpp"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include "io/formats.hpp"
 #include "io/laz_encoder.hpp"
 #include "io/laz_survey.hpp"
-#include "support/folder.hpp"
+#include "support/peer_test.hpp"
 
 namespace palpate {
 namespace {
@@ -20,16 +20,9 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-class LazPeer : public testing::Test {
+class LazPeer : public test::PeerTest {
  protected:
-  void SetUp() override {
-    if (std::system("node --version >/dev/null 2>&1") != 0) {
-      GTEST_SKIP() << "node is absent (Debian: nodejs)";
-    }
-    if (!fs::exists(fs::path(PALPATE_PEER) / "node_modules/laz-perf")) {
-      GTEST_SKIP() << "tests/peer/node_modules is absent: run npm ci in tests/peer";
-    }
-  }
+  LazPeer() : PeerTest("laz-perf") {}
 
   // The records that laz-perf reads from LAZ files.
   [[nodiscard]] std::vector<std::string> records_of(const std::vector<std::string>& files) const {
@@ -38,17 +31,13 @@ class LazPeer : public testing::Test {
       folder_.write(fmt::format("{}.laz", i), files[i]);
       names += fmt::format(" {}", folder_ / fmt::format("{}.laz", i));
     }
-    const std::string command =
-        fmt::format("cd {} && node laz.mjs {} 2>{}", PALPATE_PEER, names, folder_ / "err");
-    EXPECT_EQ(std::system(command.c_str()), 0) << bytes_of(folder_ / "err");
+    (void)run("laz.mjs", names);
     std::vector<std::string> records;
     for (std::size_t i = 0; i < files.size(); ++i) {
-      records.push_back(bytes_of(folder_ / fmt::format("{}.laz.records", i)));
+      records.push_back(folder_.read(fmt::format("{}.laz.records", i)));
     }
     return records;
   }
-
-  test::Folder folder_;
 };
 
 // Every point is that of the record which is not compressed.

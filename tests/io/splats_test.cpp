@@ -1,5 +1,5 @@
 // Splats in each format: what is read is what was written, and damage is refused.
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -132,6 +132,17 @@ TEST(Splats, ThatAreNotFiniteAreDroppedAndCounted) {
   EXPECT_EQ(file.dropped, 4u);
   for (Splat& splat : splats) splat.rotation.coeffs().setZero();
   EXPECT_THAT(refusal(test::splat_ply(splats), "a.ply"), HasSubstr("none of the 4000"));
+}
+
+TEST(Splats, OfRotationsOfAnyLengthAreTurnedByThem) {
+  const Eigen::Vector4f turn(0.1F, -0.7F, 0.5F, 0.5F);
+  io::SplatFile file;
+  for (const float length : {1e-42F, 1e-30F, 1.F, 1e30F, 3e38F}) {
+    file.add({.rotation = Eigen::Quaternionf(length * turn)}, 1);
+    ASSERT_EQ(file.dropped, 0U) << length;
+    const float error = (file.splats.back().rotation.coeffs() - turn).norm();
+    EXPECT_LT(error, length < 1e-37F ? 1e-2F : 1e-6F) << length;
+  }
 }
 
 TEST(Splats, ThatShowNothingAreRefused) {

@@ -3,6 +3,8 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { openPage, until } from "./browser.mjs";
+import { e57 } from "./e57.mjs";
+import { felt, listen } from "./heard.mjs";
 import { startProgram } from "./real_program.mjs";
 
 /** A ball, as XYZ; its radius in m. */
@@ -23,6 +25,12 @@ function cube() {
   return [...corners, ...faces].join("\n");
 }
 
+/** A floor as E57: three scans of 6 x 6 cm, each from 1 m above its middle. */
+function floor() {
+  const points = Array.from({ length: 31 * 31 }, (_, i) => [0.002 * (i % 31) - 0.03, 0.002 * Math.floor(i / 31) - 0.03, -1]);
+  return e57([0, 0.04, 0.08].map((x) => ({ points, scanner: [x, 0, 1] })));
+}
+
 const seed = (path) => readFile(new URL(`../../../fuzz/corpus/${path}`, import.meta.url));
 
 /** As a person does who drags a file from elsewhere over the page: first it is over it, then it is let go. */
@@ -39,7 +47,7 @@ const said = (page, words) => until(words, async () => (await page.locator("#not
 
 export async function opens(browser) {
   const program = await startProgram(["touch", "table.xyz", "--view", "--port", "0"]);
-  const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" });
+  const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" }, listen);
   const scene = () => page.locator("#scene").innerText();
   const connected = () => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
   try {
@@ -60,6 +68,13 @@ export async function opens(browser) {
     assert.equal(await scene(), "Größe 点 (1)", "of the same name");
     await connected();
     await until("it is felt", async () => Number(await page.locator("#force").innerText()) > 0);
+    await page.setInputFiles("#open-file", { name: "house.e57", mimeType: "application/octet-stream", buffer: floor() });
+    await until("a source of each scan", async () => (await scene()) === "house-1 + house-2 + house-3");
+    await connected();
+    await until("its floor is felt", async () => {
+      const { force, proxy } = await felt(page);
+      return force > 0 && Math.hypot(...proxy) < 0.15; // the ball before is larger
+    });
     const others = { "cube.obj": Buffer.from(cube()), "survey.laz": await seed("laz/format_8"), "room.spz": await seed("spz/version3") };
     for (const [name, buffer] of Object.entries(others)) {
       await page.setInputFiles("#open-file", { name, mimeType: "application/octet-stream", buffer });

@@ -1,5 +1,5 @@
 // Makes a cloud of the splats of a file, and reads .splat files.
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,8 @@ void SplatFile::add(Splat splat, double scale) {
   const auto factor = static_cast<float>(scale);
   splat.position *= factor;
   splat.sigma *= factor;
-  const float length = splat.rotation.norm();
+  const Eigen::Vector4d turn = splat.rotation.coeffs().cast<double>();  // squares of floats fit
+  const double length = turn.norm();
   const bool fine = is_usable(splat.position.cast<double>()) &&
                     is_usable(splat.sigma.cast<double>()) && (splat.sigma.array() >= 0).all() &&
                     std::isfinite(splat.opacity) && std::isfinite(length) && length > 0;
@@ -24,7 +25,7 @@ void SplatFile::add(Splat splat, double scale) {
     ++dropped;
     return;
   }
-  splat.rotation.coeffs() /= length;
+  splat.rotation.coeffs() = (turn / length).cast<float>();
   splat.opacity = std::clamp(splat.opacity, 0.F, 1.F);
   splats.push_back(splat);
 }

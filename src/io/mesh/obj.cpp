@@ -8,7 +8,7 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/mesh.hpp"
+#include "io/mesh/mesh.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

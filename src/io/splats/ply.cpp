@@ -8,7 +8,7 @@
 
 #include "io/formats.hpp"
 #include "io/ply_rows.hpp"
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 
 namespace palpate::io {
 namespace {

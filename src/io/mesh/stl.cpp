@@ -7,7 +7,7 @@
 
 #include "io/formats.hpp"
 #include "io/input.hpp"
-#include "io/mesh.hpp"
+#include "io/mesh/mesh.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

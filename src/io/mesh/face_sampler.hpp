@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/cloud_builder.hpp"
-#include "io/mesh.hpp"
+#include "io/mesh/mesh.hpp"
 #include "palpate/geometry/shapes.hpp"
 
 namespace palpate::io {

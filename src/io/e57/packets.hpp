@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "io/e57_contents.hpp"
-#include "io/e57_pages.hpp"
+#include "io/e57/contents.hpp"
+#include "io/e57/pages.hpp"
 #include "io/input.hpp"
 
 namespace palpate::io {

@@ -1,5 +1,5 @@
 // Reads the pages of E57 files and checks their CRCs.
-#include "io/e57_pages.hpp"
+#include "io/e57/pages.hpp"
 
 #include <fmt/format.h>
 

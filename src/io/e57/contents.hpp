@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/e57_pages.hpp"
+#include "io/e57/pages.hpp"
 #include "io/input.hpp"
 
 namespace palpate::io {

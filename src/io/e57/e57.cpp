@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "io/cloud_builder.hpp"
-#include "io/e57_contents.hpp"
-#include "io/e57_packets.hpp"
-#include "io/e57_pages.hpp"
+#include "io/e57/contents.hpp"
+#include "io/e57/packets.hpp"
+#include "io/e57/pages.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
 

@@ -1,5 +1,5 @@
 // Decodes the packets of an E57 scan.
-#include "io/e57_packets.hpp"
+#include "io/e57/packets.hpp"
 
 #include <fmt/format.h>
 

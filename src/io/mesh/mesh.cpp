@@ -1,5 +1,5 @@
 // Decides how a mesh is felt, and samples its faces into points.
-#include "io/mesh.hpp"
+#include "io/mesh/mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/numbers.hpp"
-#include "io/face_sampler.hpp"
+#include "io/mesh/face_sampler.hpp"
 
 namespace palpate::io {
 namespace {

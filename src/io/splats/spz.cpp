@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "io/file_bytes.hpp"
-#include "io/splats.hpp"
+#include "io/splats/splats.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {

@@ -1,5 +1,5 @@
 // Samples faces evenly, by lines through a lattice.
-#include "io/face_sampler.hpp"
+#include "io/mesh/face_sampler.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

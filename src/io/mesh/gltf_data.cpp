@@ -1,5 +1,5 @@
 // Finds the data that a glTF file names: in itself, in its binary chunk, in files beside it.
-#include "io/gltf_data.hpp"
+#include "io/mesh/gltf_data.hpp"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "io/formats.hpp"
-#include "io/gltf_data.hpp"
 #include "io/input.hpp"
-#include "io/mesh.hpp"
+#include "io/mesh/gltf_data.hpp"
+#include "io/mesh/mesh.hpp"
 
 namespace palpate::io {
 namespace {

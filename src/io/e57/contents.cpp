@@ -1,6 +1,6 @@
 // Reads the header and the XML of E57 files: which scans there are, and how their points are
 // stored.
-#include "io/e57_contents.hpp"
+#include "io/e57/contents.hpp"
 
 #include <fmt/format.h>
 
