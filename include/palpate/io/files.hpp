@@ -58,6 +58,8 @@ struct CloudFile {
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
 ///
+/// A folder with the metadata.json of a Potree 2.0 store (or that file) is read whole.
+///
 /// Faces are sampled into points, unless the vertices lie as densely and evenly as those of a scan.
 /// Gaussian splats (PLY, compressed PLY, .splat, .spz) become points on the surface that they show,
 /// with normals and colours. All scans of an E57 file are joined in the file's frame; "house.e57#2"
