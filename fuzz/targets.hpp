@@ -4,6 +4,8 @@
 #include <span>
 #include <string_view>
 
+#include "palpate/io/files.hpp"
+
 namespace palpate::fuzz {
 
 /// The readers that are fuzzed; each has its seeds in corpus/NAME.
@@ -16,5 +18,9 @@ void run_target(std::string_view name, std::span<const std::byte> bytes);
 
 /// The target "cdr": messages of every type of ours. @throws std::logic_error for a broken promise.
 void check_messages(std::span<const std::byte> bytes);
+
+/// The target "potree": a store whose files follow one another in `bytes`, behind the sizes of the
+/// first two (16 bits each). @throws std::logic_error for a broken promise.
+[[nodiscard]] CloudFile read_potree(std::span<const std::byte> bytes);
 
 }  // namespace palpate::fuzz

@@ -66,8 +66,7 @@ struct stat status_of(int descriptor, const std::string& name) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) fail_open(name, errno);
   if (S_ISDIR(status.st_mode)) {
-    throw Error(name +
-                ": is a folder and holds no metadata.json of a Potree store. Give a file in it.");
+    throw Error(name + ": is a folder, not a file. Give a file in it.");
   }
   return status;
 }

@@ -128,7 +128,10 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
 CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
   const bool piped = path == "-";
   try {
-    if (is_potree(path)) return read_potree({{}, path.string(), options});
+    std::error_code unknown;
+    if (is_potree(path) || std::filesystem::is_directory(path, unknown)) {
+      return read_potree({{}, path.string(), options});
+    }
     const bool is_file = std::filesystem::exists(path);
     const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
     if (piped) return read_cloud_bytes(bytes.span(), "standard input", options);

@@ -34,25 +34,28 @@ std::optional<std::size_t> free_memory() {
 }
 
 void check_memory(const Input& input, std::size_t points) {
-  const std::optional<std::size_t> free = free_memory();
-  if (!free || points <= *free / kPointMemory) return;
+  const std::optional<std::size_t> available = free_memory();
+  if (!available || points <= *available / kPointMemory) return;
   const double needed = static_cast<double>(points) * static_cast<double>(kPointMemory);
   fail(input,
        fmt::format("holds {} points and would need about {:.1f} GB of memory; {:.1f} GB are free",
-                   points, needed / kGigabyte, static_cast<double>(*free) / kGigabyte),
+                   points, needed / kGigabyte, static_cast<double>(*available) / kGigabyte),
        "Make a store of fewer points, or use a machine with more memory");
 }
 
 template <class T>
-void append(std::vector<T>& all, const std::vector<T>& part) {
+void append(std::vector<T>& all, const std::vector<T>& part, std::size_t total) {
+  if (part.empty()) return;
+  all.reserve(total);
   all.insert(all.end(), part.begin(), part.end());
 }
 
-void append(PointCloud& cloud, const PointCloud& part) {
-  append(cloud.positions, part.positions);
-  append(cloud.normals, part.normals);
-  append(cloud.colors, part.colors);
-  append(cloud.intensities, part.intensities);
+// `total`: points that there will be.
+void append(PointCloud& cloud, const PointCloud& part, std::size_t total) {
+  append(cloud.positions, part.positions, total);
+  append(cloud.normals, part.normals, total);
+  append(cloud.colors, part.colors, total);
+  append(cloud.intensities, part.intensities, total);
 }
 
 // A column that some points lack is none.
@@ -92,12 +95,13 @@ CloudFile read_whole(const PointStore& store, const Input& input) {
   file.format = layout.format;
   file.declared = layout.points;
   file.cloud.origin = layout.origin;
-  file.cloud.positions.reserve(layout.points);
-  Progress progress(input.options, layout.points);
+  Progress progress(input.options, layout.nodes.size());
   for (std::size_t first = 0; first < layout.nodes.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, layout.nodes.size() - first);
-    for (const PointCloud& part : read_some(store, first, count)) append(file.cloud, part);
-    progress.at(file.cloud.size());
+    for (const PointCloud& part : read_some(store, first, count)) {
+      append(file.cloud, part, layout.points);
+    }
+    progress.at(first + count);
   }
   drop_incomplete(file.cloud);
   file.dropped = file.declared - file.cloud.size();

@@ -3,6 +3,7 @@
 
 #include <brotli/encode.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <deque>
 #include <memory>
@@ -182,14 +183,15 @@ class PotreeWriter {
   void describe(std::size_t points, std::size_t first_chunk) {
     std::string list;
     for (const WrittenAttribute& each : attributes_) {
-      std::string range;
-      if (each.name == "rgb" && writing_.largest_color > 0) {
-        range = fmt::format(R"(, "max": [0, {}, 1])", writing_.largest_color);
-      }
+      // Zeros where nothing is known: viewers want the ranges.
+      std::vector<double> most(static_cast<std::size_t>(each.numbers));
+      const std::string least = fmt::format("{}", fmt::join(most, ", "));
+      if (each.name == "rgb") most[1] = writing_.largest_color;
       list += fmt::format(
-          R"({}{{"name": "{}", "size": {}, "numElements": {}, "elementSize": {}, "type": "{}"{}}})",
+          R"({}{{"name": "{}", "size": {}, "numElements": {}, "elementSize": {}, "type": "{}", )"
+          R"("min": [{}], "max": [{}]}})",
           list.empty() ? "" : ", ", each.name, each.numbers * each.size, each.numbers, each.size,
-          each.type, range);
+          each.type, least, fmt::join(most, ", "));
     }
     const auto& [x, y, z] = kPotreeOffset;
     files_.metadata = fmt::format(

@@ -140,8 +140,9 @@ std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale
   const fs::path folder = path.filename() == kMetadata ? path.parent_path() : path;
   std::error_code unknown;
   if (!fs::is_regular_file(folder / kMetadata, unknown)) {
-    throw Error(fmt::format("{}: holds no metadata.json. Give the folder of a Potree store.",
-                            folder.string()));
+    throw Error(fmt::format(
+        "{}: is a folder and holds no metadata.json, so it is no Potree store. Give a file in it.",
+        folder.string()));
   }
   const ReadOptions options;
   const auto input_of = [&](const Bytes& bytes, const char* name) {
