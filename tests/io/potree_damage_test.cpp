@@ -75,7 +75,8 @@ TEST_F(PotreeDamage, OfTheMetadataIsNamed) {
   EXPECT_THAT(with("\"points\": 5000", "\"points\": 1e400"), HasSubstr("its JSON is broken"));
   EXPECT_THAT(with("[0.001,", "[0,"), HasSubstr("must be above zero"));
   EXPECT_THAT(with("[0.001,", "[\"x\","), HasSubstr("no number at scale/0"));
-  EXPECT_THAT(with("\"spacing\": ", "\"spacing\": -"), HasSubstr("must be above zero"));
+  EXPECT_THAT(with("\"spacing\": ", "\"spacing\": -"), HasSubstr("a spacing of -8.192 in a cube"));
+  EXPECT_THAT(with("\"spacing\": ", "\"spacing\": 9999"), HasSubstr("a spacing of 9999"));
   EXPECT_THAT(with("\"max\": [4", "\"max\": [8"), HasSubstr("the boundingBox is no cube"));
   EXPECT_THAT(with("\"offset\"", "\"offsets\""), HasSubstr("no number at offset/0"));
   EXPECT_THAT(with("\"offset\": [400000", "\"offset\": [1e308"), HasSubstr("none of the 5000"));

@@ -99,6 +99,14 @@ TEST_F(Potree, ScalesEverything) {
   }
 }
 
+TEST_F(Potree, RefusesScalesOfNoPlace) {
+  const PotreeFiles files = potree_of(potree_hill(100));
+  EXPECT_THROW((void)open(files, 1e10), Error);
+  EXPECT_THROW((void)open(files, 1e300), Error);
+  EXPECT_THROW((void)open(files, 1e-13), Error);
+  EXPECT_EQ(open(files, 1e-3)->layout().points, 100u);
+}
+
 TEST_F(Potree, ReadsCoordinatesBelowZero) {
   std::vector<PotreePoint> points = potree_hill(10);
   points[3].number = {-5, -70'000, -2'000'000'000};

@@ -45,9 +45,7 @@ class MetadataReader {
     metadata_.offset = vector("offset");
     metadata_.scale = vector("scale");
     metadata_.spacing = number("spacing");
-    if (!(metadata_.scale.minCoeff() > 0 && metadata_.spacing > 0)) {
-      wrong("scale and spacing must be above zero");
-    }
+    if (!(metadata_.scale.minCoeff() > 0)) wrong("scale must be above zero");
     read_cube();
     read_encoding();
     read_attributes();
@@ -63,13 +61,18 @@ class MetadataReader {
   }
 
   void read_cube() {
-    constexpr double kTolerance = 1e-3;  // of an edge, for writers that round (judgement)
+    constexpr double kLeastShare = 1e-9;  // spacing: 2^30 points side by side (judgement)
+    constexpr double kTolerance = 1e-3;   // of an edge, for writers that round (judgement)
     metadata_.lower = vector("boundingBox/min");
     const Eigen::Vector3d size = vector("boundingBox/max") - metadata_.lower;
     metadata_.edge = size.maxCoeff();
     const bool possible = std::isfinite(metadata_.edge) && metadata_.edge > 0;
     if (!possible || size.minCoeff() < (1 - kTolerance) * metadata_.edge) {
       wrong("the boundingBox is no cube");
+    }
+    const double share = metadata_.spacing / metadata_.edge;
+    if (!(share >= kLeastShare && share <= 1)) {
+      wrong(fmt::format("a spacing of {} in a cube of {}", metadata_.spacing, metadata_.edge));
     }
   }
 

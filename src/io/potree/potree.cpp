@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMetadata = "metadata.json";
+constexpr double kSmallestEdge = 1e-9;  // m: atoms are larger (judgement)
 
 // Which columns the clouds have, for all nodes alike.
 struct Shown {
@@ -29,6 +31,17 @@ struct Shown {
   bool colors = false;
   bool wide_colors = false;  // of 16 bits, not of 8
 };
+
+// The largest number of an attribute: of all points, where the metadata says it, else of a sample.
+template <class NumberOf>
+double largest_of(const std::optional<potree::Attribute>& attribute,
+                  const std::vector<potree::RawPoint>& sample, const NumberOf& number_of) {
+  if (!attribute) return 0;
+  double largest = attribute->largest;
+  if (largest > 0) return largest;
+  for (const potree::RawPoint& p : sample) largest = std::max(largest, number_of(p));
+  return largest;
+}
 
 class PotreeStore final : public PointStore {
  public:
@@ -44,9 +57,10 @@ class PotreeStore final : public PointStore {
     layout_.lower = scale * metadata_.lower;
     layout_.edge = scale * metadata_.edge;
     layout_.spacing = scale * metadata_.spacing;
-    if (!is_usable(layout_.lower) || !(layout_.edge <= kLargestCoordinate)) {
-      throw Error(fmt::format("{}: the store reaches beyond {} m. Give another scale.",
-                              folder.string(), kLargestCoordinate));
+    if (!is_usable(layout_.lower) || !(layout_.edge >= kSmallestEdge) ||
+        !(layout_.edge <= kLargestCoordinate)) {
+      throw Error(fmt::format("{}: no cloud is {} m long or so far away. Give another scale.",
+                              folder.string(), layout_.edge));
     }
     for (const potree::StoredNode& each : nodes_) {
       layout_.nodes.push_back(each.node);
@@ -105,16 +119,12 @@ class PotreeStore final : public PointStore {
         raw(static_cast<std::size_t>(highest - layout_.nodes.begin()));
     layout_.origin =
         choose_origin(sample.size(), [&](std::size_t i) { return position(sample[i]); });
-    double most_color = metadata_.color ? metadata_.color->largest : 0;
-    double brightest = metadata_.intensity ? metadata_.intensity->largest : 0;
-    if (most_color == 0) {
-      for (const auto& each : sample)
-        most_color = std::max<double>(most_color, std::ranges::max(each.color));
-    }
-    if (brightest == 0) {
-      for (const auto& each : sample)
-        brightest = std::max<double>(brightest, std::abs(each.intensity));
-    }
+    const double most_color = largest_of(metadata_.color, sample, [](const potree::RawPoint& p) {
+      return static_cast<double>(std::ranges::max(p.color));
+    });
+    const double brightest = largest_of(metadata_.intensity, sample, [](const potree::RawPoint& p) {
+      return static_cast<double>(std::abs(p.intensity));
+    });
     shown_ = {
         .intensities = brightest > 0, .colors = most_color > 0, .wide_colors = most_color > 255};
   }
