@@ -148,8 +148,8 @@ void check_nodes(const std::vector<StoredNode>& nodes, const Metadata& metadata,
     if (each.bytes == 0) continue;
     const std::string name = name_of(each.node);
     if (each.place > size || each.bytes > size - each.place) {
-      wrong(fmt::format("ends inside node {}: {} bytes at byte {} of {}", name, each.bytes,
-                        each.place, size));
+      wrong(fmt::format("ends inside node {}: its {} bytes begin at byte {}, the file has {}", name,
+                        each.bytes, each.place, size));
     }
     if (each.place < end) wrong(fmt::format("node {} begins inside another one", name));
     end = each.place + each.bytes;
