@@ -22,7 +22,7 @@ def seed(target, name, data):
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
     if target not in ("any", "cdr", "client_message", "depth", "e57", "frame_list", "haply_frame", "mcap", "poses",
-                      "remote_frame", "remote_state", "sequence", "trajectory"):
+                      "potree", "remote_frame", "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
 
@@ -556,6 +556,40 @@ def zstd_stored(data):
             + (len(data) << 3 | 1).to_bytes(3, "little") + data)
 
 
+def potree():
+    """A root and a child of two points each, in either encoding, and a proxy to a chunk of its own."""
+    types = {"position": ("int32", 3, 4), "intensity": ("uint16", 1, 2), "rgb": ("uint16", 3, 2)}
+    attributes = [{"name": name, "size": n * size, "numElements": n, "elementSize": size, "type": kind}
+                  for name, (kind, n, size) in types.items()]
+    points = [tuple(round(1000 * x) for x in p) for p in POINTS]
+
+    def interleave(numbers, first):
+        return sum((x >> (first + bit) & 1) << (3 * bit + k) for bit in range(16) for k, x in enumerate(numbers))
+
+    def node(packed, some):
+        if not packed:
+            return b"".join(struct.pack("<3iH3H", *points[i], 7, *COLORS[i]) for i in some)
+        return brotli_stored(
+            b"".join(struct.pack("<QQ", interleave(points[i], 16), interleave(points[i], 0)) for i in some)
+            + struct.pack("<2H", 7, 8) + b"".join(struct.pack("<Q", interleave(COLORS[i], 0)) for i in some))
+
+    for encoding in ("DEFAULT", "BROTLI"):
+        root, child = (node(encoding == "BROTLI", some) for some in ((0, 3), (1, 2)))
+        hierarchy = (struct.pack("<BBIQQ", 0, 2, 2, 0, len(root)) + struct.pack("<BBIQQ", 2, 0, 2, 44, 22)
+                     + struct.pack("<BBIQQ", 1, 0, 2, len(root), len(child)))
+        metadata = json.dumps({
+            "version": "2.0", "points": 4, "hierarchy": {"firstChunkSize": 44}, "offset": [0, 0, 0],
+            "scale": [0.001] * 3, "spacing": 0.01, "boundingBox": {"min": [0, 0, 0], "max": [1, 1, 1]},
+            "encoding": encoding, "attributes": attributes}, separators=(",", ":")).encode()
+        seed("potree", encoding.lower(), struct.pack("<2H", len(metadata), len(hierarchy)) + metadata + hierarchy
+             + root + child)
+
+
+def brotli_stored(data):
+    """A brotli stream of one block that is not compressed, and an empty last one."""
+    return (len(data) - 1 << 4 | 1 << 20).to_bytes(3, "little") + data + b"\x03"
+
+
 for make in (ply, pcd, las, laz, depth, text, stl, gltf, packed, e57, sequences, remote, client_messages, haply, mcap,
-             messages, splats):
+             messages, splats, potree):
     make()

@@ -30,10 +30,10 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr auto kNames = std::to_array<std::string_view>(
-    {"any",   "cdr",         "copc", "depth", "e57",          "frame_list",   "gltf",
-     "gzip",  "haply_frame", "las",  "laz",   "mcap",         "obj",          "pcd",
-     "pgm",   "ply",         "png",  "poses", "remote_frame", "remote_state", "sequence",
-     "splat", "splat_ply",   "spz",  "stl",   "trajectory",   "xyz"});
+    {"any",      "cdr",         "copc",      "depth", "e57",    "frame_list",   "gltf",
+     "gzip",     "haply_frame", "las",       "laz",   "mcap",   "obj",          "pcd",
+     "pgm",      "ply",         "png",       "poses", "potree", "remote_frame", "remote_state",
+     "sequence", "splat",       "splat_ply", "spz",   "stl",    "trajectory",   "xyz"});
 
 void check_promises(const CloudFile& file) {
   const PointCloud& cloud = file.cloud;
@@ -183,6 +183,7 @@ CloudFile read_as(std::string_view name, const io::Input& input) {
   if (name == "pgm") return io::cloud_of(input, io::read_pgm(input));
   if (name == "ply") return io::read_ply(input);
   if (name == "png") return io::cloud_of(input, io::read_png(input));
+  if (name == "potree") return read_potree(input.bytes);
   if (name == "splat") return io::shell_file(input, io::read_dot_splat);
   if (name == "stl") return io::read_stl(input);
   if (name == "xyz") return io::read_xyz(input);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "palpate/io/files.hpp"
+
 namespace palpate::fuzz {
 
 /// The readers that are fuzzed; each has its seeds in corpus/NAME.
@@ -26,5 +28,9 @@ inline void expect(bool promise, const char* name) {
 
 /// The target "cdr": messages of every type of ours. @throws std::logic_error for a broken promise.
 void check_messages(std::span<const std::byte> bytes);
+
+/// The target "potree": a store whose files follow one another in `bytes`, behind the sizes of the
+/// first two (16 bits each). @throws std::logic_error for a broken promise.
+[[nodiscard]] CloudFile read_potree(std::span<const std::byte> bytes);
 
 }  // namespace palpate::fuzz

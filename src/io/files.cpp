@@ -12,7 +12,9 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/potree/potree.hpp"
 #include "io/splats/splats.hpp"
+#include "io/whole_store.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 
@@ -108,6 +110,14 @@ CloudFile read_input(const Input& input) {
   }
 }
 
+CloudFile read_potree(const Input& input) {
+  check_options(input);
+  CloudFile file = read_whole(*open_potree(input.name, input.options.scale), input);
+  fit_length(input, file);
+  if (input.options.progress) input.options.progress(1.0);
+  return file;
+}
+
 }  // namespace
 
 CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& name,
@@ -118,6 +128,10 @@ CloudFile read_cloud_bytes(std::span<const std::byte> bytes, const std::string& 
 CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& options) {
   const bool piped = path == "-";
   try {
+    std::error_code unknown;
+    if (is_potree(path) || std::filesystem::is_directory(path, unknown)) {
+      return read_potree({{}, path.string(), options});
+    }
     const bool is_file = std::filesystem::exists(path);
     const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
     if (piped) return read_cloud_bytes(bytes.span(), "standard input", options);

@@ -1,10 +1,14 @@
 // Opens point stores of any kind.
+#include <system_error>
+
 #include "io/copc.hpp"
+#include "io/potree/potree.hpp"
 #include "palpate/io/files.hpp"
 
 namespace palpate {
 
 std::shared_ptr<const PointStore> open_store(const std::filesystem::path& path, double scale) {
+  if (io::is_potree(path)) return io::open_potree(path, scale);
   std::error_code none;
   const bool may_be_copc = io::extension(path.string()) == ".laz";
   if (!may_be_copc || !std::filesystem::is_regular_file(path, none)) return nullptr;

@@ -17,6 +17,8 @@ TEST(Arguments, CloudsAreNamedAfterTheirFilesUnlessNamed) {
   EXPECT_EQ(clouds[2].name, "bunny-2");
   EXPECT_EQ(clouds[3].name, "stdin");
   EXPECT_EQ(clouds[4].name, "torus");
+  EXPECT_EQ(parse_clouds({"site/metadata.json"})[0].name, "site");  // a Potree store's
+  EXPECT_EQ(parse_clouds({"site/"})[0].name, "site");
 }
 
 TEST(Arguments, PathWithAnEqualsSignIsOnlySplitAtAName) {

@@ -50,6 +50,7 @@ std::string name_of_path(const std::string& path) {
   if (path.starts_with(kSequence)) file = path.substr(kSequence.size());
   if (path.starts_with(kRos)) file = path.substr(0, path.find(','));
   if (path.starts_with(kBag)) file = file_of(path);
+  if (file.filename() == "metadata.json") file = file.parent_path();  // of a Potree store
   if (!file.has_filename()) file = file.parent_path();  // a folder with a slash behind it
   std::filesystem::path name = file.filename();
   if (name.extension() == ".gz") name = name.stem();

@@ -60,6 +60,8 @@ struct CloudFile {
 /// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
 /// depth, and those beyond ten times the image's median depth, too.
 ///
+/// A folder with the metadata.json of a Potree 2.0 store (or that file) is read whole.
+///
 /// Faces are sampled into points, unless the vertices lie as densely and evenly as those of a scan.
 /// Gaussian splats (PLY, compressed PLY, .splat, .spz) become points on the surface that they show,
 /// with normals and colours. All scans of an E57 file are joined in the file's frame; "house.e57#2"
@@ -81,7 +83,7 @@ struct CloudFile {
 /// Any other path alone. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path);
 
-/// Opens a COPC file to be read node by node. Coordinates times `scale` are metres. null: it is no
+/// Opens a COPC file or a folder of Potree 2.0 to be read node by node. Coordinates times `scale` are metres. null: it is no
 /// store. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::shared_ptr<const PointStore> open_store(const std::filesystem::path& path,
                                                            double scale = 1);

@@ -1,0 +1,169 @@
+// Opens Potree 2.0 stores and reads their nodes.
+#include "io/potree/potree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/cloud_builder.hpp"
+#include "io/file_bytes.hpp"
+#include "io/potree/hierarchy.hpp"
+#include "io/potree/metadata.hpp"
+#include "io/potree/points.hpp"
+#include "palpate/base/error.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMetadata = "metadata.json";
+constexpr double kSmallestEdge = 1e-9;  // m: atoms are larger (judgement)
+
+// Which columns the clouds have, for all nodes alike.
+struct Shown {
+  bool intensities = false;
+  bool colors = false;
+  bool wide_colors = false;  // of 16 bits, not of 8
+};
+
+// The largest number of an attribute: of all points, where the metadata says it, else of a sample.
+template <class NumberOf>
+double largest_of(const std::optional<potree::Attribute>& attribute,
+                  const std::vector<potree::RawPoint>& sample, const NumberOf& number_of) {
+  if (!attribute) return 0;
+  double largest = attribute->largest;
+  if (largest > 0) return largest;
+  for (const potree::RawPoint& p : sample) largest = std::max(largest, number_of(p));
+  return largest;
+}
+
+class PotreeStore final : public PointStore {
+ public:
+  PotreeStore(const fs::path& folder, const potree::Metadata& metadata,
+              std::vector<potree::StoredNode> nodes, double scale)
+      : metadata_(metadata),
+        scale_(scale * metadata.scale),
+        offset_(scale * metadata.offset),
+        nodes_(std::move(nodes)),
+        octree_(folder / "octree.bin") {
+    check_nodes(nodes_, metadata_, octree_.name(), octree_.size());
+    layout_.format = fmt::format("Potree 2.0, {}", metadata_.packed ? "BROTLI" : "DEFAULT");
+    layout_.lower = scale * metadata_.lower;
+    layout_.edge = scale * metadata_.edge;
+    layout_.spacing = scale * metadata_.spacing;
+    if (!is_usable(layout_.lower) || !(layout_.edge >= kSmallestEdge) ||
+        !(layout_.edge <= kLargestCoordinate)) {
+      throw Error(fmt::format("{}: no cloud is {} m long or so far away. Give another scale.",
+                              folder.string(), layout_.edge));
+    }
+    for (const potree::StoredNode& each : nodes_) {
+      layout_.nodes.push_back(each.node);
+      layout_.points += each.node.points;
+    }
+    learn_from_sample();
+  }
+
+  [[nodiscard]] const Layout& layout() const override { return layout_; }
+
+  [[nodiscard]] PointCloud read(std::size_t node) const override {
+    const std::vector<potree::RawPoint> points = raw(node);
+    PointCloud cloud;
+    cloud.origin = layout_.origin;
+    cloud.positions.reserve(points.size());
+    if (shown_.colors) cloud.colors.reserve(points.size());
+    if (shown_.intensities) cloud.intensities.reserve(points.size());
+    for (const potree::RawPoint& point : points) {
+      const Eigen::Vector3d p = position(point);
+      if (!is_usable(p)) continue;
+      cloud.positions.emplace_back((p - cloud.origin).cast<float>());
+      if (shown_.colors) cloud.colors.push_back(color(point));
+      if (shown_.intensities) cloud.intensities.push_back(point.intensity);
+    }
+    return cloud;
+  }
+
+ private:
+  [[nodiscard]] std::vector<potree::RawPoint> raw(std::size_t node) const {
+    const potree::StoredNode& stored = nodes_[node];
+    const Bytes bytes = octree_.read(stored.place, stored.bytes);
+    return decode(metadata_, stored, bytes.span(), octree_.name());
+  }
+
+  [[nodiscard]] Eigen::Vector3d position(const potree::RawPoint& point) const {
+    const Eigen::Vector3d number(point.number[0], point.number[1], point.number[2]);
+    return number.cwiseProduct(scale_) + offset_;
+  }
+
+  [[nodiscard]] std::array<std::uint8_t, 3> color(const potree::RawPoint& point) const {
+    std::array<std::uint8_t, 3> bytes{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const unsigned value = point.color[k];
+      bytes[k] = static_cast<std::uint8_t>(shown_.wide_colors ? (value + 128) / 257
+                                                              : std::min(value, 255U));
+    }
+    return bytes;
+  }
+
+  // The root's points, or those of the highest node that has some, lie all over the cloud.
+  void learn_from_sample() {
+    if (layout_.points == 0) return;
+    const auto height = [](const Node& node) { return std::pair(node.points == 0, node.level); };
+    const auto highest = std::ranges::min_element(layout_.nodes, {}, height);
+    const std::vector<potree::RawPoint> sample =
+        raw(static_cast<std::size_t>(highest - layout_.nodes.begin()));
+    layout_.origin =
+        choose_origin(sample.size(), [&](std::size_t i) { return position(sample[i]); });
+    const double most_color = largest_of(metadata_.color, sample, [](const potree::RawPoint& p) {
+      return static_cast<double>(std::ranges::max(p.color));
+    });
+    const double brightest = largest_of(metadata_.intensity, sample, [](const potree::RawPoint& p) {
+      return static_cast<double>(std::abs(p.intensity));
+    });
+    shown_ = {
+        .intensities = brightest > 0, .colors = most_color > 0, .wide_colors = most_color > 255};
+  }
+
+  potree::Metadata metadata_;
+  Eigen::Vector3d scale_;   // m
+  Eigen::Vector3d offset_;  // m
+  std::vector<potree::StoredNode> nodes_;
+  OpenFile octree_;
+  Layout layout_;
+  Shown shown_;
+};
+
+}  // namespace
+
+bool is_potree(const fs::path& path) {
+  std::error_code unknown;
+  const fs::path file = fs::is_directory(path, unknown) ? path / kMetadata : path;
+  return file.filename() == kMetadata && fs::is_regular_file(file, unknown);
+}
+
+std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale) {
+  const fs::path folder = path.filename() == kMetadata ? path.parent_path() : path;
+  std::error_code unknown;
+  if (!fs::is_regular_file(folder / kMetadata, unknown)) {
+    throw Error(fmt::format(
+        "{}: is a folder and holds no metadata.json, so it is no Potree store. Give a file in it.",
+        folder.string()));
+  }
+  const ReadOptions options;
+  const auto input_of = [&](const Bytes& bytes, const char* name) {
+    return Input{bytes.span(), (folder / name).string(), options};
+  };
+  const Bytes description = read_bytes(folder / kMetadata);
+  const potree::Metadata metadata = potree::read_metadata(input_of(description, kMetadata));
+  const Bytes hierarchy = read_bytes(folder / "hierarchy.bin");
+  std::vector<potree::StoredNode> nodes =
+      potree::read_hierarchy(input_of(hierarchy, "hierarchy.bin"), metadata);
+  return std::make_shared<PotreeStore>(folder, metadata, std::move(nodes), scale);
+}
+
+}  // namespace palpate::io
