@@ -1,0 +1,93 @@
+// A COPC file that is opened as a store has the points of the file read whole.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "io/copc_bytes.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/io/files.hpp"
+#include "support/folder.hpp"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+std::string written(const test::Folder& folder, const std::string& bytes) {
+  folder.write("a.copc.laz", bytes);
+  return folder / "a.copc.laz";
+}
+
+/// The nodes' points are, one after the other, those of the file.
+void expect_whole(const std::string& path, double scale) {
+  ReadOptions options;
+  options.scale = scale;
+  const PointCloud whole = read_cloud(path, options);
+  const auto store = open_store(path, scale);
+  ASSERT_TRUE(store);
+  const PointStore::Layout& layout = store->layout();
+  EXPECT_EQ(layout.points, whole.size());
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < layout.nodes.size(); ++k) {
+    const PointCloud node = store->read(k);
+    EXPECT_EQ(node.size(), layout.nodes[k].points);
+    EXPECT_EQ(node.origin, layout.origin);
+    ASSERT_LE(i + node.size(), whole.size());
+    for (std::size_t j = 0; j < node.size(); ++j, ++i) {
+      ASSERT_LT((node.point(j) - whole.point(i)).norm(), 1e-4 * scale);
+      if (!node.colors.empty()) ASSERT_EQ(node.colors[j], whole.colors[i]);
+      if (!node.intensities.empty()) ASSERT_EQ(node.intensities[j], whole.intensities[i]);
+    }
+  }
+  EXPECT_EQ(i, whole.size());
+}
+
+TEST(CopcStore, HasThePointsOfTheFile) {
+  const test::Folder folder;
+  const std::string path = written(folder, copc_bytes());
+  expect_whole(path, 1);
+  expect_whole(path, 0.001);
+}
+
+TEST(CopcStore, OfARealSurveyLiesInItsCubes) {
+  const char* const data = std::getenv("PALPATE_DATA");
+  if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA names no folder with the real data";
+  const std::string path = (std::filesystem::path(data) / "pdal_small/lone-star.copc.laz").string();
+  expect_whole(path, 1);
+  const auto store = open_store(path);
+  for (std::size_t k = 0; k < store->layout().nodes.size(); ++k) {
+    Box box = store->layout().box(k);
+    box.lower.array() -= 1e-3;  // coordinates are rounded
+    box.upper.array() += 1e-3;
+    const PointCloud node = store->read(k);
+    for (std::size_t i = 0; i < node.size(); ++i) ASSERT_TRUE(box.contains(node.point(i)));
+  }
+}
+
+TEST(CopcStore, OtherFilesAreNone) {
+  const test::Folder folder;
+  folder.write("a.laz", laz_of(survey_of({.format = 6})));
+  EXPECT_EQ(open_store(folder / "a.laz"), nullptr);
+  EXPECT_EQ(open_store(folder / "no.laz"), nullptr);
+  EXPECT_EQ(open_store("synthetic:sphere"), nullptr);
+}
+
+TEST(CopcStore, SaysWhereAFileThatIsCutEnds) {
+  const test::Folder folder;
+  const std::string bytes = copc_bytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 97) {
+    const std::string path = written(folder, bytes.substr(0, size));
+    try {
+      const auto store = open_store(path);
+      EXPECT_EQ(store, nullptr) << size;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("a.copc.laz")) << size;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
