@@ -36,18 +36,6 @@ void append(const PointCloud& from, PointCloud& to) {
   to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
 }
 
-/// The nodes whose points thin all of the store, the coarsest first.
-std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
-  std::vector<std::size_t> order(layout.nodes.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return layout.nodes[k].level; });
-  std::size_t points = 0;
-  std::size_t taken = 0;
-  while (taken < order.size() && points < asked) points += layout.nodes[order[taken++]].points;
-  order.resize(taken);
-  return order;
-}
-
 /// Nodes with points under which there are none, in the order of the store.
 std::vector<std::size_t> leaves_of(const Layout& layout) {
   std::map<Key, bool> has_child;
@@ -116,6 +104,17 @@ std::map<std::size_t, PointCloud> read(const PointStore& store, std::vector<std:
 }
 
 }  // namespace
+
+std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
+  std::vector<std::size_t> order(layout.nodes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return layout.nodes[k].level; });
+  std::size_t points = 0;
+  std::size_t taken = 0;
+  while (taken < order.size() && points < asked) points += layout.nodes[order[taken++]].points;
+  order.resize(taken);
+  return order;
+}
 
 StoreSample sample_of(const PointStore& store, std::size_t asked, std::size_t places,
                       std::size_t around) {

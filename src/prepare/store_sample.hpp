@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/point_store.hpp"
@@ -13,6 +14,11 @@ struct StoreSample {
   PointCloud all;     ///< thinned: those of the upper nodes
   PointCloud places;  ///< all that lie around some places
 };
+
+/// The nodes of the upper levels, the coarsest first: together they have at least `asked` points,
+/// if all have.
+[[nodiscard]] std::vector<std::size_t> upper_nodes(const PointStore::Layout& layout,
+                                                   std::size_t asked);
 
 /// Takes at least `asked` points of all of the store, and the `around` nearest ones at each of so
 /// many `places`, which are spread over its points. Always the same of the same store.

@@ -19,6 +19,7 @@ class MemoryBlocks final : public BlockSupply {
   [[nodiscard]] std::size_t points() const override { return cloud_->size(); }
   [[nodiscard]] Eigen::Vector3d origin() const override { return placed_.cloud().origin; }
   [[nodiscard]] Eigen::Vector3d start() const override { return facts().extent.center(); }
+  [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return nullptr; }
   [[nodiscard]] bool is_whole() const override { return true; }
 
   [[nodiscard]] std::vector<Box> list(std::span<const Ball> /*tools*/,

@@ -197,6 +197,7 @@ void OnDemand::Inside::publish(Source& to, std::span<const Piece* const> shown, 
   {
     const std::lock_guard lock(to.inside_->mutex);
     to.inside_->report = joined.report;
+    to.inside_->state.overview = supply->overview();
   }
   auto points = std::make_shared<const SurfacePoints>(std::move(joined.points));
   snapshot.layers.push_back({std::move(points), 1, 1});

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <memory>
 #include <set>
 #include <utility>
 
 #include "prepare/place.hpp"
+#include "prepare/store_sample.hpp"
 #include "scene/block_supply.hpp"
 #include "scene/node_cache.hpp"
 
@@ -33,6 +34,9 @@ constexpr std::size_t kMostRead = std::size_t{1} << 22;
 
 constexpr double kPieces = 0.25;         // share of the memory for prepared blocks; judgement
 constexpr std::size_t kPieceBytes = 72;  // a point; derived from the columns of SurfacePoints
+
+// Points of the overview: what a page draws of all of the store; judgement.
+constexpr std::size_t kOverview = 100'000;
 
 /// A range of cubes of level 0, both ends included.
 struct Range {
@@ -77,13 +81,14 @@ class StoreBlocks final : public BlockSupply {
     if (!options_.facts) options_.facts = measure_facts(*store, options, pose);
     const PointStore::Layout& layout = store->layout();
     all_ = moved(pose_, {layout.lower, layout.lower + Vector3d::Constant(layout.edge)});
-    find_start(*store);
+    look_over(*store);
   }
 
   [[nodiscard]] const CloudFacts& facts() const override { return *options_.facts; }
   [[nodiscard]] std::size_t points() const override { return nodes_.layout().points; }
   [[nodiscard]] Vector3d origin() const override { return pose_ * nodes_.layout().origin; }
   [[nodiscard]] Vector3d start() const override { return start_; }
+  [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return overview_; }
   [[nodiscard]] bool is_whole() const override { return false; }
 
   [[nodiscard]] std::vector<Box> list(std::span<const Ball> tools,
@@ -121,20 +126,24 @@ class StoreBlocks final : public BlockSupply {
   }
 
  private:
-  /// The point of the upper nodes that is nearest to the middle.
-  void find_start(const PointStore& store) {
-    const Vector3d middle = facts().extent.center();
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < store.layout().nodes.size(); ++k) {
-      if (store.layout().nodes[k].level > 0) continue;
-      const PointCloud root = store.read(k);
-      for (std::size_t i = 0; i < root.size(); ++i) {
-        const Vector3d point = pose_ * root.point(i);
-        const double distance = (point - middle).squaredNorm();
-        if (distance < least) start_ = point;
-        least = std::min(least, distance);
+  /// Reads the upper nodes.
+  void look_over(const PointStore& store) {
+    auto seen = std::make_shared<PointCloud>();
+    seen->origin = origin();
+    for (const std::size_t node : upper_nodes(store.layout(), kOverview)) {
+      const PointCloud part = store.read(node);
+      for (const Eigen::Vector3f& p : part.positions) {
+        seen->positions.emplace_back(pose_.linear().cast<float>() * p);
       }
+      seen->colors.insert(seen->colors.end(), part.colors.begin(), part.colors.end());
     }
+    if (seen->colors.size() != seen->size()) seen->colors.clear();
+    overview_ = seen;
+    const Vector3d middle = facts().extent.center();
+    const auto off = [&](const Eigen::Vector3f& p) {
+      return (seen->origin + p.cast<double>() - middle).squaredNorm();
+    };
+    start_ = seen->origin + std::ranges::min_element(seen->positions, {}, off)->cast<double>();
   }
 
   [[nodiscard]] Range range_of(const Ball& ball) const {
@@ -218,7 +227,8 @@ class StoreBlocks final : public BlockSupply {
   NodeCache nodes_;
   std::size_t most_prepared_;  // points
   Box all_;                    // that holds the store, world frame, m
-  Vector3d start_ = Vector3d::Zero();
+  std::shared_ptr<const PointCloud> overview_;
+  Vector3d start_ = Vector3d::Zero();  // the point of the overview that is nearest to the middle
 };
 
 }  // namespace

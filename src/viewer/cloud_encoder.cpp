@@ -1,5 +1,6 @@
 // Chooses the points of each source that a page draws, and encodes them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -11,6 +12,8 @@
 namespace palpate::viewer {
 
 namespace {
+
+constexpr std::size_t kOverviewShare = 4;  // of what is drawn, one in so many; judgement
 
 // A place in a stretch that repeats from call to call and has no rhythm that a scan's rows could
 // have, too.
@@ -38,6 +41,20 @@ std::vector<std::uint32_t> felt(const SurfacePoints& points) {
 /// set and not pushed stands still.
 bool faded(const Source::State& state, double now) {
   return state.frames > 0 && now > state.silent_from + state.fade;
+}
+
+/// Adds points that are seen and cannot be felt here: as ones that nothing is known of.
+void add_overview(const PointCloud& overview, const Eigen::Vector3d& origin, std::size_t budget,
+                  CloudMessage& message) {
+  constexpr std::array<std::uint8_t, 3> kGrey{128, 128, 128};
+  const Eigen::Vector3f shift = (overview.origin - origin).cast<float>();
+  for (const std::uint32_t i : thinned(overview.size(), budget)) {
+    message.places.emplace_back(overview.positions[i] + shift);
+    message.trust.push_back(0);
+    if (!message.normals.empty()) message.normals.emplace_back(Eigen::Vector3f::Zero());
+    if (message.colors.empty()) continue;
+    message.colors.push_back(overview.colors.empty() ? kGrey : overview.colors[i]);
+  }
 }
 
 }  // namespace
@@ -101,6 +118,7 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
     }
     if (gone) newest[s] = nullptr;
     sizes[s] = newest[s] ? newest[s]->size() : 0;
+    if (newest[s] && state.overview) sizes[s] += state.overview->size();
   }
   std::vector<EncodedCloud> clouds;
   std::vector<std::set<std::size_t>> used(sources_.size());
@@ -123,9 +141,13 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
 SharedBytes CloudEncoder::encode(std::size_t source, const SurfacePoints* points,
                                  std::size_t share) const {
   CloudMessage message;
-  if (points != nullptr) message = cloud_of(*points, origin_, share);
+  const Source::State state = scene_.source(source).state();
+  const std::size_t far =
+      state.overview ? std::min(share / kOverviewShare, state.overview->size()) : 0;
+  if (points != nullptr) message = cloud_of(*points, origin_, share - far);
+  if (points != nullptr && far > 0) add_overview(*state.overview, origin_, far, message);
   message.source = static_cast<std::uint8_t>(source);
-  message.stamp = scene_.source(source).state().stamp;
+  message.stamp = state.stamp;
   return std::make_shared<const std::string>(viewer::encode(message));
 }
 

@@ -38,8 +38,12 @@ void expect_whole(const std::string& path, double scale) {
     ASSERT_LE(i + node.size(), whole.size());
     for (std::size_t j = 0; j < node.size(); ++j, ++i) {
       ASSERT_LT((node.point(j) - whole.point(i)).norm(), 1e-4 * scale);
-      if (!node.colors.empty()) ASSERT_EQ(node.colors[j], whole.colors[i]);
-      if (!node.intensities.empty()) ASSERT_EQ(node.intensities[j], whole.intensities[i]);
+      if (!node.colors.empty()) {
+        ASSERT_EQ(node.colors[j], whole.colors[i]);
+      }
+      if (!node.intensities.empty()) {
+        ASSERT_EQ(node.intensities[j], whole.intensities[i]);
+      }
     }
   }
   EXPECT_EQ(i, whole.size());

@@ -151,6 +151,19 @@ TEST(Store, WhatIsNotReadYetIsFreeAndSaysSo) {
   EXPECT_TRUE(has(paged.field->notes(), FieldNote::not_loaded));
 }
 
+TEST(Store, AllOfItIsSeenThinned) {
+  SourceOptions options;
+  options.T_world_sensor.translation() = Vector3d(0, 0, 7);
+  Paged paged(even(), kRoom, options);
+  const auto overview = paged.source->state().overview;
+  ASSERT_TRUE(overview);
+  EXPECT_GT(overview->size(), 20'000u);
+  Box box;
+  for (std::size_t i = 0; i < overview->size(); ++i) box.extend(overview->point(i));
+  EXPECT_LT((box.lower - Vector3d(100, 200, 6.97)).norm(), 0.01);
+  EXPECT_LT((box.upper - Vector3d(101, 201, 7.03)).norm(), 0.01);
+}
+
 TEST(Store, NothingIsDoneWhileAHandRests) {
   Paged paged(even());
   const Vector3d place(100.5, 200.5, height(0.5, 0.5));

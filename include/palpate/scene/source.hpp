@@ -131,6 +131,8 @@ class Source {
     double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
     double stamp = 0;           ///< of the last one, s
     std::size_t points = 0;     ///< of the newest surface's newest layer
+    /// Points of all of a store, world frame, of which the surface is a part. null: it is no store.
+    std::shared_ptr<const PointCloud> overview = {};
     double noise = 0;           ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
     double depth = 0;           ///< median depth of the last frame, m
     double correlation = 0;     ///< c of NoiseModel
