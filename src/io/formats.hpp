@@ -100,6 +100,8 @@ struct LasHeader {
   std::size_t points = 0;
   Eigen::Vector3d scale;  ///< coordinate = number * scale + offset
   Eigen::Vector3d offset;
+  Eigen::Vector3d lower;  ///< of the coordinates, as announced: they may lie elsewhere
+  Eigen::Vector3d upper;
 
   /// Formats from 6 on lay out a point's flags otherwise.
   [[nodiscard]] bool extended() const { return format >= 6; }

@@ -23,6 +23,7 @@ constexpr std::size_t kRecordSize = 105;
 constexpr std::size_t kLegacyCount = 107;
 constexpr std::size_t kScale = 131;
 constexpr std::size_t kOffset = 155;
+constexpr std::size_t kBounds = 179;  // highest and lowest x, then y, then z
 constexpr std::size_t kSmallest = 227;
 constexpr std::size_t kCount14 = 247;
 constexpr std::size_t kSmallest14 = 375;
@@ -82,6 +83,8 @@ class LasHeaderParser {
       const std::size_t step = sizeof(double) * static_cast<std::size_t>(axis);
       header_.scale[axis] = load_as<double>(data_ + kScale + step);
       header_.offset[axis] = load_as<double>(data_ + kOffset + step);
+      header_.upper[axis] = load_as<double>(data_ + kBounds + 2 * step);
+      header_.lower[axis] = load_as<double>(data_ + kBounds + 2 * step + sizeof(double));
       if (!std::isfinite(header_.scale[axis]) || header_.scale[axis] == 0) {
         wrong(kScale + step, fmt::format("invalid coordinate scale of {}", header_.scale[axis]));
       }

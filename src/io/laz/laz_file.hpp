@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 
 namespace palpate::io::laz {
@@ -29,5 +31,12 @@ struct Chunk {
 /// than their bytes can hold.
 /// @throws Error that names the byte of what is wrong.
 [[nodiscard]] std::vector<Chunk> read_chunk_table(const Input& input, const LasHeader& header);
+
+/// Reads so many bytes of a file from a place on, all of which are there.
+using ReadPart = std::function<Bytes(std::size_t place, std::size_t size)>;
+
+/// The same of a file of `size` bytes that is not in memory: `head` is what lies before its points.
+[[nodiscard]] std::vector<Chunk> read_chunk_table(const Input& head, const LasHeader& header,
+                                                  std::size_t size, const ReadPart& read);
 
 }  // namespace palpate::io::laz
