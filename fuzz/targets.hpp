@@ -17,4 +17,7 @@ void run_target(std::string_view name, std::span<const std::byte> bytes);
 /// The target "cdr": messages of every type of ours. @throws std::logic_error for a broken promise.
 void check_messages(std::span<const std::byte> bytes);
 
+/// The targets "las" and "laz" as a store reads them. @throws std::logic_error in the same way.
+void check_pieces(std::span<const std::byte> bytes);
+
 }  // namespace palpate::fuzz

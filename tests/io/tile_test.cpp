@@ -17,6 +17,7 @@
 #include "io/laz_survey.hpp"
 #include "io/store_reading.hpp"
 #include "io/tile/input.hpp"
+#include "io/tile_inputs.hpp"
 #include "palpate/io/files.hpp"
 #include "support/effort.hpp"
 #include "support/folder.hpp"
@@ -33,64 +34,6 @@ using test::read_store;
 using test::ReadStore;
 using test::Stored;
 using testing::HasSubstr;
-
-// Small ones, so that small clouds have several chunks and levels.
-TileOptions small_options() {
-  TileOptions options;
-  options.chunk_points = 3000;
-  options.leaf_points = 200;
-  return options;
-}
-
-// A hilly ground of 600 x 300 steps of 0.1 m with twins, and a wall.
-std::vector<LasPoint> ground(std::size_t count, std::uint64_t seed = 1) {
-  Random random(seed);
-  std::vector<LasPoint> points(count);
-  for (LasPoint& p : points) {
-    const auto x = static_cast<std::int32_t>(6000 * random.uniform());
-    const auto y = static_cast<std::int32_t>(3000 * random.uniform());
-    const double height = 200 * std::sin(x * 0.003) * std::cos(y * 0.002);
-    const bool wall = y > 1500 && y < 1510;
-    p.number = {x, y, static_cast<std::int32_t>(wall ? 900 * random.uniform() : height)};
-    p.intensity = static_cast<std::uint16_t>(1 + 999 * random.uniform());
-    for (auto& c : p.color) c = static_cast<std::uint16_t>(300 + 65000 * random.uniform());
-  }
-  for (std::size_t i = 0; i + 1 < count; i += 97) points[i + 1] = points[i];
-  return points;
-}
-
-// Points of an input in the numbers of the store, whose corner is at the lowest of them.
-std::vector<Stored> expected_of(const std::vector<LasPoint>& points) {
-  std::vector<Stored> all;
-  for (const LasPoint& p : points) {
-    if (p.withheld) continue;
-    all.push_back({{p.number[0], p.number[1], p.number[2]}, p.intensity, p.color});
-  }
-  std::array<std::int64_t, 3> lowest = all.front().number;
-  for (const Stored& each : all) {
-    for (std::size_t k = 0; k < 3; ++k) lowest[k] = std::min(lowest[k], each.number[k]);
-  }
-  for (Stored& each : all) {
-    for (std::size_t k = 0; k < 3; ++k) each.number[k] -= lowest[k];
-  }
-  std::ranges::sort(all);
-  return all;
-}
-
-std::string bytes_of(const fs::path& folder) {
-  return contents(folder / "octree.bin") + contents(folder / "hierarchy.bin") +
-         contents(folder / "metadata.json");
-}
-
-std::string refusal_of(const std::vector<std::string>& inputs, const fs::path& out,
-                       const TileOptions& options = small_options()) {
-  try {
-    tile(inputs, out, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(Tile, EveryPointOfALasFileIsInOneNodeAndInItsCube) {
   const Folder folder;
@@ -261,133 +204,6 @@ TEST(Tile, TheOrderOfPointsAndFilesDoesNotMatter) {
   EXPECT_EQ(bytes_of(folder / "out"), bytes_of(folder / "b/out"));
 }
 
-struct Stop {};
-
-TEST(Tile, ARunThatIsStoppedAnywhereGoesOnToTheSameBytes) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(60000)));
-  TileOptions options = small_options();
-  options.chunk_points = 12000;
-  int calls = 0;
-  options.progress = [&](const std::string&, double) { ++calls; };
-  tile({folder / "a.las"}, folder / "whole", options);
-  ASSERT_GT(calls, 10);
-  Random random(3);
-  int stops = 0;
-  while (stops < 20) {
-    const fs::path out = folder / "out";
-    bool done = false;
-    while (!done) {  // may be stopped several times
-      int left = 1 + static_cast<int>(random.uniform() * calls);
-      options.progress = [&](const std::string&, double) {
-        if (--left == 0) throw Stop{};
-      };
-      try {
-        tile({folder / "a.las"}, out, options);
-        done = true;
-      } catch (const Stop&) {
-        ++stops;
-      }
-    }
-    ASSERT_EQ(bytes_of(out), bytes_of(folder / "whole")) << stops;
-    EXPECT_FALSE(fs::exists(out / "unfinished"));
-    fs::remove_all(out);
-  }
-}
-
-TEST(Tile, ThereIsNoMetadataBeforeTheStoreIsWhole) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(5000)));
-  TileOptions options = small_options();
-  int seen = 0;
-  options.progress = [&](const std::string& step, double done) {
-    if (step == "finishing" && done == 1) return;
-    ++seen;
-    EXPECT_FALSE(fs::exists(folder / "out/metadata.json")) << step << done;
-  };
-  tile({folder / "a.las"}, folder / "out", options);
-  EXPECT_GT(seen, 5);
-}
-
-TEST(Tile, ACompleteStoreIsReplacedByForceAlone) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(500)));
-  folder.write("b.las", las_bytes(2, 2, ground(700)));
-  tile({folder / "a.las"}, folder / "out");
-  EXPECT_EQ(refusal_of({folder / "b.las"}, folder / "out"),
-            (folder / "out") + " is complete; --force replaces it.");
-  EXPECT_EQ(read_store(folder / "out").points().size(), 500U);
-  TileOptions options;
-  options.force = true;
-  options.progress = [](const std::string& step, double) {
-    if (step == "building the octree") throw Stop{};
-  };
-  EXPECT_THROW(tile({folder / "b.las"}, folder / "out", options), Stop);
-  EXPECT_EQ(read_store(folder / "out").points().size(), 500U) << "until the other is whole";
-  options.progress = {};
-  tile({folder / "b.las"}, folder / "out", options);
-  EXPECT_EQ(read_store(folder / "out").points().size(), 700U);
-}
-
-TEST(Tile, GoingOnWithOtherInputsOrOptionsIsRefused) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(5000)));
-  folder.write("b.las", las_bytes(2, 2, ground(5000)));
-  TileOptions options = small_options();
-  options.progress = [](const std::string& step, double) {
-    if (step == "building the octree") throw Stop{};
-  };
-  EXPECT_THROW(tile({folder / "a.las"}, folder / "out", options), Stop);
-  EXPECT_THAT(refusal_of({folder / "b.las"}, folder / "out"),
-              HasSubstr("was begun with other inputs: " + (folder / "a.las")));
-  options = small_options();
-  options.scale = 2;
-  EXPECT_THAT(refusal_of({folder / "a.las"}, folder / "out", options),
-              HasSubstr("other options, or its inputs have changed"));
-  fs::last_write_time(folder / "a.las", fs::file_time_type::clock::now() + std::chrono::hours(1));
-  EXPECT_THAT(refusal_of({folder / "a.las"}, folder / "out"), HasSubstr("have changed since"));
-  options.force = true;
-  EXPECT_EQ(refusal_of({folder / "a.las"}, folder / "out", options), "no error");
-}
-
-TEST(Tile, ADamagedListOfWhatIsDoneIsToldAndForceStartsAnew) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(500)));
-  folder.write("out/unfinished/tile.json", "{\"version\": 1}");
-  EXPECT_THAT(refusal_of({folder / "a.las"}, folder / "out"), HasSubstr("Start anew with --force"));
-  TileOptions options;
-  options.force = true;
-  EXPECT_EQ(refusal_of({folder / "a.las"}, folder / "out", options), "no error");
-}
-
-TEST(Tile, TooLittleSpaceIsToldBeforeAnyIsTaken) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(5000)));
-  TileOptions options = small_options();
-  options.free_bytes = [](const fs::path&) { return std::uint64_t{12'000'000}; };
-  EXPECT_THAT(refusal_of({folder / "a.las"}, folder / "out", options),
-              HasSubstr("tile needs 0.0672 GB in " + (folder / "out") + ", 0.012 GB are free"));
-  options.free_bytes = {};
-  EXPECT_EQ(refusal_of({folder / "a.las"}, folder / "out", options), "no error");
-}
-
-TEST(Tile, ADiskThatBecomesFullIsToldAndTheNextRunGoesOn) {
-  const Folder folder;
-  folder.write("a.las", las_bytes(2, 2, ground(20000)));
-  tile({folder / "a.las"}, folder / "whole", small_options());
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto earlier = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{200'000, before.rlim_max};  // of 400 kB
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string told = refusal_of({folder / "a.las"}, folder / "out");
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, earlier);
-  EXPECT_THAT(told, HasSubstr("it cannot be written (File too large)"));
-  EXPECT_EQ(refusal_of({folder / "a.las"}, folder / "out"), "no error");
-  EXPECT_EQ(bytes_of(folder / "out"), bytes_of(folder / "whole"));
-}
-
 TEST(Tile, OtherCloudsHaveStepsThatFitTheirLength) {
   EXPECT_DOUBLE_EQ(io::tile::step_for(0), 1e-3);
   EXPECT_DOUBLE_EQ(io::tile::step_for(0.2), 1e-7);
@@ -452,18 +268,19 @@ TEST(Tile, WhatCannotBeTiledIsRefusedWithWords) {
   const Folder folder;
   const std::string las = las_bytes(2, 2, ground(500));
   folder.write("cut.las", las.substr(0, 5000));
-  EXPECT_THAT(refusal_of({folder / "cut.las"}, folder / "out"), HasSubstr("the file ends after"));
+  EXPECT_THAT(tile_refusal({folder / "cut.las"}, folder / "out"), HasSubstr("the file ends after"));
   const std::string laz = laz_of(las);
   folder.write("cut.laz", laz.substr(0, laz.size() / 2));
-  EXPECT_THAT(refusal_of({folder / "cut.laz"}, folder / "out"), HasSubstr("chunk table"));
+  EXPECT_THAT(tile_refusal({folder / "cut.laz"}, folder / "out"), HasSubstr("chunk table"));
   folder.write("none.las", las_bytes(2, 2, {{.number = {1, 2, 3}, .withheld = true}}));
-  EXPECT_THAT(refusal_of({folder / "none.las"}, folder / "out"), HasSubstr("no point that can be"));
-  EXPECT_THAT(refusal_of({"-"}, folder / "out"), HasSubstr("read more than once"));
-  EXPECT_THAT(refusal_of({"synthetic:bunny"}, folder / "out"), HasSubstr("synthetic:terrain:N"));
-  EXPECT_THAT(refusal_of({"synthetic:terrain:1e12"}, folder / "out"), HasSubstr("2.1e+09"));
-  EXPECT_THAT(refusal_of({folder / "absent.las"}, folder / "out"), HasSubstr("no such file"));
+  EXPECT_THAT(tile_refusal({folder / "none.las"}, folder / "out"),
+              HasSubstr("no point that can be"));
+  EXPECT_THAT(tile_refusal({"-"}, folder / "out"), HasSubstr("read more than once"));
+  EXPECT_THAT(tile_refusal({"synthetic:bunny"}, folder / "out"), HasSubstr("synthetic:terrain:N"));
+  EXPECT_THAT(tile_refusal({"synthetic:terrain:1e12"}, folder / "out"), HasSubstr("2.1e+09"));
+  EXPECT_THAT(tile_refusal({folder / "absent.las"}, folder / "out"), HasSubstr("no such file"));
   folder.write("file", "");
-  EXPECT_THAT(refusal_of({folder / "none.las"}, folder / "file"), HasSubstr("cannot be made"));
+  EXPECT_THAT(tile_refusal({folder / "none.las"}, folder / "file"), HasSubstr("cannot be made"));
 }
 
 }  // namespace

@@ -7,171 +7,15 @@
 #include <cstring>
 #include <optional>
 
-#include "io/file_bytes.hpp"
 #include "io/tile/chunk_files.hpp"
-#include "io/tile/in_order.hpp"
-#include "io/tile/metadata.hpp"
 #include "io/tile/out_file.hpp"
-#include "io/tile/state.hpp"
+#include "io/tile/store_builder.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io::tile {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kNodeBytes = 25;  // of a settled node in the list of nodes
-constexpr std::size_t kRootHead = 9;    // bytes before the points of a chunk's root
-constexpr std::size_t kAtOnce = 2;      // chunks that are sorted side by side, for memory
-
-void put(const StoreNode& node, std::span<std::byte> bytes) {
-  LittleEndianWriter out(bytes);
-  out.put(static_cast<std::uint8_t>(node.cell.level));
-  for (const std::uint32_t at : node.cell.at) out.put(at);
-  out.put(node.points);
-  out.put(node.place);
-}
-
-StoreNode node_at(const std::byte* bytes) {
-  return {{std::to_integer<int>(bytes[0]), numbers_of(bytes + 1)},
-          load_as<std::uint32_t>(bytes + 13),
-          load_as<std::uint64_t>(bytes + 17)};
-}
-
-// A chunk that is sorted; its root may still lose points to the levels above.
-struct Grown {
-  Settled settled;
-  Branch root;
-};
-
-// Sorts the chunks and joins them: from the files of chunks to the store's own.
-class Builder {
- public:
-  Builder(State& state, const fs::path& work, const TileOptions& options)
-      : state_(state),
-        plan_(state.plan),
-        work_(work),
-        options_(options),
-        octree_(work / "octree.bin", state.octree),
-        nodes_(work / "nodes", state.nodes),
-        roots_(work / "roots", state.roots) {}
-
-  void sort_chunks(const Told& told) {
-    const std::size_t first = state_.chunks;
-    in_order(
-        plan_.chunks.size() - first, kAtOnce, [&](std::size_t i) { return grown(first + i); },
-        [&](Grown& each) {
-          take(each);
-          told(static_cast<double>(state_.chunks) / static_cast<double>(plan_.chunks.size()));
-        });
-  }
-
-  // Adds the levels above the chunks, and writes what describes the store.
-  void finish(const std::string& name) {
-    const OpenFile roots((work_ / "roots").string());
-    const Bytes listed = OpenFile((work_ / "nodes").string()).read(0, state_.nodes);
-    std::vector<StoreNode> nodes;
-    for (std::size_t at = 0; at < listed.size(); at += kNodeBytes) {
-      nodes.push_back(node_at(listed.span().data() + at));
-    }
-    Joiner joiner(plan_.layout, plan_.frame.bits);
-    Settled settled;
-    const auto settle = [&] {
-      append(settled);
-      nodes.insert(nodes.end(), settled.nodes.begin(), settled.nodes.end());
-      settled = {};
-    };
-    std::size_t chunk = 0;
-    std::size_t place = 0;  // of the chunk's root
-    const std::function<Branch(const Cell&)> branch_at = [&](const Cell& cell) {
-      if (plan_.chunks[chunk].cell == cell) {
-        ++chunk;
-        return root_at(roots, cell, place);
-      }
-      std::vector<Branch> children;
-      for (unsigned i = 0; i < 8; ++i) {
-        const Cell child = cell.child(i);
-        if (chunk < plan_.chunks.size() && is_within(plan_.chunks[chunk].cell, child)) {
-          children.push_back(branch_at(child));
-        }
-      }
-      Branch parent = joiner.join(cell, std::move(children), settled);
-      settle();
-      return parent;
-    };
-    settled.add(branch_at({}), plan_.layout);
-    settle();
-    octree_.sync();
-    const Hierarchy hierarchy = hierarchy_of(std::move(nodes), plan_.layout);
-    const std::string metadata = metadata_of(plan_, hierarchy, name);
-    write_file(work_ / "hierarchy.bin", hierarchy.bytes);
-    write_file(work_ / "metadata.json", std::as_bytes(std::span(metadata)));
-  }
-
- private:
-  [[nodiscard]] Grown grown(std::size_t i) const {
-    const Chunk& chunk = plan_.chunks[i];
-    const std::size_t size = chunk.points * plan_.layout.size();
-    std::vector<std::byte> records;
-    {
-      const Bytes unsorted = OpenFile(chunk_file(work_ / "points", i)).read(0, size);
-      records = sort_records(unsorted.span(), plan_.layout, chunk.cell, plan_.frame.bits);
-    }
-    Grown grown;
-    grown.settled.bytes.reserve(size);
-    Joiner joiner(plan_.layout, plan_.frame.bits);
-    grown.root = joiner.grow(chunk.cell, records, options_.leaf_points, grown.settled);
-    return grown;
-  }
-
-  // What is on the disk before tile.json says so is cut off again after a stop.
-  void take(Grown& grown) {
-    append(grown.settled);
-    std::vector<std::byte> listed(kNodeBytes * grown.settled.nodes.size());
-    for (std::size_t i = 0; i < grown.settled.nodes.size(); ++i) {
-      put(grown.settled.nodes[i], std::span(listed).subspan(i * kNodeBytes));
-    }
-    nodes_.append(listed);
-    std::array<std::byte, kRootHead> head;
-    LittleEndianWriter out(head);
-    out.put(static_cast<std::uint8_t>(grown.root.inner));
-    out.put(std::uint64_t{grown.root.records.size()});
-    roots_.append(head);
-    roots_.append(grown.root.records);
-    for (const OutFile* each : {&octree_, &nodes_, &roots_}) each->sync();
-    state_.octree = octree_.size();
-    state_.nodes = nodes_.size();
-    state_.roots = roots_.size();
-    ++state_.chunks;
-    save(state_, work_ / "tile.json");
-    fs::remove(chunk_file(work_ / "points", state_.chunks - 1));
-  }
-
-  void append(Settled& settled) {
-    for (StoreNode& node : settled.nodes) node.place += octree_.size();
-    octree_.append(settled.bytes);
-  }
-
-  [[nodiscard]] bool is_within(const Cell& cell, const Cell& around) const {
-    return cell.level >= around.level && cell_of(cell.at, around.level, cell.level) == around;
-  }
-
-  [[nodiscard]] Branch root_at(const OpenFile& roots, const Cell& cell, std::size_t& place) const {
-    const Bytes head = roots.read(place, kRootHead);
-    const std::size_t size = load_as<std::uint64_t>(head.span().data() + 1);
-    const Bytes records = roots.read(place + kRootHead, size);
-    place += kRootHead + size;
-    return {cell, head.span()[0] != std::byte{0}, {records.span().begin(), records.span().end()}};
-  }
-
-  State& state_;
-  const Plan& plan_;
-  fs::path work_;
-  const TileOptions& options_;
-  OutFile octree_;
-  OutFile nodes_;
-  OutFile roots_;
-};
 
 NamedInput name_input(const std::string& path) {
   struct stat status {};
@@ -258,7 +102,7 @@ class Tiler {
       state_.distributed = true;
       save(state_, work_ / "tile.json");
     }
-    Builder builder(state_, work_, options_);
+    StoreBuilder builder(state_, work_);
     builder.sort_chunks(told("building the octree"));
     builder.finish(fs::path(paths_.front()).stem().string());
     tell("finishing", 0);
