@@ -10,9 +10,6 @@
 
 namespace palpate::io::tile {
 
-/// Points of a leaf at most; Potree's page fetches so many at once (judgement).
-inline constexpr std::size_t kLeafPoints = 16384;
-
 /// A node whose points are settled.
 struct StoreNode {
   Cell cell;
