@@ -14,8 +14,7 @@ struct TileOptions {
   double scale = 1;                      ///< multiplies coordinates to give metres
   bool force = false;                    ///< replace what is there, whole or not
   std::size_t chunk_points = 8'000'000;  ///< sorted at once (judgement: 0.5 GB for each)
-  std::size_t leaf_points = std::size_t{1}
-                            << 14U;  ///< a page of Potree takes so many at once (judgement)
+  std::size_t leaf_points = 16'384;      ///< a page of Potree takes so many at once (judgement)
   /// Called with what is done and 0 ... 1 now and then, on any thread but never twice at once; may
   /// throw to give up: the next call goes on from there.
   std::function<void(const std::string& step, double done)> progress{};
