@@ -177,7 +177,10 @@ bool run_sequence_target(std::string_view name, const io::Input& input) {
 
 CloudFile read_as(std::string_view name, const io::Input& input) {
   if (name == "gltf") return io::read_gltf(input);
-  if (name == "las" || name == "laz") return io::read_las(input);
+  if (name == "las" || name == "laz") {
+    check_pieces(input.bytes);
+    return io::read_las(input);
+  }
   if (name == "obj") return io::read_obj(input);
   if (name == "pcd") return io::read_pcd(input);
   if (name == "pgm") return io::cloud_of(input, io::read_pgm(input));

@@ -33,4 +33,7 @@ void check_messages(std::span<const std::byte> bytes);
 /// first two (16 bits each). @throws std::logic_error for a broken promise.
 [[nodiscard]] CloudFile read_potree(std::span<const std::byte> bytes);
 
+/// The targets "las" and "laz" as a store reads them. @throws std::logic_error in the same way.
+void check_pieces(std::span<const std::byte> bytes);
+
 }  // namespace palpate::fuzz

@@ -23,6 +23,7 @@
 #include "apps/palpate/info/info_command.hpp"
 #include "apps/palpate/paper/paper_command.hpp"
 #include "apps/palpate/replay/replay_command.hpp"
+#include "apps/palpate/tile/tile_command.hpp"
 #include "apps/palpate/touch/touch.hpp"
 #include "apps/palpate/zwidth/zwidth_command.hpp"
 
@@ -93,6 +94,8 @@ std::vector<Command> add_commands(CLI::App& p) {
       command(p, "align", "Find the poses of cameras and clouds by aligning their surfaces",
               add_align_options, align_sources),
       command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
+      command(p, "tile", "Write clouds too large for memory as a store that is read in parts",
+              add_tile_options, tile),
       command(p, "bag", "Describe recordings, and recover what can be read of damaged ones",
               add_bag_options, bag),
       command<ReplayCommand>(
@@ -172,7 +175,7 @@ int run(int argc, char** argv) {
     if (each.app->parsed()) return each.run();
   }
   throw UsageError(
-      "no command given; use touch, align, info, bag, replay, cameras, devices, ros, doctor, "
+      "no command given; use touch, align, info, tile, bag, replay, cameras, devices, ros, doctor, "
       "paper, demo or zwidth (see 'palpate --help')");
 }
 

@@ -6,21 +6,9 @@
 
 #include "io/cloud_builder.hpp"
 #include "io/copc.hpp"
-#include "io/text_scanner.hpp"
 
 namespace palpate::io {
 namespace {
-
-constexpr std::size_t kLongestHeader = 375;  // bytes; ASPRS LAS 1.4
-constexpr std::size_t kPlaceOfOffset = 96;   // byte of the header that says where points begin
-
-/// All before the points.
-Bytes read_head(const OpenFile& file) {
-  const Bytes start = file.read(0, std::min(file.size(), kLongestHeader));
-  if (start.size() < kLongestHeader) return file.read(0, start.size());
-  const auto points = load_as<std::uint32_t>(start.span().data() + kPlaceOfOffset);
-  return file.read(0, std::min<std::size_t>(file.size(), points));
-}
 
 class CopcStore final : public PointStore {
  public:
@@ -28,7 +16,7 @@ class CopcStore final : public PointStore {
       : file_(path),
         parts_(parts_of(file_)),
         options_{.scale = scale},
-        bytes_(read_head(file_)),
+        bytes_(read_las_head(file_)),
         head_{bytes_.span(), path.string(), options_},
         header_(read_las_header(head_)) {
     std::optional<Copc> copc = read_copc(head_, header_, parts_);

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/io/files.hpp"
@@ -100,6 +101,8 @@ struct LasHeader {
   std::size_t points = 0;
   Eigen::Vector3d scale;  ///< coordinate = number * scale + offset
   Eigen::Vector3d offset;
+  Eigen::Vector3d lower;  ///< of the coordinates, as announced: they may lie elsewhere
+  Eigen::Vector3d upper;
 
   /// Formats from 6 on lay out a point's flags otherwise.
   [[nodiscard]] bool extended() const { return format >= 6; }
@@ -112,6 +115,10 @@ struct LasHeader {
 
 /// @throws Error that names the byte of what is wrong.
 [[nodiscard]] LasHeader read_las_header(const Input& input);
+
+/// The bytes of a file before its points: header and variable length records.
+/// @throws Error as OpenFile::read() does.
+[[nodiscard]] Bytes read_las_head(const OpenFile& file);
 
 /// The contents of a variable length record: where they are in the file, and their bytes.
 struct LasRecord {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "io/formats.hpp"
 #include "io/input.hpp"
@@ -23,6 +24,7 @@ constexpr std::size_t kRecordSize = 105;
 constexpr std::size_t kLegacyCount = 107;
 constexpr std::size_t kScale = 131;
 constexpr std::size_t kOffset = 155;
+constexpr std::size_t kBounds = 179;  // highest and lowest x, then y, then z
 constexpr std::size_t kSmallest = 227;
 constexpr std::size_t kCount14 = 247;
 constexpr std::size_t kSmallest14 = 375;
@@ -82,6 +84,8 @@ class LasHeaderParser {
       const std::size_t step = sizeof(double) * static_cast<std::size_t>(axis);
       header_.scale[axis] = load_as<double>(data_ + kScale + step);
       header_.offset[axis] = load_as<double>(data_ + kOffset + step);
+      header_.upper[axis] = load_as<double>(data_ + kBounds + 2 * step);
+      header_.lower[axis] = load_as<double>(data_ + kBounds + 2 * step + sizeof(double));
       if (!std::isfinite(header_.scale[axis]) || header_.scale[axis] == 0) {
         wrong(kScale + step, fmt::format("invalid coordinate scale of {}", header_.scale[axis]));
       }
@@ -140,6 +144,13 @@ std::string LasHeader::name() const {
 
 LasHeader read_las_header(const Input& input) {
   return LasHeaderParser(input).run();
+}
+
+Bytes read_las_head(const OpenFile& file) {
+  Bytes start = file.read(0, std::min(file.size(), kSmallest14));
+  if (start.size() < kSmallest) return start;
+  const std::size_t points = load_as<std::uint32_t>(start.span().data() + kPointsOffset);
+  return points > start.size() ? file.read(0, std::min(file.size(), points)) : std::move(start);
 }
 
 std::optional<LasRecord> find_record(const Input& input, const LasHeader& header,

@@ -130,7 +130,7 @@ TEST_P(GoldenHelp, SaysWhatItDid) {
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenHelp,
                          testing::Values("", "touch", "align", "info", "bag", "cameras", "doctor",
-                                         "devices", "paper", "demo", "replay", "zwidth"),
+                                         "devices", "paper", "demo", "replay", "tile", "zwidth"),
                          [](const auto& command) {
                            return *command.param ? std::string(command.param) : "palpate";
                          });

@@ -34,7 +34,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
-      {"", "touch, align, info, bag, replay, cameras, devices, ros, doctor, paper, demo or zwidth"},
+      {"", "touch, align, info, tile, bag, replay, cameras, devices, ros, doctor, paper, demo or zwidth"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "not expected: tuch synthetic:torus; did you mean touch?"},
       {"touch", "no source given"},
@@ -67,6 +67,8 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"touch synthetic:torus --picture a.jpg", "name it a.png"},
       {"info synthetic:torus --picture a.jpg", "name it a.png"},
       {"info synthetic:torus camera:simulated --picture a.png", "camera:simulated"},
+      {"tile a.las", "--out is required"},
+      {"tile --out b", "clouds is required"},
       {"zwidth --picture a.pdf", "name it a.png"},
       {"paper fig5 --picture -", "--picture"},
       {"touch synthetic:torus --stiffness 1e308", "at most 1e9"},

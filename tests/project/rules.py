@@ -35,7 +35,8 @@ FLOORS = {
     "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
-ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "touch", "zwidth"}, {"view"},
+ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "tile", "touch",
+          "zwidth"}, {"view"},
          {"report"}, {"run"}, {"record"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
 ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}

@@ -119,12 +119,16 @@ namespace {
 
 class ChunkTableReader {
  public:
-  ChunkTableReader(const Input& input, const LasHeader& header)
-      : input_(input), header_(header), chunk_size_(read_chunk_size(input, header)) {}
+  ChunkTableReader(const Input& head, const LasHeader& header, const Parts& file)
+      : head_(head),
+        header_(header),
+        size_(file.size),
+        file_(file),
+        chunk_size_(read_chunk_size(head, header)) {}
 
   std::vector<Chunk> run() {
     find_table();
-    const std::size_t count = load_as<std::uint32_t>(input_.bytes.data() + table_ + 4);
+    const std::size_t count = load_as<std::uint32_t>(file_.read(table_ + 4, 4).span().data());
     const std::size_t most = (table_ - begin()) / header_.record_size;
     if (count > most) {
       wrong(fmt::format("a table of {} chunks, but {} bytes are too few for them", count,
@@ -139,23 +143,26 @@ class ChunkTableReader {
   [[nodiscard]] std::size_t begin() const { return header_.points_offset + 8; }
 
   void find_table() {
-    const std::size_t size = input_.bytes.size();
-    if (begin() > size) fail_at_byte(input_, size, "the file ends before its points", kIncomplete);
-    auto place = load_as<std::uint64_t>(input_.bytes.data() + header_.points_offset);
+    if (begin() > size_) fail_at_byte(head_, size_, "the file ends before its points", kIncomplete);
+    auto place = load_as<std::uint64_t>(file_.read(header_.points_offset, 8).span().data());
     if (place == ~std::uint64_t{0}) {  // a writer that could not go back to write it
-      place = load_as<std::uint64_t>(input_.bytes.data() + size - 8);
+      place = load_as<std::uint64_t>(file_.read(size_ - 8, 8).span().data());
     }
-    if (place < begin() || place > size - 8) {
+    if (place < begin() || place > size_ - 8) {
       fail_at_byte(
-          input_, header_.points_offset,
-          fmt::format("the chunk table at byte {} is outside the file of {} bytes", place, size),
+          head_, header_.points_offset,
+          fmt::format("the chunk table at byte {} is outside the file of {} bytes", place, size_),
           kIncomplete);
     }
     table_ = place;
   }
 
   void read_sizes(std::size_t count) {
-    RangeDecoder in(input_.bytes.subspan(table_ + 8));
+    // Bytes of a chunk's two numbers at most: 54 bits each for symbols and what is raw.
+    constexpr std::size_t kLongestEntry = 16;
+    const std::size_t rest = size_ - table_ - 8;
+    const Bytes table = file_.read(table_ + 8, std::min(rest, kLongestEntry * (count + 1)));
+    RangeDecoder in(table.span());
     NumberModel sizes(32, 2);
     Chunk chunk{.place = begin()};
     std::uint32_t varying = 0;
@@ -164,8 +171,8 @@ class ChunkTableReader {
       if (!chunk_size_) varying = sizes.decode(in, varying, 0);
       bytes = sizes.decode(in, bytes, 1);
       if (in.overran()) wrong(fmt::format("the file ends inside the sizes of chunk {}", i + 1));
-      const std::size_t rest = header_.points - chunk.first;
-      chunk.points = chunk_size_ ? std::min(*chunk_size_, rest) : varying;
+      const std::size_t left = header_.points - chunk.first;
+      chunk.points = chunk_size_ ? std::min(*chunk_size_, left) : varying;
       chunk.bytes = bytes;
       check(chunk, i);
       chunks_.push_back(chunk);
@@ -194,11 +201,13 @@ class ChunkTableReader {
   }
 
   [[noreturn]] void wrong(std::string_view what) const {
-    fail_at_byte(input_, table_, what, kIncomplete);
+    fail_at_byte(head_, table_, what, kIncomplete);
   }
 
-  const Input& input_;
+  const Input& head_;
   const LasHeader& header_;
+  std::size_t size_;  // of the file, bytes
+  const Parts& file_;
   std::optional<std::size_t> chunk_size_;  // points
   std::size_t table_ = 0;                  // its place, bytes
   std::vector<Chunk> chunks_;
@@ -206,8 +215,12 @@ class ChunkTableReader {
 
 }  // namespace
 
+std::vector<Chunk> read_chunk_table(const Input& head, const LasHeader& header, const Parts& file) {
+  return ChunkTableReader(head, header, file).run();
+}
+
 std::vector<Chunk> read_chunk_table(const Input& input, const LasHeader& header) {
-  return ChunkTableReader(input, header).run();
+  return read_chunk_table(input, header, parts_of(input.bytes));
 }
 
 }  // namespace palpate::io::laz

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
+#include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 
 namespace palpate::io::laz {
@@ -29,5 +31,9 @@ struct Chunk {
 /// than their bytes can hold.
 /// @throws Error that names the byte of what is wrong.
 [[nodiscard]] std::vector<Chunk> read_chunk_table(const Input& input, const LasHeader& header);
+
+/// The same of a file that is not in memory: `head` is what lies before its points.
+[[nodiscard]] std::vector<Chunk> read_chunk_table(const Input& head, const LasHeader& header,
+                                                  const Parts& file);
 
 }  // namespace palpate::io::laz
