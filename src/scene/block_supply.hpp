@@ -22,6 +22,7 @@ struct CloudBlock {
   Division::Key key;
   Box box;  ///< that holds its points, world frame, m
   State state = State::missing;
+  double presence = 0;  ///< at the start of what was shown last; 1 at its end
   double distance = 0;  ///< from what tools can reach, m; negative within
   Box sparser;          ///< around points in its cube that belong to further levels, where known
   Piece piece;          ///< once it is prepared
@@ -45,10 +46,14 @@ class BlockSupply {
   /// Does list() give all of the cloud?
   [[nodiscard]] virtual bool is_whole() const = 0;
 
-  /// Adds the blocks that tools may need soon, and takes others out where memory is short.
+  /// Adds the blocks that tools may need soon, and takes out others, farther away than `near` (m),
+  /// where memory is short.
   /// @return boxes without a block: what is there is not known.
-  [[nodiscard]] virtual std::vector<Box> list(std::span<const Ball> tools,
+  [[nodiscard]] virtual std::vector<Box> list(std::span<const Ball> tools, double near,
                                               std::vector<CloudBlock>& blocks) = 0;
+
+  /// Is there memory for a block that is not near?
+  [[nodiscard]] virtual bool has_room(std::span<const CloudBlock> blocks) const = 0;
 
   virtual void prepare(CloudBlock& block) = 0;
 };

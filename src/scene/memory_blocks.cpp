@@ -22,7 +22,7 @@ class MemoryBlocks final : public BlockSupply {
   [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return nullptr; }
   [[nodiscard]] bool is_whole() const override { return true; }
 
-  [[nodiscard]] std::vector<Box> list(std::span<const Ball> /*tools*/,
+  [[nodiscard]] std::vector<Box> list(std::span<const Ball> /*tools*/, double /*near*/,
                                       std::vector<CloudBlock>& blocks) override {
     const Division& division = blocks_.division();
     for (std::size_t k = blocks.size(); k < division.size(); ++k) {
@@ -30,6 +30,10 @@ class MemoryBlocks final : public BlockSupply {
       blocks.back().box = division.box(k);
     }
     return {};
+  }
+
+  [[nodiscard]] bool has_room(std::span<const CloudBlock> /*blocks*/) const override {
+    return true;
   }
 
   void prepare(CloudBlock& block) override {

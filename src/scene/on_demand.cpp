@@ -41,13 +41,14 @@ struct OnDemand::Inside {
   using State = CloudBlock::State;
 
   Inside(std::unique_ptr<BlockSupply> from, const PrepareOptions& options)
-      : supply(std::move(from)), kernel(options.kernel) {}
+      : supply(std::move(from)), kernel(options.kernel), near(kAhead * supply->facts().radius) {}
 
   void look(const Source& source);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
+  [[nodiscard]] int rank(const CloudBlock& block) const;
   [[nodiscard]] std::vector<CloudBlock*> chosen();
-  [[nodiscard]] bool shows_more(double within);
-  [[nodiscard]] bool was_unlisted(double within) const;
+  [[nodiscard]] bool shows_more();
+  [[nodiscard]] bool was_unlisted() const;
   template <class Work>
   void beside_servos(const Work& work);
   void prepare(CloudBlock& block);
@@ -57,9 +58,11 @@ struct OnDemand::Inside {
 
   std::unique_ptr<BlockSupply> supply;
   Kernel kernel;
+  double near;  // how far around what tools can reach nothing is to be missing, m
   std::vector<CloudBlock> blocks;
   std::vector<Box> unlisted;       // where no block is
   std::vector<Box> told_unlisted;  // the same as it was last shown
+  double last_start = 0;           // of what was shown last, s
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
@@ -74,7 +77,7 @@ void OnDemand::Inside::look(const Source& at) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
   if (balls.empty()) balls.push_back({supply->start(), 0});
-  unlisted = supply->list(balls, blocks);
+  unlisted = supply->list(balls, near, blocks);
   for (CloudBlock& block : blocks) {
     block.distance = std::numeric_limits<double>::infinity();
     for (const Ball& ball : balls) {
@@ -96,13 +99,22 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// The blocks to show, the nearest first: all that tools can reach, and more while they are few.
+/// What is shown first where there is no room for all: what tools can reach, then what is near.
+/// What is shown already stays before others, or a hand's way would change what is shown all the
+/// time.
+int OnDemand::Inside::rank(const CloudBlock& block) const {
+  if (block.distance <= 0) return 0;
+  return (block.distance <= near ? 1 : 3) + (block.state == State::shown ? 0 : 1);
+}
+
+/// The blocks to show: all that tools can reach, and more while they are few.
 std::vector<CloudBlock*> OnDemand::Inside::chosen() {
   std::vector<CloudBlock*> order;
   for (CloudBlock& block : blocks) {
     if (block.state != State::missing) order.push_back(&block);
   }
-  std::ranges::stable_sort(order, {}, &CloudBlock::distance);
+  std::ranges::stable_sort(
+      order, {}, [&](const CloudBlock* block) { return std::pair(rank(*block), block->distance); });
   std::vector<CloudBlock*> found;
   std::size_t points = 0;
   for (CloudBlock* const block : order) {
@@ -114,24 +126,24 @@ std::vector<CloudBlock*> OnDemand::Inside::chosen() {
   return found;
 }
 
-/// Is there a block nearer than `within`, m, that is to be shown and is not yet? One for which
-/// there is no room does not count: nobody is to wait for it.
-bool OnDemand::Inside::shows_more(double within) {
+/// Is there a block near that is to be shown and is not yet? One for which there is no room does
+/// not count: nobody is to wait for it.
+bool OnDemand::Inside::shows_more() {
   return std::ranges::any_of(chosen(), [&](const CloudBlock* block) {
-    return block->state == State::prepared && block->distance <= within;
+    return block->state == State::prepared && block->distance <= near;
   });
 }
 
-/// Was a place nearer than `within`, m, shown as one of which nothing is known, and is it not so
+/// Was a place near shown as one of which nothing is known, and is it not so
 /// any more?
-bool OnDemand::Inside::was_unlisted(double within) const {
+bool OnDemand::Inside::was_unlisted() const {
   const auto same = [](const Box& a, const Box& b) {
     return a.lower == b.lower && a.upper == b.upper;
   };
   if (std::ranges::equal(unlisted, told_unlisted, same)) return false;
   return std::ranges::any_of(tools, [&](const Reach& tool) {
     return std::ranges::any_of(told_unlisted,
-                               [&](const Box& box) { return distance(box, tool) <= within; });
+                               [&](const Box& box) { return distance(box, tool) <= near; });
   });
 }
 
@@ -151,12 +163,20 @@ void OnDemand::Inside::prepare(CloudBlock& block) {
 
 void OnDemand::Inside::show_near(Source& to, double now) {
   const bool first = source != &to;
+  Snapshot snapshot;
+  if (!first) snapshot.start = now + kLead;
+  snapshot.end = snapshot.start + (first ? 0 : kAppear);
+  // What rises goes on where it will be.
+  const double past = std::clamp((snapshot.start - last_start) / kAppear, 0., 1.);
+  last_start = snapshot.start;
   const std::vector<CloudBlock*> chosen = this->chosen();
   std::vector<const Piece*> shown;
   for (CloudBlock* const block : chosen) {
     auto& [positions, columns, report] = block->piece;
-    const bool stood = first || block->state == State::shown;
-    columns.presences.assign(positions.size(), stood ? 1.f : 0.f);
+    const double before = block->state == State::shown ? block->presence : 0;
+    const double risen = block->state == State::shown ? past : 0;
+    block->presence = first ? 1 : before + (1 - before) * risen;
+    columns.presences.assign(positions.size(), static_cast<float>(block->presence));
     columns.end_presences.assign(positions.size(), 1.f);
     shown.push_back(&block->piece);
   }
@@ -167,13 +187,10 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
   std::ranges::stable_sort(others, {}, &CloudBlock::distance);
-  Snapshot snapshot;
   snapshot.missing = told_unlisted = unlisted;
   for (const CloudBlock* const block : others) {
     if (snapshot.missing.size() < kMostMissing) snapshot.missing.push_back(block->box);
   }
-  if (!first) snapshot.start = now + kLead;
-  snapshot.end = snapshot.start + (first ? 0 : kAppear);
   publish(to, shown, std::move(snapshot));
 }
 
@@ -232,14 +249,13 @@ bool OnDemand::advance(Source& source, double now) {
   const std::lock_guard lock(in.mutex);
   if (in.done) return false;
   in.look(source);
-  const double near = kAhead * in.supply->facts().radius;
   const double anywhere = std::numeric_limits<double>::infinity();
-  if (CloudBlock* const needed = in.nearest_missing(near)) {
+  if (CloudBlock* const needed = in.nearest_missing(in.near)) {
     in.prepare(*needed);
-  } else if (in.share > 0 &&
-             (in.source != &source || in.shows_more(near) || in.was_unlisted(near))) {
+  } else if (in.share > 0 && (in.source != &source || in.shows_more() || in.was_unlisted())) {
     in.show_near(source, now);
-  } else if (CloudBlock* const next = in.nearest_missing(anywhere)) {
+  } else if (CloudBlock* const next = in.nearest_missing(anywhere);
+             next != nullptr && in.supply->has_room(in.blocks)) {
     in.prepare(*next);
   } else if (in.supply->is_whole()) {
     in.show_all(source);

@@ -43,6 +43,13 @@ struct Range {
   Division::Index first{};
   Division::Index last{};
 
+  [[nodiscard]] bool has(const Key& key) const {
+    bool within = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      within = within && key.at[k] >= first[k] && key.at[k] <= last[k];
+    }
+    return within;
+  }
   auto operator<=>(const Range&) const = default;
 };
 
@@ -91,18 +98,24 @@ class StoreBlocks final : public BlockSupply {
   [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return overview_; }
   [[nodiscard]] bool is_whole() const override { return false; }
 
-  [[nodiscard]] std::vector<Box> list(std::span<const Ball> tools,
+  [[nodiscard]] std::vector<Box> list(std::span<const Ball> tools, double near,
                                       std::vector<CloudBlock>& blocks) override {
     std::vector<Range> ranges;
     for (const Ball& ball : tools) ranges.push_back(range_of(ball));
     std::ranges::sort(ranges);
     ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
-    drop(ranges, blocks);
+    drop_empty(ranges, blocks);
+    make_room(near, blocks);
     std::set<Key> known;
     for (const CloudBlock& block : blocks) known.insert(block.key);
     for (const Range& range : ranges) add(range, known, blocks);
     add_sparser(known, blocks);
     return unlisted(ranges);
+  }
+
+  // The largest block so far has to fit, or blocks would come and go without end.
+  [[nodiscard]] bool has_room(std::span<const CloudBlock> blocks) const override {
+    return points_of(blocks) + largest_ <= most_prepared_;
   }
 
   void prepare(CloudBlock& block) override {
@@ -122,6 +135,7 @@ class StoreBlocks final : public BlockSupply {
     const std::optional<std::size_t> own = parts.division().find(block.key);
     if (!own) return;
     block.piece = parts.prepare(*own);
+    largest_ = std::max(largest_, block.piece.positions.size());
     block.box = parts.division().box(*own);
   }
 
@@ -159,26 +173,29 @@ class StoreBlocks final : public BlockSupply {
     return range;
   }
 
-  /// Takes out cubes without points that no tool may need soon, and the farthest of what is
-  /// prepared where that is too much.
-  void drop(std::span<const Range> ranges, std::vector<CloudBlock>& blocks) const {
-    const auto is_wanted = [&](const CloudBlock& block) {
-      return std::ranges::any_of(ranges, [&](const Range& range) {
-        bool within = true;
-        for (std::size_t k = 0; k < 3; ++k) {
-          within = within && block.key.at[k] >= range.first[k] && block.key.at[k] <= range.last[k];
-        }
-        return within;
-      });
-    };
-    std::erase_if(blocks, [&](const CloudBlock& block) {
-      return block.state == CloudBlock::State::missing && block.key.level == 0 && !is_wanted(block);
-    });
+  static std::size_t points_of(std::span<const CloudBlock> blocks) {
     std::size_t points = 0;
     for (const CloudBlock& block : blocks) points += block.piece.positions.size();
+    return points;
+  }
+
+  /// Takes out cubes without points that no tool may need soon.
+  static void drop_empty(std::span<const Range> ranges, std::vector<CloudBlock>& blocks) {
+    std::erase_if(blocks, [&](const CloudBlock& block) {
+      return block.key.level == 0 && block.piece.positions.empty() &&
+             std::ranges::none_of(ranges, [&](const Range& range) { return range.has(block.key); });
+    });
+  }
+
+  /// Takes out the farthest blocks that are not near.
+  void make_room(double near, std::vector<CloudBlock>& blocks) const {
+    std::size_t points = points_of(blocks);
     while (points > most_prepared_) {
-      const auto farthest = std::ranges::max_element(blocks, {}, &CloudBlock::distance);
-      if (farthest->key.level == 0 && is_wanted(*farthest)) return;
+      const auto distance = [](const CloudBlock& block) {
+        return block.piece.positions.empty() ? 0 : block.distance;
+      };
+      const auto farthest = std::ranges::max_element(blocks, {}, distance);
+      if (distance(*farthest) <= near) return;
       points -= farthest->piece.positions.size();
       blocks.erase(farthest);
     }
@@ -226,6 +243,7 @@ class StoreBlocks final : public BlockSupply {
   Eigen::Isometry3d pose_;
   NodeCache nodes_;
   std::size_t most_prepared_;  // points
+  std::size_t largest_ = 0;    // points of the largest block so far
   Box all_;                    // that holds the store, world frame, m
   std::shared_ptr<const PointCloud> overview_;
   Vector3d start_ = Vector3d::Zero();  // the point of the overview that is nearest to the middle

@@ -68,7 +68,11 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.on_demand = std::make_unique<OnDemand>(store, plan.options.prepare,
                                                 plan.options.T_world_sensor, plan.cache);
   result.paged = true;
-  result.prepared = first_surface(scene, result).report();
+  const Source& source = first_surface(scene, result);
+  result.prepared = source.report();
+  if (plan.reading.scale == 1) {
+    result.units = guess_units(bounds_of(*source.state().overview), layout.format);
+  }
   result.prepare_seconds = std::chrono::duration<double>(Clock::now() - opened).count();
   return true;
 }
