@@ -1,4 +1,5 @@
-// The geometry floor beside PCL and nanoflann, on one thread. Every row says estimator/who/points.
+// The geometry floor, and preparation, beside PCL and nanoflann, on one thread. Every row says
+// estimator/who/points.
 #include <benchmark/benchmark.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -11,6 +12,7 @@
 #include "geometry/normals.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "palpate/prepare/prepare.hpp"
 #include "peers/peers.hpp"
 
 namespace palpate::bench {
@@ -130,6 +132,26 @@ void add_normal_rows(std::size_t count) {
   });
 }
 
+// All that makes a cloud touchable, beside what any program needs of one: an index, the spacing and
+// normals.
+void add_preparation_rows(std::size_t count) {
+  add("preparation", "palpate", count, [](benchmark::State& state, const Points& points) {
+    PointCloud cloud;
+    cloud.positions = points;
+    for (auto _ : state) benchmark::DoNotOptimize(prepare(cloud));
+  });
+  add("preparation", "pcl", count, [](benchmark::State& state, const Points& points) {
+    const auto cloud = make_pcl_cloud(points);
+    if (!cloud) return state.SkipWithError("built without PCL");
+    const float radius = normal_radius(points.size());
+    for (auto _ : state) {
+      const auto tree = cloud->make_kdtree();
+      benchmark::DoNotOptimize(tree->mean_spacing(3));
+      benchmark::DoNotOptimize(tree->normals(radius, kViewpoint));
+    }
+  });
+}
+
 }  // namespace
 }  // namespace palpate::bench
 
@@ -140,6 +162,7 @@ int main(int argc, char** argv) {
     add_index_rows(count);
     add_spacing_rows(count);
     add_normal_rows(count);
+    add_preparation_rows(count);
   }
   add_index_rows(kLarge);
   benchmark::Initialize(&argc, argv);

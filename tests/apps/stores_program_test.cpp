@@ -1,0 +1,69 @@
+// What the program makes of clouds that stay on disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/program.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::HasSubstr;
+
+/// A folder with terrain of 200 000 points in `site`.
+struct Site {
+  Site() {
+    const Outcome made = shell.run("tile synthetic:terrain:200000 --out site");
+    EXPECT_EQ(made.code, 0) << made.err;
+  }
+
+  Shell shell;
+};
+
+TEST(Stores, ThatAreLargerThanTheCacheAreReadAroundTheTool) {
+  Site site;
+  const Outcome run =
+      site.shell.run("touch site --cache 8M --duration 0.5 --json run.json --log a.csv");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("200 000 points on disk"));
+  const nlohmann::json source = nlohmann::json::parse(site.shell.read("run.json"))["sources"][0];
+  EXPECT_EQ(source["points_stored"], 200'000);
+  EXPECT_EQ(source["format"], "Potree 2.0, DEFAULT");
+  EXPECT_GT(source["points_felt"], 1000);
+  EXPECT_FALSE(source.contains("prepared_share"));
+  ASSERT_EQ(site.shell.run("touch site --cache 8M --duration 0.5 --log b.csv").code, 0);
+  EXPECT_EQ(without_times(site.shell, "a.csv"), without_times(site.shell, "b.csv"));
+}
+
+TEST(Stores, ThatFitAreReadAsAWhole) {
+  Site site;
+  const Outcome run = site.shell.run("touch site/metadata.json --duration 0.2 --json run.json");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const nlohmann::json source = nlohmann::json::parse(site.shell.read("run.json"))["sources"][0];
+  EXPECT_FALSE(source.contains("points_stored"));
+  EXPECT_EQ(source["points_read"], 200'000);
+}
+
+TEST(Stores, SayWhatNeedsTheWhole) {
+  Site site;
+  const Outcome record = site.shell.run("touch site --cache 8M --record run.mcap --duration 0.2");
+  EXPECT_EQ(record.code, 1);
+  EXPECT_THAT(record.err, HasSubstr("--record needs all of site in memory"));
+  const Outcome length = site.shell.run("touch site --cache 8M --length 3 --duration 0.2");
+  EXPECT_EQ(length.code, 1);
+  EXPECT_THAT(length.err, HasSubstr("--length needs all of site in memory"));
+}
+
+TEST(Stores, TellASizeThatIsNone) {
+  Shell shell;
+  for (const std::string size : {"", "0", "x", "1T", "-1", "5MB", "99999999999G"}) {
+    const Outcome run = shell.run("touch synthetic:sphere --cache '" + size + "'");
+    EXPECT_EQ(run.code, 2) << size;
+    EXPECT_THAT(run.err, HasSubstr("is no size; give 500M or 2G")) << size;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app
