@@ -244,7 +244,7 @@ OnDemand::OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions
 
 OnDemand::~OnDemand() = default;
 
-bool OnDemand::advance(Source& source, double now) {
+bool OnDemand::advance(Source& source, double now, bool ahead) {
   Inside& in = *inside_;
   const std::lock_guard lock(in.mutex);
   if (in.done) return false;
@@ -254,6 +254,8 @@ bool OnDemand::advance(Source& source, double now) {
     in.prepare(*needed);
   } else if (in.share > 0 && (in.source != &source || in.shows_more() || in.was_unlisted())) {
     in.show_near(source, now);
+  } else if (!ahead) {
+    return false;
   } else if (CloudBlock* const next = in.nearest_missing(anywhere);
              next != nullptr && in.supply->has_room(in.blocks)) {
     in.prepare(*next);

@@ -175,13 +175,14 @@ TEST(Blocks, AnyOrderGivesTheSame) {
   const std::vector<Piece> pieces = blocks.prepare_all();
   std::vector<const Piece*> some;
   for (const Piece& piece : pieces) some.push_back(&piece);
-  const Prepared all = blocks.join(some);
+  const auto joined = [&] { return join(some, blocks.facts(), cloud.origin, options.kernel); };
+  const Prepared all = joined();
   const Prepared again = prepare(cloud, options);
   EXPECT_TRUE(std::ranges::equal(all.points.grid.points(), again.points.grid.points()));
   EXPECT_EQ(all.points.normals, again.points.normals);
   EXPECT_EQ(all.report.points_in, cloud.size());
   some.resize(1);
-  const SurfacePoints one = blocks.join(some).points;
+  const SurfacePoints one = joined().points;
   std::size_t at = 0;  // its points come in the order that they have among all
   for (std::uint32_t i = 0; i < all.points.size() && at < one.size(); ++i) {
     if (all.points.grid.points()[i] == one.grid.points()[at]) ++at;

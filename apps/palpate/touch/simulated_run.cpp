@@ -36,7 +36,8 @@ void read_around_tools(Run& run, double time, const Interruption& interruption) 
   for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
     OnDemand* const cloud = run.loaded.sources[i].on_demand.get();
     if (cloud == nullptr) continue;
-    while (!interruption.asked() && cloud->advance(run.loaded.scene.source(i), time)) continue;
+    Source& source = run.loaded.scene.source(i);
+    while (!interruption.asked() && cloud->advance(source, time, false)) continue;
   }
 }
 

@@ -43,10 +43,11 @@ class OnDemand {
   /// Prepares one block, or makes what is there the surface of `source` from `now` on (s, on the
   /// clock that SceneField::update is given). Takes up to some tenths of a second; leaves a core to
   /// servos once there are any. Not real-time.
+  /// `ahead`: prepare also what no tool comes near yet.
   /// @return false: there was nothing to do. That is for good if done(); around a store it is until
   ///   a tool moves.
   /// @throws Error as prepare() and PointStore::read() do.
-  bool advance(Source& source, double now);
+  bool advance(Source& source, double now, bool ahead = true);
 
   /// Waits until advance() is through, and publishes nothing from then on: the source becomes
   /// somebody else's. Any thread.
