@@ -125,8 +125,7 @@ double Division::radius(const CloudFacts& facts, std::size_t level) {
 
 /// Adds a level of these points and replaces them by those of the next one.
 void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::uint8_t>& waits) {
-  const double radius =
-      levels_.empty() ? radius_ : std::ldexp(levels_.back().radius, kCoarserShift);
+  const double radius = std::ldexp(radius_, kCoarserShift * static_cast<int>(levels_.size()));
   Level& level = levels_.emplace_back();
   level.radius = radius;
   level.cell = std::ldexp(kBlockEdge * radius, -kCellShift);

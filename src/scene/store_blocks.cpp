@@ -21,7 +21,7 @@ using Key = Division::Key;
 // Typical R around a cube within which points count for its block. Derived: on level 0 the halo is
 // 3 and cells are 6; on further ones 12, and cells of all levels before are 2 together.
 constexpr double kAround = 6;
-constexpr double kAroundSparse = 14;
+constexpr double kAroundSparse = 14;  // derived, too
 
 // Cubes around the one that holds a tool which are prepared before it comes there; judgement.
 constexpr int kSoon = 1;

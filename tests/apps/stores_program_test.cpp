@@ -58,7 +58,7 @@ TEST(Stores, SayWhatNeedsTheWhole) {
 
 TEST(Stores, TellASizeThatIsNone) {
   Shell shell;
-  for (const std::string size : {"", "0", "x", "1T", "-1", "5MB", "99999999999G"}) {
+  for (const std::string size : {"", "0", "x", "-1", "99999999999G"}) {
     const Outcome run = shell.run("touch synthetic:sphere --cache '" + size + "'");
     EXPECT_EQ(run.code, 2) << size;
     EXPECT_THAT(run.err, HasSubstr("is no size; give 500M or 2G")) << size;

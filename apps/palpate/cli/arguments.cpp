@@ -113,20 +113,6 @@ Pinhole parse_intrinsics(const std::string& text) {
   return {v[0], v[1], v[2], v[3]};
 }
 
-std::size_t parse_bytes(const std::string& text, const std::string& option) {
-  constexpr std::string_view kUnits = "KMG";
-  std::size_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, problem] = std::from_chars(text.data(), end, number);
-  const std::size_t unit = rest == end ? kUnits.size() : kUnits.find(*rest);
-  const bool known = rest == end || (unit < kUnits.size() && rest + 1 == end);
-  const auto shift = rest == end ? 0 : 10 * (unit + 1);
-  if (problem != std::errc() || !known || number == 0 || number > (SIZE_MAX >> shift)) {
-    throw UsageError(fmt::format("{}: '{}' is no size; give 500M or 2G", option, text));
-  }
-  return number << shift;
-}
-
 NoiseModel parse_noise(const std::string& text) {
   if (std::ranges::none_of(text, [](char c) { return c == ','; })) {
     try {

@@ -49,10 +49,6 @@ struct PoseArgument {
 /// fx,fy,cx,cy in pixels.
 [[nodiscard]] Pinhole parse_intrinsics(const std::string& text);
 
-/// Bytes: a whole number with K, M or G (times 1024, 1024^2, 1024^3), or without.
-/// @throws UsageError that names the option.
-[[nodiscard]] std::size_t parse_bytes(const std::string& text, const std::string& option);
-
 /// s0,s1,s2 or s0,s1,s2,correlation, where correlation >= 1; or the name of a sensor profile.
 [[nodiscard]] NoiseModel parse_noise(const std::string& text);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
 #include "io/input.hpp"
 #include "palpate/io/synthetic.hpp"
@@ -159,6 +160,20 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
       .only_for(kImage);
 }
 
+namespace {
+
+// Bytes: 500M, 2G.
+std::size_t parse_size(std::string text) {
+  const std::string given = text;
+  const bool is_size = CLI::AsSizeValue(false)(text).empty() && text != "0";
+  if (!is_size) {
+    throw UsageError(fmt::format("--cache: '{}' is no size; give 500M or 2G", given));
+  }
+  return std::stoull(text);
+}
+
+}  // namespace
+
 void add_source_options(OptionTable& table, SourcePlan& s) {
   add_reading_options(table, s.reading);
   PrepareOptions& prepare = s.options.prepare;
@@ -180,7 +195,7 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
   table
       .add_text(
           "--cache", KeyKind::text, "SIZE",
-          [&s](const std::string& text) { s.cache = parse_bytes(text, "--cache"); },
+          [&s](const std::string& text) { s.cache = parse_size(text); },
           "memory for a COPC file or Potree folder; a larger one stays on disk, and what is around "
           "the tools is read: 500M, 2G (1G)")
       .only_for(kCloud);
