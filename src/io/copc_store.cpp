@@ -15,10 +15,11 @@ class CopcStore final : public PointStore {
   CopcStore(const std::filesystem::path& path, double scale)
       : file_(path),
         parts_(parts_of(file_)),
-        options_{.scale = scale},
         bytes_(read_las_head(file_)),
         head_{bytes_.span(), path.string(), options_},
-        header_(read_las_header(head_)) {
+        header_(read_las_header(head_)),
+        scale_(scale * header_.scale),
+        offset_(scale * header_.offset) {
     std::optional<Copc> copc = read_copc(head_, header_, parts_);
     if (!copc) return;
     nodes_ = std::move(copc->nodes);
@@ -40,7 +41,10 @@ class CopcStore final : public PointStore {
     PointCloud cloud;
     cloud.origin = layout_.origin;
     std::vector<std::array<float, 3>> colors;
-    for (const LasPoint& point : points_of(node)) {
+    const std::vector<LasPoint> points = points_of(node);
+    cloud.positions.reserve(points.size());
+    if (has_intensities_) cloud.intensities.reserve(points.size());
+    for (const LasPoint& point : points) {
       const Eigen::Vector3d p = place(point);
       if (point.withheld || !is_usable(p)) continue;
       cloud.positions.emplace_back((p - layout_.origin).cast<float>());
@@ -61,7 +65,7 @@ class CopcStore final : public PointStore {
 
   [[nodiscard]] Eigen::Vector3d place(const LasPoint& point) const {
     const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
-    return options_.scale * (numbers.cwiseProduct(header_.scale) + header_.offset);
+    return numbers.cwiseProduct(scale_) + offset_;
   }
 
   /// The root thins the whole file, so it tells which columns are of use, and where points lie.
@@ -85,6 +89,8 @@ class CopcStore final : public PointStore {
   Bytes bytes_;
   Input head_;
   LasHeader header_;
+  Eigen::Vector3d scale_;        // m
+  Eigen::Vector3d offset_;       // m
   std::vector<CopcNode> nodes_;  // by their places
   bool has_intensities_ = false;
   float color_factor_ = 0;  // to bytes; 0: without colours

@@ -228,7 +228,9 @@ Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts, con
   watch.lap(joined.report.seconds_index);
   joined.report.spacing = facts.spacing;
   joined.report.noise = facts.noise.sigma;
-  for (const Piece* const piece : pieces) joined.report.voxel = piece->report.voxel;
+  for (const Piece* const piece : pieces) {  // 0 of one without points
+    joined.report.voxel = std::max(joined.report.voxel, piece->report.voxel);
+  }
   complete(joined);
   return joined;
 }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct OnDemand::Inside {
       : supply(std::move(from)), kernel(options.kernel), near(kAhead * supply->facts().radius) {}
 
   void look(const Source& source);
+  void measure_distances(std::span<const Ball> balls);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
   [[nodiscard]] int rank(const CloudBlock& block) const;
   [[nodiscard]] std::vector<CloudBlock*> chosen();
@@ -77,16 +79,27 @@ void OnDemand::Inside::look(const Source& at) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
   if (balls.empty()) balls.push_back({supply->start(), 0});
+  measure_distances(balls);  // what is farther away goes first where memory is short
   unlisted = supply->list(balls, near, blocks);
+  measure_distances(balls);
+  const bool has_room = supply->has_room(blocks);
+  std::size_t ready = 0;
+  std::size_t wanted = 0;  // ready, or to be prepared while tools stay where they are
+  for (const CloudBlock& block : blocks) {
+    const bool is_ready = block.state != State::missing;
+    ready += is_ready ? 1 : 0;
+    wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
+  }
+  share = wanted == 0 ? 0 : static_cast<double>(ready) / static_cast<double>(wanted);
+}
+
+void OnDemand::Inside::measure_distances(std::span<const Ball> balls) {
   for (CloudBlock& block : blocks) {
     block.distance = std::numeric_limits<double>::infinity();
     for (const Ball& ball : balls) {
       block.distance = std::min(block.distance, distance(block.box, ball));
     }
   }
-  const auto ready = std::ranges::count_if(
-      blocks, [](const CloudBlock& block) { return block.state != State::missing; });
-  share = static_cast<double>(ready) / static_cast<double>(blocks.size());
 }
 
 /// The nearest block that is missing, if one is nearer than `within`, m.
@@ -134,8 +147,7 @@ bool OnDemand::Inside::shows_more() {
   });
 }
 
-/// Was a place near shown as one of which nothing is known, and is it not so
-/// any more?
+/// Was a place near shown as one of which nothing is known, and is it not so any more?
 bool OnDemand::Inside::was_unlisted() const {
   const auto same = [](const Box& a, const Box& b) {
     return a.lower == b.lower && a.upper == b.upper;
@@ -162,7 +174,7 @@ void OnDemand::Inside::prepare(CloudBlock& block) {
 }
 
 void OnDemand::Inside::show_near(Source& to, double now) {
-  const bool first = source != &to;
+  const bool first = source != &to && tools.empty();  // nobody can be pushed
   Snapshot snapshot;
   if (!first) snapshot.start = now + kLead;
   snapshot.end = snapshot.start + (first ? 0 : kAppear);

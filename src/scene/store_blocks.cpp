@@ -1,5 +1,7 @@
 // Lists the blocks of a store that tools may need soon, and prepares them of the nodes there.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "palpate/base/error.hpp"
 #include "prepare/place.hpp"
 #include "prepare/store_sample.hpp"
 #include "scene/block_supply.hpp"
@@ -19,9 +22,10 @@ using Eigen::Vector3d;
 using Key = Division::Key;
 
 // Typical R around a cube within which points count for its block. Derived: on level 0 the halo is
-// 3 and cells are 6; on further ones 12, and cells of all levels before are 2 together.
-constexpr double kAround = 6;
-constexpr double kAroundSparse = 14;  // derived, too
+// 3 and cells are 6; on further ones 12, and cells of all levels before are 2 together. The tenth
+// is for points that a turn, or rounding in the file, has moved.
+constexpr double kAround = 6.1;
+constexpr double kAroundSparse = 14.1;  // derived, too
 
 // Cubes around the one that holds a tool which are prepared before it comes there; judgement.
 constexpr int kSoon = 1;
@@ -31,6 +35,11 @@ constexpr int kMostSoon = 2;
 // Points that are read for a block of a further level at most: a second's work; judgement. Only
 // strays and single things far above a dense surface are then without one.
 constexpr std::size_t kMostRead = std::size_t{1} << 22;
+// The same on level 0: beyond it R is so large that all memory would go into one block; judgement.
+constexpr std::size_t kMostReadAtOnce = std::size_t{1} << 24;
+
+// Cubes from the lower corner of the extent, either way; a Division has none farther out.
+constexpr double kMostCubes = 1 << 14;
 
 constexpr double kPieces = 0.25;         // share of the memory for prepared blocks; judgement
 constexpr std::size_t kPieceBytes = 72;  // a point; derived from the columns of SurfacePoints
@@ -85,6 +94,11 @@ class StoreBlocks final : public BlockSupply {
         nodes_(store, memory - static_cast<std::size_t>(kPieces * static_cast<double>(memory))),
         most_prepared_(static_cast<std::size_t>(kPieces * static_cast<double>(memory)) /
                        kPieceBytes) {
+    if (options.paper || options.material_from_intensity) {
+      throw Error(
+          "the paper's preparation and materials from intensities need all of a store: read "
+          "it whole");
+    }
     if (!options_.facts) options_.facts = measure_facts(*store, options, pose);
     const PointStore::Layout& layout = store->layout();
     all_ = moved(pose_, {layout.lower, layout.lower + Vector3d::Constant(layout.edge)});
@@ -125,7 +139,9 @@ class StoreBlocks final : public BlockSupply {
     wide.lower.array() -= around;
     wide.upper.array() += around;
     const Box there = moved(pose_.inverse(), wide);
-    if (block.key.level > 0 && nodes_.points_around(there) > kMostRead) return;
+    const std::size_t read = nodes_.points_around(there);
+    if (block.key.level > 0 && read > kMostRead) return;
+    if (read > kMostReadAtOnce) fail_too_many(read);
     PointCloud near = nodes_.inside(there);
     if (options_.clip) near = clip(near, *options_.clip);
     if (near.empty()) return;
@@ -140,6 +156,13 @@ class StoreBlocks final : public BlockSupply {
   }
 
  private:
+  [[noreturn]] void fail_too_many(std::size_t points) const {
+    throw Error(
+        fmt::format("with an R of {:.3g} m one block of the cloud takes {} points: give a smaller "
+                    "radius or voxel",
+                    facts().radius, points));
+  }
+
   /// Reads the upper nodes.
   void look_over(const PointStore& store) {
     auto seen = std::make_shared<PointCloud>();
@@ -151,6 +174,7 @@ class StoreBlocks final : public BlockSupply {
       }
       seen->colors.insert(seen->colors.end(), part.colors.begin(), part.colors.end());
     }
+    if (seen->empty()) throw Error("none of the store's points can be used: make it again");
     if (seen->colors.size() != seen->size()) seen->colors.clear();
     overview_ = seen;
     const Vector3d middle = facts().extent.center();
@@ -162,7 +186,8 @@ class StoreBlocks final : public BlockSupply {
 
   [[nodiscard]] Range range_of(const Ball& ball) const {
     const double edge = Division::kBlockEdge * facts().radius;
-    const Vector3d middle = (ball.center - facts().extent.lower) / edge;
+    const Vector3d middle =
+        ((ball.center - facts().extent.lower) / edge).cwiseMax(-kMostCubes).cwiseMin(kMostCubes);
     const double reach = std::min<double>(kSoon + ball.radius / edge, kMostSoon);
     Range range;
     for (std::size_t k = 0; k < 3; ++k) {

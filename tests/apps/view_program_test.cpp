@@ -50,6 +50,19 @@ TEST(ViewProgram, ACloudIsExploredInRealTimeWhileItIsShown) {
   EXPECT_GE(run["real_s"], 0.9);
 }
 
+TEST(ViewProgram, AStoreThatIsReadAroundTheToolsIsShownAndNotRecorded) {
+  Shell shell;
+  ASSERT_EQ(shell.run("tile synthetic:terrain:2e4 --out hill").code, 0);
+  const std::string run = "touch hill --cache 1M --view --port 0 --duration 0.5";
+  const Outcome outcome = shell.run(run);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("page: http://"), std::string::npos);
+  EXPECT_NE(outcome.out.find("points on disk"), std::string::npos) << outcome.out;
+  const Outcome recorded = shell.run(run + " --record run.mcap");
+  EXPECT_EQ(recorded.code, 1);
+  EXPECT_NE(recorded.err.find("--record needs all of hill"), std::string::npos) << recorded.err;
+}
+
 TEST(ViewProgram, WithoutATerminalThereIsNoPageUnlessOneIsAskedFor) {
   Shell shell;
   const Outcome outcome = shell.run("touch camera:simulated --duration 0.5");

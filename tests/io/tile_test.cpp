@@ -229,6 +229,19 @@ TEST(Tile, OtherCloudsHaveStepsThatFitTheirLength) {
   EXPECT_EQ(points.back().color[2], 257 * (899 % 256));
 }
 
+TEST(Tile, APointAtZeroOfASurveyInTextLeavesTheOthersWhereTheyAre) {
+  EXPECT_DOUBLE_EQ(io::tile::step_for(5e6), 1e-2);
+  const Folder folder;
+  folder.write("a.xyz", "0 0 0\n500000 5000000 100\n500001 5000002 103\n");
+  tile({folder / "a.xyz"}, folder / "out", small_options());
+  const ReadStore store = read_store(folder / "out");
+  EXPECT_EQ(store.points().size(), 3U);
+  const nlohmann::json& most = store.metadata["attributes"][0]["max"];
+  EXPECT_NEAR(most[0].get<double>(), 500001, 0.1);
+  EXPECT_NEAR(most[1].get<double>(), 5000002, 0.5);  // floats from zero on
+  EXPECT_NEAR(most[2].get<double>(), 103, 0.1);
+}
+
 TEST(Tile, AColumnIsKeptWhereAllInputsHaveIt) {
   const Folder folder;
   std::vector<LasPoint> bytes = ground(300);

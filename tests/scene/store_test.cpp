@@ -7,8 +7,10 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/on_demand.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -49,8 +51,8 @@ PointCloud even() {
 
 /// A store on demand in blocks a fifth of it wide, beside the same points prepared as a whole.
 struct Paged {
-  explicit Paged(PointCloud cloud, std::size_t memory = kRoom, SourceOptions given = {})
-      : store(std::make_shared<MadeStore>(std::move(cloud))), options(std::move(given)) {
+  explicit Paged(PointCloud cloud, std::size_t memory = kRoom, const SourceOptions& given = {})
+      : store(std::make_shared<MadeStore>(std::move(cloud))), options(given) {
     options.prepare.facts = measure_facts(*store, options.prepare, options.T_world_sensor);
     options.prepare.facts->radius = std::min(0.2 / 96, options.prepare.facts->radius);
     demand = std::make_unique<OnDemand>(store, options.prepare, options.T_world_sensor, memory);
@@ -141,6 +143,7 @@ TEST(Store, WithLittleMemoryItIsReadMoreOften) {
   Paged little(even(), std::size_t{2} << 20U);
   enough.expect_whole(4);
   little.expect_whole(4);
+  EXPECT_EQ(little.demand->share(), 1);  // of what there is memory for
   EXPECT_GT(little.store->reads(), enough.store->reads());
 }
 
@@ -203,6 +206,75 @@ TEST(Store, ASurfaceThatArrivesUnderAHandPushesNobody) {
   }
   EXPECT_TRUE(came);
   EXPECT_LT(largest, 0.05);  // N
+}
+
+/// A run begins with another source than the one that was shown the first blocks.
+TEST(Store, ASurfaceThatIsFirstShownToAHandPushesNobody) {
+  Paged paged(even());
+  Scene scene;
+  Source& source = scene.add("run", paged.options);
+  SceneField field(scene);
+  const Vector3d hip(100.05, 200.05, height(0.05, 0.05) - 3e-3);
+  Proxy proxy;
+  proxy.reset(hip);
+  double largest = 0;
+  for (int k = 0; k < 2000; ++k) {
+    field.update(paged.time += 1e-3, hip, proxy.position());
+    largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
+    if (k % 20 == 0) paged.demand->advance(source, paged.time);
+  }
+  EXPECT_TRUE(paged.press(field, {100.05, 200.05, height(0.05, 0.05)}).touching);
+  EXPECT_LT(largest, 0.05);  // N
+}
+
+TEST(Store, TellsTheVoxelBesideCubesWithoutPoints) {
+  SourceOptions options;
+  options.prepare.voxel = 0.004;
+  Paged paged(even(), kRoom, options);
+  paged.go({100.5, 200.5, height(0.5, 0.5)});
+  EXPECT_EQ(paged.source->report().voxel, 0.004);
+}
+
+/// Says that it has more points than any block may have.
+class VastStore final : public PointStore {
+ public:
+  VastStore() {
+    layout_.edge = 1;
+    layout_.points = std::size_t{1} << 30U;
+    layout_.nodes = {{0, {0, 0, 0}, layout_.points}};
+  }
+  [[nodiscard]] const Layout& layout() const override { return layout_; }
+  [[nodiscard]] PointCloud read(std::size_t) const override {
+    PointCloud cloud;
+    cloud.positions = {{0.5F, 0.5F, 0.5F}};
+    return cloud;
+  }
+
+ private:
+  Layout layout_;
+};
+
+TEST(Store, ABlockThatWouldTakeAllMemoryIsRefused) {
+  SourceOptions options;
+  options.prepare.facts = CloudFacts{};
+  options.prepare.facts->radius = 1;
+  options.prepare.facts->extent = {{0, 0, 0}, {1, 1, 1}};
+  OnDemand demand(std::make_shared<VastStore>(), options.prepare, options.T_world_sensor, kRoom);
+  Scene scene;
+  Source& source = scene.add("vast", options);
+  try {
+    demand.advance(source, 0);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("give a smaller radius"), std::string::npos);
+  }
+}
+
+TEST(Store, WhatNeedsAllOfItIsRefused) {
+  const auto store = std::make_shared<MadeStore>(even());
+  PrepareOptions options;
+  options.paper = true;
+  EXPECT_THROW(OnDemand(store, options, Eigen::Isometry3d::Identity(), kRoom), Error);
 }
 
 TEST(Store, ADamagedNodeIsToldAndWhatIsThereStays) {

@@ -113,9 +113,9 @@ std::string cloud_help() {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
   }
   return fmt::format(
-      "[NAME=]FILE: a cloud (PLY, PCD, XYZ/TXT/CSV, LAS, LAZ, E57), a mesh (OBJ, PLY, STL, glTF, "
-      "GLB), Gaussian splats (PLY, SPZ, .splat) or a depth image (PNG, PGM), optionally gzipped; - "
-      "for standard input; or synthetic:NAME with NAME one of {}",
+      "[NAME=]FILE: a cloud (PLY, PCD, XYZ/TXT/CSV, LAS, LAZ, COPC, E57, Potree 2.0 folders), a "
+      "mesh (OBJ, PLY, STL, glTF, GLB), Gaussian splats (PLY, SPZ, .splat) or a depth image (PNG, "
+      "PGM), optionally gzipped; - for standard input; or synthetic:NAME with NAME one of {}",
       names);
 }
 

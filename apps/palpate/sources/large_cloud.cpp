@@ -32,7 +32,7 @@ void refuse_needs_of_whole(const LoadedSource& result, const LoadOptions& option
   }
   if (plan.reading.length) needs = "--length needs";
   if (plan.options.prepare.paper) needs = "the paper's preparation needs";
-  if (options.keep_clouds) needs = "--record needs";
+  if (options.recorded) needs = "--record needs";
   if (needs == nullptr) return;
   throw Error(
       fmt::format("{} all of {} in memory, which is more than --cache allows; remove it, or give a "

@@ -71,7 +71,8 @@ struct LoadedScene {
 
 struct LoadOptions {
   bool explored = false;         ///< the surface has to be there before the run
-  bool keep_clouds = false;      ///< they may have to be prepared again, or are recorded
+  bool keep_clouds = false;      ///< they may have to be prepared again, or may be recorded
+  bool recorded = false;         ///< they are, from the run's beginning
   bool on_demand = false;        ///< large clouds become whole in the run
   const Clock* clock = nullptr;  ///< of cameras, which it outlives; null: simulated time
 };

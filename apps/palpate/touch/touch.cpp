@@ -161,6 +161,7 @@ struct Start {
         loaded(load_sources(plan.sources,
                             {.explored = is_explored(),
                              .keep_clouds = outputs.recorder.has_value(),
+                             .recorded = !plan.outputs.record.empty(),
                              .on_demand = clock != nullptr && plan.outputs.record.empty(),
                              .clock = clock})) {
     check_texture(plan.surface.proxy.texture.amplitude, loaded.scene);

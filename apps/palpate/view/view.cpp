@@ -107,6 +107,16 @@ std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& fe
   return streams;
 }
 
+// A recording has all points of a cloud.
+void refuse_paged(const LoadedScene& loaded) {
+  for (const LoadedSource& source : loaded.sources) {
+    if (!source.paged) continue;
+    throw Error(fmt::format(
+        "{} is read from disk around the tools and cannot be recorded; start with a larger --cache",
+        source.plan.argument.name));
+  }
+}
+
 }  // namespace
 
 struct View::Parts {
@@ -162,7 +172,10 @@ struct View::Parts {
     controls.preset = [this](const std::string& name) {
       apply(preset(initial, name, scope_of(run, servos)));
     };
-    controls.record = [this](bool on) { return run.recorder->record(on); };
+    controls.record = [this](bool on) {
+      if (on) refuse_paged(run.loaded);
+      return run.recorder->record(on);
+    };
     controls.recording = run.recorder->recording();
     if (run.opening != nullptr) {
       controls.open = [this](const std::string& name, std::string bytes) {

@@ -32,8 +32,9 @@ class OnDemand {
            const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
 
   /// Reads some hundred nodes to measure the facts, if the options give none. Nodes and prepared
-  /// blocks take at most `memory` bytes; what is shown, at most half a million points, comes to it.
-  /// @throws Error as prepare() and PointStore::read() do.
+  /// blocks take at most `memory` bytes; what is shown, at most half a million points, and the
+  /// block that is being prepared come to it.
+  /// @throws Error as prepare() and PointStore::read() do, and for options that need all points.
   OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
            const Eigen::Isometry3d& T_world_sensor, std::size_t memory);
   ~OnDemand();

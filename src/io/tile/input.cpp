@@ -8,6 +8,7 @@
 
 #include "io/file_bytes.hpp"
 #include "io/tile/cell_counter.hpp"
+#include "io/tile/frame.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io::tile {
@@ -106,7 +107,9 @@ double step_for(double length) {
   constexpr double kStep = 1e-3;   // m; finer than any survey of so long a cloud (judgement)
   constexpr double kShare = 1e-6;  // of the length; a float has 6e-8 (judgement)
   const double share = length > 0 ? std::pow(10.0, std::floor(std::log10(kShare * length))) : kStep;
-  return std::min(kStep, share);
+  double step = std::min(kStep, share);
+  while (length / step >= std::ldexp(1.0, kMostBits)) step *= 10;
+  return step;
 }
 
 std::unique_ptr<TileInput> open_input(const std::string& path, double scale) {

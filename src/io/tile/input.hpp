@@ -47,7 +47,8 @@ class TileInput {
 [[nodiscard]] std::unique_ptr<TileInput> open_terrain(std::size_t points);
 
 /// A step for coordinates of a cloud so long (m) that has none of its own: 1 mm; a shorter cloud
-/// than 1 km has the power of ten that is a millionth of its length or less.
+/// than 1 km has the power of ten that is a millionth of its length or less; for a longer one than
+/// 2^30 steps it is ten times as long, or a hundred.
 [[nodiscard]] double step_for(double length);
 
 }  // namespace palpate::io::tile
