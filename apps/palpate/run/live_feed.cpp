@@ -72,7 +72,9 @@ void LiveFeed::finish() {
   preparing_.clear();
   for (std::size_t i = 0; i < loaded_.sources.size(); ++i) {
     LoadedSource& source = loaded_.sources[i];
-    if (source.on_demand) source.prepared = loaded_.scene.source(i).report();
+    if (!source.on_demand) continue;
+    const Prepared::Report report = loaded_.scene.source(i).report();
+    if (report.points_in > 0) source.prepared = report;  // else nothing came in the run
   }
   for (StreamState& state : states) {
     state.problem_at -= start_;

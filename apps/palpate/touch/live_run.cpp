@@ -191,10 +191,14 @@ LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed,
   return moment;
 }
 
-// Says once of each hand that its device failed, where others go on.
+// Says once of each hand that its device failed, where others go on, and of a cloud that it cannot
+// be read further.
 class FailureWatch {
  public:
-  void look(const LiveHands& hands, double now, LiveStatus& status) {
+  void look(const LiveHands& hands, const LiveFeed& feed, double now, LiveStatus& status) {
+    if (const std::string problem = feed.problem(); problem != problem_) {
+      status.tell(problem_ = problem);
+    }
     told_.resize(hands.size());
     if (!any_goes_on(hands, now)) return;
     for (std::size_t i = 0; i < hands.size(); ++i) {
@@ -207,6 +211,7 @@ class FailureWatch {
 
  private:
   std::vector<bool> told_;
+  std::string problem_;  // of the feed, told
 };
 
 // Topics are named hand, or hand1, hand2, ... where there are several.
@@ -244,7 +249,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
     for (LiveHand& hand : hands) hand.take_steps(each, status);
     if (view) outcome.next_page = view->look();
     const double now = clock.now();
-    failures.look(hands, now, status);
+    failures.look(hands, feed, now, status);
     if (run.recorder != nullptr) run.recorder->note(now, robot());
     if (!status.due(now - start)) continue;
     status.show(moment_of(hands, feed, robot(), now - start, now));
@@ -254,7 +259,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   for (LiveHand& hand : hands) hand.take_steps(each, status);
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
   outcome.interrupted = interruption.asked();
-  if (const std::string problem = feed.problem(); !problem.empty()) status.tell(problem);
+  failures.look(hands, feed, clock.now(), status);
   if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
   view.reset();  // it looks at the bridge, and both at what the feed takes down
   bridge.reset();
