@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -208,31 +209,18 @@ TEST(Store, ASurfaceThatArrivesUnderAHandPushesNobody) {
   EXPECT_LT(largest, 0.05);  // N
 }
 
-/// A run begins with another source than the one that was shown the first blocks.
-TEST(Store, ASurfaceThatIsFirstShownToAHandPushesNobody) {
+/// A run begins with another source than the one that was shown the first blocks, and with a hand.
+TEST(Store, WhatIsFirstShownToAHandRises) {
   Paged paged(even());
   Scene scene;
   Source& source = scene.add("run", paged.options);
   SceneField field(scene);
   const Vector3d hip(100.05, 200.05, height(0.05, 0.05) - 3e-3);
-  Proxy proxy;
-  proxy.reset(hip);
-  double largest = 0;
-  for (int k = 0; k < 2000; ++k) {
-    field.update(paged.time += 1e-3, hip, proxy.position());
-    largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
-    if (k % 20 == 0) paged.demand->advance(source, paged.time);
-  }
-  EXPECT_TRUE(paged.press(field, {100.05, 200.05, height(0.05, 0.05)}).touching);
-  EXPECT_LT(largest, 0.05);  // N
-}
-
-TEST(Store, TellsTheVoxelBesideCubesWithoutPoints) {
-  SourceOptions options;
-  options.prepare.voxel = 0.004;
-  Paged paged(even(), kRoom, options);
-  paged.go({100.5, 200.5, height(0.5, 0.5)});
-  EXPECT_EQ(paged.source->report().voxel, 0.004);
+  field.update(paged.time, hip, hip);
+  while (!source.points()) paged.demand->advance(source, paged.time);
+  const std::vector<float>& presences = source.points()->presences;
+  EXPECT_EQ(std::ranges::min(presences), 0) << "what is around the hand";
+  EXPECT_EQ(std::ranges::max(presences), 1) << "what was shown before";
 }
 
 /// Says that it has more points than any block may have.
