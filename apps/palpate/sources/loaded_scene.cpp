@@ -83,9 +83,23 @@ void check_radius(const CloudArgument& cloud, const PrepareOptions& options, con
                   *options.radius, cloud.path, length(across), length(spacing)));
 }
 
+void check_felt(const Source& source, LoadedSource& result) {
+  const std::shared_ptr<const SurfacePoints> points = source.points();
+  if (!points || points->size() == 0) {
+    throw Error(fmt::format(
+        "{} contains no surface, so there is nothing to touch; check its units and range",
+        result.plan.argument.path));
+  }
+  check_place(result.plan.argument, *points);
+  check_radius(result.plan.argument, result.plan.options.prepare, points->grid);
+  result.state = source.state();
+}
+
 void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const SourcePlan& plan = result.plan;
-  if (add_store(scene, options, result)) return;
+  if (add_store(scene, options, result)) {
+    return check_felt(scene.source(scene.size() - 1), result);
+  }
   LoadedCloud loaded = load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   check_voxel(loaded, plan.options.prepare);
@@ -115,18 +129,6 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   if (result.depth_image) result.lens = depth_frame_of(*cloud).frame->camera;
   check_place(plan.argument, *source.points());
   if (options.keep_clouds || large) result.cloud = cloud;
-}
-
-void check_felt(const Source& source, LoadedSource& result) {
-  const std::shared_ptr<const SurfacePoints> points = source.points();
-  if (!points || points->size() == 0) {
-    throw Error(fmt::format(
-        "{} contains no surface, so there is nothing to touch; check its units and range",
-        result.plan.argument.path));
-  }
-  check_place(result.plan.argument, *points);
-  check_radius(result.plan.argument, result.plan.options.prepare, points->grid);
-  result.state = source.state();
 }
 
 // Sensors that match patterns put false matches far behind everything; a true surface that far has
