@@ -20,7 +20,8 @@ struct CloudBlock {
   enum class State : std::uint8_t { missing, prepared, shown };
 
   Division::Key key;
-  Box box;  ///< that holds its points, world frame, m
+  Box box;    ///< that holds its points, world frame, m
+  Box place;  ///< of a store: where it is needed, if a tool is near; holds `box`
   State state = State::missing;
   double presence = 0;  ///< at the start of what was shown last; 1 at its end
   double distance = 0;  ///< from what tools can reach, m; negative within
@@ -29,7 +30,10 @@ struct CloudBlock {
 };
 
 /// How far a box is beyond a ball, m; negative within.
-[[nodiscard]] double distance(const Box& box, const Ball& ball);
+[[nodiscard]] inline double distance(const Box& box, const Ball& ball) {
+  const Eigen::Vector3d nearest = ball.center.cwiseMax(box.lower).cwiseMin(box.upper);
+  return (ball.center - nearest).norm() - ball.radius;
+}
 
 /// The blocks of one cloud. One thread at a time uses it.
 class BlockSupply {

@@ -1,6 +1,7 @@
 // Divides a cloud in memory into blocks, all of which are listed from the start.
 #include <utility>
 
+#include "palpate/scene/on_demand.hpp"
 #include "prepare/place.hpp"
 #include "scene/block_supply.hpp"
 
@@ -47,6 +48,15 @@ class MemoryBlocks final : public BlockSupply {
 };
 
 }  // namespace
+
+bool OnDemand::suits(const PointCloud& cloud, const PrepareOptions& options) {
+  if (cloud.width != 0) return false;
+  std::size_t kept = options.clip ? 0 : cloud.size();
+  for (std::size_t i = 0; options.clip && i < cloud.size(); ++i) {
+    kept += options.clip->contains(cloud.point(i)) ? 1 : 0;
+  }
+  return goes_by_blocks(kept, options);
+}
 
 std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointCloud> cloud,
                                        const PrepareOptions& options,

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -33,11 +34,6 @@ constexpr std::size_t kMostMissing = 1024;
 
 }  // namespace
 
-double distance(const Box& box, const Ball& ball) {
-  const Eigen::Vector3d nearest = ball.center.cwiseMax(box.lower).cwiseMin(box.upper);
-  return (ball.center - nearest).norm() - ball.radius;
-}
-
 struct OnDemand::Inside {
   using State = CloudBlock::State;
 
@@ -50,7 +46,8 @@ struct OnDemand::Inside {
   [[nodiscard]] int rank(const CloudBlock& block) const;
   [[nodiscard]] std::vector<CloudBlock*> chosen();
   [[nodiscard]] bool shows_more();
-  [[nodiscard]] bool was_unlisted() const;
+  [[nodiscard]] std::vector<Box> missing(std::span<CloudBlock* const> shown) const;
+  [[nodiscard]] bool was_missing();
   template <class Work>
   void beside_servos(const Work& work);
   void prepare(CloudBlock& block);
@@ -62,9 +59,9 @@ struct OnDemand::Inside {
   Kernel kernel;
   double near;  // how far around what tools can reach nothing is to be missing, m
   std::vector<CloudBlock> blocks;
-  std::vector<Box> unlisted;       // where no block is
-  std::vector<Box> told_unlisted;  // the same as it was last shown
-  double last_start = 0;           // of what was shown last, s
+  std::vector<Box> unlisted;      // where no block is
+  std::vector<Box> told_missing;  // where it was last shown that nothing is known
+  double last_start = 0;          // of what was shown last, s
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
@@ -147,15 +144,34 @@ bool OnDemand::Inside::shows_more() {
   });
 }
 
-/// Was a place near shown as one of which nothing is known, and is it not so any more?
-bool OnDemand::Inside::was_unlisted() const {
-  const auto same = [](const Box& a, const Box& b) {
-    return a.lower == b.lower && a.upper == b.upper;
-  };
-  if (std::ranges::equal(unlisted, told_unlisted, same)) return false;
-  return std::ranges::any_of(tools, [&](const Reach& tool) {
-    return std::ranges::any_of(told_unlisted,
-                               [&](const Box& box) { return distance(box, tool) <= near; });
+/// Where nothing is known or shown, the nearest blocks first.
+std::vector<Box> OnDemand::Inside::missing(std::span<CloudBlock* const> shown) const {
+  std::vector<const CloudBlock*> others;
+  for (const CloudBlock& block : blocks) {
+    if (std::ranges::find(shown, &block) == shown.end()) others.push_back(&block);
+  }
+  std::ranges::stable_sort(others, {}, &CloudBlock::distance);
+  std::vector<Box> boxes = unlisted;
+  for (const CloudBlock* const block : others) {
+    if (boxes.size() < kMostMissing) boxes.push_back(block->box);
+  }
+  return boxes;
+}
+
+/// Was a place near shown as one of which nothing is known, and is it not so any more? A block may
+/// turn out to have no points there.
+bool OnDemand::Inside::was_missing() {
+  std::vector<Box> told;
+  std::ranges::copy_if(told_missing, std::back_inserter(told), [&](const Box& box) {
+    return std::ranges::any_of(tools,
+                               [&](const Reach& tool) { return distance(box, tool) <= near; });
+  });
+  if (told.empty()) return false;
+  const std::vector<Box> now = missing(chosen());
+  return std::ranges::any_of(told, [&](const Box& box) {
+    return std::ranges::none_of(now, [&](const Box& other) {
+      return other.lower == box.lower && other.upper == box.upper;
+    });
   });
 }
 
@@ -192,17 +208,11 @@ void OnDemand::Inside::show_near(Source& to, double now) {
     columns.end_presences.assign(positions.size(), 1.f);
     shown.push_back(&block->piece);
   }
-  std::vector<const CloudBlock*> others;
   for (CloudBlock& block : blocks) {
     if (block.state == State::shown) block.state = State::prepared;
-    if (std::ranges::find(chosen, &block) == chosen.end()) others.push_back(&block);
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
-  std::ranges::stable_sort(others, {}, &CloudBlock::distance);
-  snapshot.missing = told_unlisted = unlisted;
-  for (const CloudBlock* const block : others) {
-    if (snapshot.missing.size() < kMostMissing) snapshot.missing.push_back(block->box);
-  }
+  snapshot.missing = told_missing = missing(chosen);
   publish(to, shown, std::move(snapshot));
 }
 
@@ -235,15 +245,6 @@ void OnDemand::Inside::publish(Source& to, std::span<const Piece* const> shown, 
   to.publish(std::make_shared<const Snapshot>(std::move(snapshot)));
 }
 
-bool OnDemand::suits(const PointCloud& cloud, const PrepareOptions& options) {
-  if (cloud.width != 0) return false;
-  std::size_t kept = options.clip ? 0 : cloud.size();
-  for (std::size_t i = 0; options.clip && i < cloud.size(); ++i) {
-    kept += options.clip->contains(cloud.point(i)) ? 1 : 0;
-  }
-  return goes_by_blocks(kept, options);
-}
-
 OnDemand::OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
                    const Eigen::Isometry3d& T_world_sensor)
     : inside_(std::make_unique<Inside>(blocks_of(std::move(cloud), options, T_world_sensor),
@@ -264,7 +265,7 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
   const double anywhere = std::numeric_limits<double>::infinity();
   if (CloudBlock* const needed = in.nearest_missing(in.near)) {
     in.prepare(*needed);
-  } else if (in.share > 0 && (in.source != &source || in.shows_more() || in.was_unlisted())) {
+  } else if (in.share > 0 && (in.source != &source || in.shows_more() || in.was_missing())) {
     in.show_near(source, now);
   } else if (!ahead) {
     return false;

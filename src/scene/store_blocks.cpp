@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
@@ -119,7 +120,7 @@ class StoreBlocks final : public BlockSupply {
     std::ranges::sort(ranges);
     ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
     drop_empty(ranges, blocks);
-    make_room(near, blocks);
+    make_room(tools, near, blocks);
     std::set<Key> known;
     for (const CloudBlock& block : blocks) known.insert(block.key);
     for (const Range& range : ranges) add(range, known, blocks);
@@ -212,15 +213,18 @@ class StoreBlocks final : public BlockSupply {
     });
   }
 
-  /// Takes out the farthest blocks that are not near.
-  void make_room(double near, std::vector<CloudBlock>& blocks) const {
+  /// Takes out the farthest blocks that are not near. A tool high above the points of its cube
+  /// needs the cube all the same: taken out, it would be prepared again at once.
+  void make_room(std::span<const Ball> tools, double near, std::vector<CloudBlock>& blocks) const {
+    const auto away = [&](const CloudBlock& block) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const Ball& ball : tools) least = std::min(least, distance(block.place, ball));
+      return block.piece.positions.empty() ? 0 : least;
+    };
     std::size_t points = points_of(blocks);
     while (points > most_prepared_) {
-      const auto distance = [](const CloudBlock& block) {
-        return block.piece.positions.empty() ? 0 : block.distance;
-      };
-      const auto farthest = std::ranges::max_element(blocks, {}, distance);
-      if (distance(*farthest) <= near) return;
+      const auto farthest = std::ranges::max_element(blocks, {}, away);
+      if (away(*farthest) <= near) return;
       points -= farthest->piece.positions.size();
       blocks.erase(farthest);
     }
@@ -233,7 +237,7 @@ class StoreBlocks final : public BlockSupply {
           const Key key{0, {x, y, z}};
           if (!known.insert(key).second) continue;
           blocks.emplace_back().key = key;
-          blocks.back().box = Division::cube(facts(), key);
+          blocks.back().box = blocks.back().place = Division::cube(facts(), key);
         }
       }
     }
@@ -247,6 +251,7 @@ class StoreBlocks final : public BlockSupply {
       const Key key = Division::above(blocks[k].key);
       if (known.insert(key).second) blocks.emplace_back().key = key;
       CloudBlock& block = *std::ranges::find(blocks, key, &CloudBlock::key);
+      block.place.extend(sparser);
       if (block.state == CloudBlock::State::missing) block.box.extend(sparser);
     }
   }

@@ -56,6 +56,17 @@ TEST(Stores, SayWhatNeedsTheWhole) {
   EXPECT_THAT(length.err, HasSubstr("--length needs all of site in memory"));
 }
 
+TEST(Stores, AreGuessedAndRefusedAsOtherClouds) {
+  Site site;
+  const Outcome moved = site.shell.run(
+      "touch site --cache 8M --pose site=100000,0,0,0,0,0,1 --duration 0.1 --json run.json");
+  ASSERT_EQ(moved.code, 0) << moved.err;
+  EXPECT_THAT(moved.out, testing::Not(HasSubstr("survey coordinates")));
+  const Outcome large = site.shell.run("touch site --cache 8M --scale 1e9 --duration 0.1");
+  EXPECT_EQ(large.code, 1);
+  EXPECT_THAT(large.err, HasSubstr("are --scale and --pose right?"));
+}
+
 TEST(Stores, TellASizeThatIsNone) {
   Shell shell;
   for (const std::string size : {"", "0", "x", "-1", "99999999999G"}) {

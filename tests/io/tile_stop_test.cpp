@@ -119,6 +119,19 @@ TEST(TileStop, ADamagedListOfWhatIsDoneIsToldAndForceStartsAnew) {
   EXPECT_EQ(tile_refusal({folder / "a.las"}, folder / "out", options), "no error");
 }
 
+TEST(TileStop, FilesOfOthersInAFolderOfThatNameStay) {
+  const Folder folder;
+  folder.write("a.las", las_bytes(2, 2, ground(500)));
+  folder.write("out/unfinished/notes/a.txt", "mine");
+  TileOptions options;
+  for (const bool force : {false, true}) {
+    options.force = force;
+    EXPECT_THAT(tile_refusal({folder / "a.las"}, folder / "out", options),
+                HasSubstr("unfinished/notes: palpate did not write it. Name another folder."));
+    EXPECT_TRUE(fs::exists(folder / "out/unfinished/notes/a.txt"));
+  }
+}
+
 TEST(TileStop, TooLittleSpaceIsToldBeforeAnyIsTaken) {
   const Folder folder;
   folder.write("a.las", las_bytes(2, 2, ground(5000)));

@@ -192,6 +192,26 @@ TEST(Store, FarFromAllPointsThereIsNothingToFeel) {
   EXPECT_TRUE(paged.press(*paged.field, {100.5, 200.5, height(0.5, 0.5)}).touching);
 }
 
+/// In the cube of the surface, but farther from its points than what is prepared around a tool.
+TEST(Store, InTheAirHighAboveASurfaceAllIsKnown) {
+  Paged paged(even());
+  paged.go({100.3, 200.3, 0.14});
+  paged.field->update(paged.time += 1e-3, {100.3, 200.3, 0.14}, {100.3, 200.3, 0.14});
+  EXPECT_FALSE(has(paged.field->notes(), FieldNote::not_loaded));
+}
+
+TEST(Store, ABlockUnderAHandIsKeptHoweverLittleMemoryThereIs) {
+  Paged paged(even(), 1);
+  const Vector3d place(100.3, 200.3, 0.14);
+  std::size_t steps = 0;
+  for (int k = 0; k < 100; ++k) {
+    paged.field->update(paged.time += 1e-3, place, place);
+    steps += paged.demand->advance(*paged.source, paged.time, false) ? 1 : 0;
+  }
+  EXPECT_LT(steps, 20u);
+  EXPECT_FALSE(has(paged.field->notes(), FieldNote::not_loaded));
+}
+
 TEST(Store, ASurfaceThatArrivesUnderAHandPushesNobody) {
   Paged paged(even());
   const Vector3d hip(100.05, 200.05, height(0.05, 0.05) - 3e-3);

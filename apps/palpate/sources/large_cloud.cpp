@@ -16,6 +16,14 @@ namespace {
 // points of an airborne survey took 2.1 GB.
 constexpr double kWholeBytes = 200;
 
+// The points in the axes of their file again.
+PointCloud in_file(PointCloud cloud, const Eigen::Isometry3d& T_world_file) {
+  const Eigen::Isometry3d back = T_world_file.inverse();
+  cloud.origin = back * cloud.origin;
+  for (Eigen::Vector3f& p : cloud.positions) p = back.linear().cast<float>() * p;
+  return cloud;
+}
+
 const Source& first_surface(Scene& scene, LoadedSource& result) {
   Source& source = scene.add(result.plan.argument.name, result.plan.options);
   const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
@@ -71,7 +79,8 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const Source& source = first_surface(scene, result);
   result.prepared = source.report();
   if (plan.reading.scale == 1) {
-    result.units = guess_units(bounds_of(*source.state().overview), layout.format);
+    const PointCloud seen = in_file(*source.state().overview, plan.options.T_world_sensor);
+    result.units = guess_units(core_of(seen), layout.format);
   }
   result.prepare_seconds = std::chrono::duration<double>(Clock::now() - opened).count();
   return true;

@@ -40,6 +40,7 @@ class Tiler {
   TileResult run() {
     make_folder();
     const Locked lock(work_);
+    refuse_others_files();
     begin();
     if (!state_.finished) build();
     publish();
@@ -59,13 +60,31 @@ class Tiler {
     }
   }
 
+  // A folder of this name that somebody else made is not to be emptied, even with --force.
+  void refuse_others_files() const {
+    if (fs::exists(work_ / "tile.json")) return;
+    for (const auto& each : fs::directory_iterator(work_)) {
+      // A run may have been stopped while it wrote its first tile.json.
+      if (each.path().filename().string().starts_with("tile.json")) continue;
+      throw Error(each.path().string() + ": palpate did not write it. Name another folder.");
+    }
+  }
+
+  // tile.json goes last: it says whose files these are.
+  void clear_folder() const {
+    for (const auto& each : fs::directory_iterator(work_)) {
+      if (each.path().filename() != "tile.json") fs::remove_all(each);
+    }
+    fs::remove(work_ / "tile.json");
+  }
+
   // Finds how far an earlier run came, or plans.
   void begin() {
     if (std::optional<State> earlier = earlier_state()) {
       state_ = std::move(*earlier);
       return;
     }
-    for (const auto& each : fs::directory_iterator(work_)) fs::remove_all(each);
+    clear_folder();
     state_ = {.job = job_,
               .plan = make_plan(open_inputs(), options_.chunk_points, told("counting"))};
     save(state_, work_ / "tile.json");
@@ -135,7 +154,8 @@ class Tiler {
       if (fs::exists(work_ / kFiles[i])) fs::rename(work_ / kFiles[i], out_ / kFiles[i]);
       tell("finishing", static_cast<double>(i + 1) / kFiles.size());
     }
-    fs::remove_all(work_);
+    clear_folder();
+    fs::remove(work_);
   }
 
   [[nodiscard]] TileResult result() const {
