@@ -207,7 +207,8 @@ void Facing::decide_signs(bool continued) noexcept {
     if (part.sign != 0) continue;
     const bool told = continued && part.key != kOneSided;
     const double vote = !told ? 0 : part.known && beside != 0 ? beside : across(k);
-    part.sign = (std::abs(vote) > kLeastVote ? vote : part.seen) < 0 ? -1 : 1;
+    const double told_or_seen = std::abs(vote) > kLeastVote ? vote : part.seen;
+    if (told_or_seen != 0) part.sign = told_or_seen < 0 ? -1 : 1;
   }
 }
 
@@ -260,6 +261,10 @@ void Facing::decide_labels() noexcept {
       if (sheet.label == kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
     }
     if (!next) return;
+    Part& part = now_.parts[next->part];
+    // Nothing of it is seen: it goes on what is decided beside it.
+    const bool turned = part.sign == 0 && part.key != kOneSided && across(next->part) < 0;
+    if (part.sign == 0) part.sign = turned ? -1 : 1;
     next->label = label_of(*next);
     add_references(*next);
   }

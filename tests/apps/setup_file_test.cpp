@@ -134,7 +134,7 @@ TEST(SetupFile, EveryPartAndKeyIsDocumented) {
   }
   EXPECT_EQ(sections, (std::set<std::string>{"reading", "stream", "surface", "material", "hand",
                                              "guard", "servo", "ros"}));
-  EXPECT_EQ(of_sources, 21);
+  EXPECT_EQ(of_sources, 22);
 }
 
 TEST(SetupFile, CommandLineWins) {

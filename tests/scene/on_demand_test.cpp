@@ -169,6 +169,24 @@ TEST(OnDemand, BecomesTheWhole) {
   EXPECT_FALSE(has(field.notes(), FieldNote::not_loaded));
 }
 
+/// What lies beyond a seam is not seen yet: it goes on what is decided on this side.
+TEST(OnDemand, AHandBeneathTheSurfaceMeetsNoWallWhereBlocksMeet) {
+  Hills hills;
+  for (double y = 0.11; y < 0.9; y += 0.05) {
+    SceneField field(hills.whole);
+    Proxy proxy;
+    double largest = 0;
+    double time = 1;
+    for (double x = 0.1; x < 0.9; x += 5e-4) {
+      const Vector3d hip(x, y, height(x, y) - 1e-3);
+      if (x == 0.1) proxy.reset(hip);
+      field.update(time += 1e-3, hip, proxy.position());
+      largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
+    }
+    EXPECT_LT(largest, 0.5) << y;  // N
+  }
+}
+
 TEST(OnDemand, NothingIsPublishedOnceItIsCancelled) {
   Hills hills;
   const auto before = hills.part.source->points();

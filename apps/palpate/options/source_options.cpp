@@ -165,11 +165,13 @@ namespace {
 // Bytes: 500M, 2G.
 std::size_t parse_size(std::string text) {
   const std::string given = text;
-  const bool is_size = CLI::AsSizeValue(false)(text).empty() && text != "0";
-  if (!is_size) {
-    throw UsageError(fmt::format("--cache: '{}' is no size; give 500M or 2G", given));
+  try {
+    const bool is_size = CLI::AsSizeValue(false)(text).empty();
+    if (is_size && text != "0" && !given.starts_with('-')) return std::stoull(text);
+  } catch (const CLI::Error&) {
+    // It says less than what follows.
   }
-  return std::stoull(text);
+  throw UsageError(fmt::format("--cache: '{}' is no size; give 500M or 2G", given));
 }
 
 }  // namespace

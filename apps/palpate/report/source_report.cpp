@@ -57,9 +57,10 @@ Report cloud_report(const LoadedSource& cloud) {
     add_splats(report, *cloud.splats, cloud.declared, cloud.dropped, r.points_in);
   }
   if (cloud.mesh) add_mesh(report, *cloud.mesh, r.points_in);
-  report.row("stored",
-             "[{?}{points_stored} points on disk, of which what is around tools was read]",
-             cloud.paged, cloud.declared);
+  if (cloud.paged) {
+    report.row("stored", "{points_stored} points on disk, of which what is around tools was read",
+               cloud.declared);
+  }
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
