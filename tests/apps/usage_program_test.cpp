@@ -34,7 +34,9 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
-      {"", "touch, align, info, tile, bag, replay, cameras, devices, ros, doctor, paper, demo or zwidth"},
+      {"",
+       "touch, align, info, tile, bag, replay, cameras, devices, ros, doctor, paper, demo or "
+       "zwidth"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "not expected: tuch synthetic:torus; did you mean touch?"},
       {"touch", "no source given"},

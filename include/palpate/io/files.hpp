@@ -83,8 +83,8 @@ struct CloudFile {
 /// Any other path alone. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path);
 
-/// Opens a COPC file or a folder of Potree 2.0 to be read node by node. Coordinates times `scale` are metres. null: it is no
-/// store. @throws Error as read_cloud_file() does.
+/// Opens a COPC file or a folder of Potree 2.0 to be read node by node. Coordinates times `scale`
+/// are metres. null: it is no store. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::shared_ptr<const PointStore> open_store(const std::filesystem::path& path,
                                                            double scale = 1);
 

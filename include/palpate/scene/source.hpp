@@ -133,11 +133,11 @@ class Source {
     std::size_t points = 0;     ///< of the newest surface's newest layer
     /// Points of all of a store, world frame, of which the surface is a part. null: it is no store.
     std::shared_ptr<const PointCloud> overview = {};
-    double noise = 0;           ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
-    double depth = 0;           ///< median depth of the last frame, m
-    double correlation = 0;     ///< c of NoiseModel
-    double silent_from = 0;     ///< when the surface begins to fade unless a frame comes, s
-    double fade = 0;            ///< in which it fades away then, s
+    double noise = 0;        ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
+    double depth = 0;        ///< median depth of the last frame, m
+    double correlation = 0;  ///< c of NoiseModel
+    double silent_from = 0;  ///< when the surface begins to fade unless a frame comes, s
+    double fade = 0;         ///< in which it fades away then, s
     /// Median distance along the normals between this source's surface and the others', where both
     /// see it, m; the worst of the others. Scene::state() only.
     std::optional<double> disagreement = {};
