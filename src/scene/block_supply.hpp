@@ -68,7 +68,7 @@ class BlockSupply {
                                                      const Eigen::Isometry3d& T_world_sensor);
 
 /// What lies around tools of a store, in at most so many bytes of `memory`.
-[[nodiscard]] std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointStore> store,
+[[nodiscard]] std::unique_ptr<BlockSupply> blocks_of(const std::shared_ptr<const PointStore>& store,
                                                      const PrepareOptions& options,
                                                      const Eigen::Isometry3d& T_world_sensor,
                                                      std::size_t memory);

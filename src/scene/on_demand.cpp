@@ -250,10 +250,10 @@ OnDemand::OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions
     : inside_(std::make_unique<Inside>(blocks_of(std::move(cloud), options, T_world_sensor),
                                        options)) {}
 
-OnDemand::OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+OnDemand::OnDemand(const std::shared_ptr<const PointStore>& store, const PrepareOptions& options,
                    const Eigen::Isometry3d& T_world_sensor, std::size_t memory)
-    : inside_(std::make_unique<Inside>(blocks_of(std::move(store), options, T_world_sensor, memory),
-                                       options)) {}
+    : inside_(
+          std::make_unique<Inside>(blocks_of(store, options, T_world_sensor, memory), options)) {}
 
 OnDemand::~OnDemand() = default;
 
@@ -262,21 +262,21 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
   const std::lock_guard lock(in.mutex);
   if (in.done) return false;
   in.look(source);
-  const double anywhere = std::numeric_limits<double>::infinity();
-  if (CloudBlock* const needed = in.nearest_missing(in.near)) {
-    in.prepare(*needed);
-  } else if (in.share > 0 && (in.source != &source || in.shows_more() || in.was_missing())) {
+  CloudBlock* wanted = in.nearest_missing(in.near);
+  if (wanted == nullptr && in.share > 0 &&
+      (in.source != &source || in.shows_more() || in.was_missing())) {
     in.show_near(source, now);
-  } else if (!ahead) {
-    return false;
-  } else if (CloudBlock* const next = in.nearest_missing(anywhere);
-             next != nullptr && in.supply->has_room(in.blocks)) {
-    in.prepare(*next);
-  } else if (in.supply->is_whole()) {
-    in.show_all(source);
-  } else {
-    return false;
+    return true;
   }
+  if (wanted == nullptr && ahead && in.supply->has_room(in.blocks)) {
+    wanted = in.nearest_missing(std::numeric_limits<double>::infinity());
+  }
+  if (wanted != nullptr) {
+    in.prepare(*wanted);
+    return true;
+  }
+  if (!ahead || !in.supply->is_whole()) return false;
+  in.show_all(source);
   return true;
 }
 

@@ -60,7 +60,7 @@ struct Range {
     }
     return within;
   }
-  auto operator<=>(const Range&) const = default;
+  auto operator<=>(const Range&) const = default;  // NOLINT(modernize-use-nullptr): its 0
 };
 
 /// What is left of a box outside another: up to six boxes.
@@ -88,7 +88,7 @@ Box moved(const Eigen::Isometry3d& pose, const Box& box) {
 
 class StoreBlocks final : public BlockSupply {
  public:
-  StoreBlocks(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+  StoreBlocks(const std::shared_ptr<const PointStore>& store, const PrepareOptions& options,
               const Eigen::Isometry3d& pose, std::size_t memory)
       : options_(options),
         pose_(pose),
@@ -281,11 +281,11 @@ class StoreBlocks final : public BlockSupply {
 
 }  // namespace
 
-std::unique_ptr<BlockSupply> blocks_of(std::shared_ptr<const PointStore> store,
+std::unique_ptr<BlockSupply> blocks_of(const std::shared_ptr<const PointStore>& store,
                                        const PrepareOptions& options,
                                        const Eigen::Isometry3d& T_world_sensor,
                                        std::size_t memory) {
-  return std::make_unique<StoreBlocks>(std::move(store), options, T_world_sensor, memory);
+  return std::make_unique<StoreBlocks>(store, options, T_world_sensor, memory);
 }
 
 }  // namespace palpate

@@ -35,7 +35,7 @@ class OnDemand {
   /// blocks take at most `memory` bytes; what is shown, at most half a million points, and the
   /// block that is being prepared come to it.
   /// @throws Error as prepare() and PointStore::read() do, and for options that need all points.
-  OnDemand(std::shared_ptr<const PointStore> store, const PrepareOptions& options,
+  OnDemand(const std::shared_ptr<const PointStore>& store, const PrepareOptions& options,
            const Eigen::Isometry3d& T_world_sensor, std::size_t memory);
   ~OnDemand();
   OnDemand(const OnDemand&) = delete;
