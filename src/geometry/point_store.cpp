@@ -1,7 +1,11 @@
-// Says where the nodes of a point store are.
+// Says where the nodes of a point store are, reads some and joins them.
 #include "palpate/geometry/point_store.hpp"
 
 #include <cmath>
+#include <exception>
+
+#include "geometry/parallel.hpp"
+#include "geometry/store_nodes.hpp"
 
 namespace palpate {
 
@@ -16,4 +20,48 @@ double PointStore::Layout::spacing_of(std::size_t node) const {
   return std::ldexp(spacing, -nodes[node].level);
 }
 
+namespace detail {
+namespace {
+
+/// `before`: points that are there already.
+template <class T>
+void append(const std::vector<T>& from, std::size_t before, std::size_t expected,
+            std::vector<T>& to) {
+  if (from.empty() || to.size() != before) {
+    to = {};
+    return;
+  }
+  if (expected > 0) to.reserve(expected);
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+std::vector<PointCloud> read_nodes(const PointStore& store, std::span<const std::size_t> nodes) {
+  std::vector<PointCloud> clouds(nodes.size());
+  std::vector<std::exception_ptr> errors(nodes.size());
+  parallel_each(nodes.size(), 1, [&](std::size_t i) {
+    try {
+      clouds[i] = store.read(nodes[i]);
+    } catch (...) {
+      errors[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+  return clouds;
+}
+
+void append(const PointCloud& from, PointCloud& to, std::size_t expected) {
+  if (from.empty()) return;
+  const std::size_t before = to.size();
+  to.origin = from.origin;
+  append(from.positions, before, expected, to.positions);
+  append(from.normals, before, expected, to.normals);
+  append(from.colors, before, expected, to.colors);
+  append(from.intensities, before, expected, to.intensities);
+}
+
+}  // namespace detail
 }  // namespace palpate

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <fstream>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "geometry/parallel.hpp"
+#include "geometry/store_nodes.hpp"
 #include "io/cloud_builder.hpp"
 
 namespace palpate::io {
@@ -43,48 +43,6 @@ void check_memory(const Input& input, std::size_t points) {
        "Make a store of fewer points, or use a machine with more memory");
 }
 
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& part, std::size_t total) {
-  if (part.empty()) return;
-  all.reserve(total);
-  all.insert(all.end(), part.begin(), part.end());
-}
-
-// `total`: points that there will be.
-void append(PointCloud& cloud, const PointCloud& part, std::size_t total) {
-  append(cloud.positions, part.positions, total);
-  append(cloud.normals, part.normals, total);
-  append(cloud.colors, part.colors, total);
-  append(cloud.intensities, part.intensities, total);
-}
-
-// A column that some points lack is none.
-void drop_incomplete(PointCloud& cloud) {
-  const auto check = [&](auto& column) {
-    if (column.size() != cloud.size()) column = {};
-  };
-  check(cloud.normals);
-  check(cloud.colors);
-  check(cloud.intensities);
-}
-
-// Nodes from `first` on. Where several are damaged, the first one's error is thrown.
-std::vector<PointCloud> read_some(const PointStore& store, std::size_t first, std::size_t count) {
-  std::vector<PointCloud> parts(count);
-  std::vector<std::exception_ptr> errors(count);
-  detail::parallel_each(count, 1, [&](std::size_t i) {
-    try {
-      parts[i] = store.read(first + i);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
-  return parts;
-}
-
 }  // namespace
 
 CloudFile read_whole(const PointStore& store, const Input& input) {
@@ -97,13 +55,13 @@ CloudFile read_whole(const PointStore& store, const Input& input) {
   file.cloud.origin = layout.origin;
   Progress progress(input.options, layout.nodes.size());
   for (std::size_t first = 0; first < layout.nodes.size(); first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, layout.nodes.size() - first);
-    for (const PointCloud& part : read_some(store, first, count)) {
-      append(file.cloud, part, layout.points);
+    std::vector<std::size_t> some(std::min(kAtOnce, layout.nodes.size() - first));
+    std::iota(some.begin(), some.end(), first);
+    for (const PointCloud& part : detail::read_nodes(store, some)) {
+      detail::append(part, file.cloud, layout.points);
     }
-    progress.at(first + count);
+    progress.at(first + some.size());
   }
-  drop_incomplete(file.cloud);
   file.dropped = file.declared - file.cloud.size();
   check_not_empty(input, file.cloud.size(), file.dropped);
   return file;

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/parallel.hpp"
+#include "geometry/store_nodes.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -29,11 +29,6 @@ Key above(Key key) {
   --key.first;
   for (std::int32_t& c : key.second) c >>= 1;
   return key;
-}
-
-void append(const PointCloud& from, PointCloud& to) {
-  to.origin = from.origin;
-  to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
 }
 
 /// Nodes with points under which there are none, in the order of the store.
@@ -96,8 +91,7 @@ void keep_middle(const Box& box, std::size_t most, PointCloud& cloud) {
 std::map<std::size_t, PointCloud> read(const PointStore& store, std::vector<std::size_t> nodes) {
   std::ranges::sort(nodes);
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<PointCloud> clouds(nodes.size());
-  detail::parallel_each(nodes.size(), 1, [&](std::size_t k) { clouds[k] = store.read(nodes[k]); });
+  std::vector<PointCloud> clouds = detail::read_nodes(store, nodes);
   std::map<std::size_t, PointCloud> found;
   for (std::size_t k = 0; k < nodes.size(); ++k) found[nodes[k]] = std::move(clouds[k]);
   return found;
@@ -130,14 +124,14 @@ StoreSample sample_of(const PointStore& store, std::size_t asked, std::size_t pl
   }
   const std::map<std::size_t, PointCloud> clouds = read(store, wanted);
   StoreSample sample;
-  for (const std::size_t k : upper) append(clouds.at(k), sample.all);
+  for (const std::size_t k : upper) detail::append(clouds.at(k), sample.all);
   for (const std::size_t leaf : leaves) {
     PointCloud there;
     for (const std::size_t k : chain(numbers, key_of(layout.nodes[leaf]))) {
-      append(clouds.at(k), there);
+      detail::append(clouds.at(k), there);
     }
     keep_middle(layout.box(leaf), around, there);
-    append(there, sample.places);
+    detail::append(there, sample.places);
   }
   if (sample.all.empty() || sample.places.empty()) {
     throw Error("none of the store's points can be used: make it again");

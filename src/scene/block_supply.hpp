@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,6 +35,13 @@ struct CloudBlock {
 [[nodiscard]] inline double distance(const Box& box, const Ball& ball) {
   const Eigen::Vector3d nearest = ball.center.cwiseMax(box.lower).cwiseMin(box.upper);
   return (ball.center - nearest).norm() - ball.radius;
+}
+
+/// The same of the nearest of several balls; infinite without one.
+[[nodiscard]] inline double distance(const Box& box, std::span<const Ball> balls) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Ball& ball : balls) least = std::min(least, distance(box, ball));
+  return least;
 }
 
 /// The blocks of one cloud. One thread at a time uses it.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "geometry/parallel.hpp"
+#include "geometry/store_nodes.hpp"
 
 namespace palpate {
 namespace {
@@ -19,24 +19,6 @@ std::size_t bytes_of(const PointCloud& cloud) {
 
 bool meet(const Box& a, const Box& b) {
   return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
-}
-
-template <class T>
-void append(const std::vector<T>& from, std::span<const std::uint32_t> chosen, std::vector<T>& to) {
-  if (from.empty()) return;
-  for (const std::uint32_t i : chosen) to.push_back(from[i]);
-}
-
-/// Appends the points in a box.
-void append(const PointCloud& from, const Box& box, PointCloud& to) {
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t i = 0; i < from.size(); ++i) {
-    if (box.contains(from.point(i))) chosen.push_back(i);
-  }
-  append(from.positions, chosen, to.positions);
-  append(from.normals, chosen, to.normals);
-  append(from.colors, chosen, to.colors);
-  append(from.intensities, chosen, to.intensities);
 }
 
 }  // namespace
@@ -64,7 +46,7 @@ PointCloud NodeCache::inside(const Box& box) {
   read(nodes);
   PointCloud cloud;
   cloud.origin = layout().origin;
-  for (const std::size_t k : nodes) append(kept_.at(k).cloud, box, cloud);
+  for (const std::size_t k : nodes) detail::append(clip(kept_.at(k).cloud, box), cloud);
   forget_oldest();
   return cloud;
 }
@@ -78,9 +60,7 @@ void NodeCache::read(std::span<const std::size_t> nodes) {
     else
       found->second.used = calls_;
   }
-  std::vector<PointCloud> clouds(missing.size());
-  detail::parallel_each(missing.size(), 1,
-                        [&](std::size_t k) { clouds[k] = store_->read(missing[k]); });
+  std::vector<PointCloud> clouds = detail::read_nodes(*store_, missing);
   for (std::size_t k = 0; k < missing.size(); ++k) {
     size_ += bytes_of(clouds[k]);
     kept_[missing[k]] = {std::move(clouds[k]), calls_};

@@ -41,7 +41,6 @@ struct OnDemand::Inside {
       : supply(std::move(from)), kernel(options.kernel), near(kAhead * supply->facts().radius) {}
 
   void look(const Source& source);
-  void measure_distances(std::span<const Ball> balls);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
   [[nodiscard]] int rank(const CloudBlock& block) const;
   [[nodiscard]] std::vector<CloudBlock*> chosen();
@@ -76,27 +75,17 @@ void OnDemand::Inside::look(const Source& at) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
   if (balls.empty()) balls.push_back({supply->start(), 0});
-  measure_distances(balls);  // what is farther away goes first where memory is short
   unlisted = supply->list(balls, near, blocks);
-  measure_distances(balls);
   const bool has_room = supply->has_room(blocks);
   std::size_t ready = 0;
   std::size_t wanted = 0;  // ready, or to be prepared while tools stay where they are
-  for (const CloudBlock& block : blocks) {
+  for (CloudBlock& block : blocks) {
+    block.distance = distance(block.box, balls);
     const bool is_ready = block.state != State::missing;
     ready += is_ready ? 1 : 0;
     wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
   }
   share = wanted == 0 ? 0 : static_cast<double>(ready) / static_cast<double>(wanted);
-}
-
-void OnDemand::Inside::measure_distances(std::span<const Ball> balls) {
-  for (CloudBlock& block : blocks) {
-    block.distance = std::numeric_limits<double>::infinity();
-    for (const Ball& ball : balls) {
-      block.distance = std::min(block.distance, distance(block.box, ball));
-    }
-  }
 }
 
 /// The nearest block that is missing, if one is nearer than `within`, m.
@@ -162,10 +151,8 @@ std::vector<Box> OnDemand::Inside::missing(std::span<CloudBlock* const> shown) c
 /// turn out to have no points there.
 bool OnDemand::Inside::was_missing() {
   std::vector<Box> told;
-  std::ranges::copy_if(told_missing, std::back_inserter(told), [&](const Box& box) {
-    return std::ranges::any_of(tools,
-                               [&](const Reach& tool) { return distance(box, tool) <= near; });
-  });
+  std::ranges::copy_if(told_missing, std::back_inserter(told),
+                       [&](const Box& box) { return distance(box, tools) <= near; });
   if (told.empty()) return false;
   const std::vector<Box> now = missing(chosen());
   return std::ranges::any_of(told, [&](const Box& box) {

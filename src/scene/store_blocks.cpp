@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
 
+#include "geometry/store_nodes.hpp"
 #include "palpate/base/error.hpp"
 #include "prepare/place.hpp"
 #include "prepare/store_sample.hpp"
@@ -42,7 +42,7 @@ constexpr std::size_t kMostReadAtOnce = std::size_t{1} << 24;
 // Cubes from the lower corner of the extent, either way; a Division has none farther out.
 constexpr double kMostCubes = 1 << 14;
 
-constexpr double kPieces = 0.25;         // share of the memory for prepared blocks; judgement
+constexpr std::size_t kPieces = 4;       // one of so many bytes is for prepared blocks; judgement
 constexpr std::size_t kPieceBytes = 72;  // a point; derived from the columns of SurfacePoints
 
 // Points of the overview: what a page draws of all of the store; judgement.
@@ -92,9 +92,8 @@ class StoreBlocks final : public BlockSupply {
               const Eigen::Isometry3d& pose, std::size_t memory)
       : options_(options),
         pose_(pose),
-        nodes_(store, memory - static_cast<std::size_t>(kPieces * static_cast<double>(memory))),
-        most_prepared_(static_cast<std::size_t>(kPieces * static_cast<double>(memory)) /
-                       kPieceBytes) {
+        nodes_(store, memory - memory / kPieces),
+        most_prepared_(memory / kPieces / kPieceBytes) {
     if (options.paper || options.material_from_intensity) {
       throw Error(
           "the paper's preparation and materials from intensities need all of a store: read "
@@ -166,17 +165,13 @@ class StoreBlocks final : public BlockSupply {
 
   /// Reads the upper nodes.
   void look_over(const PointStore& store) {
-    auto seen = std::make_shared<PointCloud>();
-    seen->origin = origin();
-    for (const std::size_t node : upper_nodes(store.layout(), kOverview)) {
-      const PointCloud part = store.read(node);
-      for (const Eigen::Vector3f& p : part.positions) {
-        seen->positions.emplace_back(pose_.linear().cast<float>() * p);
-      }
-      seen->colors.insert(seen->colors.end(), part.colors.begin(), part.colors.end());
+    PointCloud all;
+    for (const PointCloud& part :
+         detail::read_nodes(store, upper_nodes(store.layout(), kOverview))) {
+      detail::append(part, all);
     }
-    if (seen->empty()) throw Error("none of the store's points can be used: make it again");
-    if (seen->colors.size() != seen->size()) seen->colors.clear();
+    if (all.empty()) throw Error("none of the store's points can be used: make it again");
+    const auto seen = std::make_shared<const PointCloud>(place(all, {}, pose_).cloud());
     overview_ = seen;
     const Vector3d middle = facts().extent.center();
     const auto off = [&](const Eigen::Vector3f& p) {
@@ -217,9 +212,7 @@ class StoreBlocks final : public BlockSupply {
   /// needs the cube all the same: taken out, it would be prepared again at once.
   void make_room(std::span<const Ball> tools, double near, std::vector<CloudBlock>& blocks) const {
     const auto away = [&](const CloudBlock& block) {
-      double least = std::numeric_limits<double>::infinity();
-      for (const Ball& ball : tools) least = std::min(least, distance(block.place, ball));
-      return block.piece.positions.empty() ? 0 : least;
+      return block.piece.positions.empty() ? 0 : distance(block.place, tools);
     };
     std::size_t points = points_of(blocks);
     while (points > most_prepared_) {

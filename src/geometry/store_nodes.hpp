@@ -1,0 +1,22 @@
+// Reads nodes of a point store, several at a time, and joins their points.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/point_cloud.hpp"
+#include "palpate/geometry/point_store.hpp"
+
+namespace palpate::detail {
+
+/// The clouds of some nodes, in their order, read on all cores. Where several are damaged, the
+/// first one's error is thrown.
+[[nodiscard]] std::vector<PointCloud> read_nodes(const PointStore& store,
+                                                 std::span<const std::size_t> nodes);
+
+/// Adds points with the same origin. A column that some points lack is none. `expected`: points
+/// that there will be in all; room is made for them.
+void append(const PointCloud& from, PointCloud& to, std::size_t expected = 0);
+
+}  // namespace palpate::detail
