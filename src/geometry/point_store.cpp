@@ -1,8 +1,10 @@
 // Says where the nodes of a point store are, reads some and joins them.
 #include "palpate/geometry/point_store.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
+#include <utility>
 
 #include "geometry/parallel.hpp"
 #include "geometry/store_nodes.hpp"
@@ -36,6 +38,14 @@ void append(const std::vector<T>& from, std::size_t before, std::size_t expected
 }
 
 }  // namespace
+
+std::size_t coarsest_node(const PointStore::Layout& layout) {
+  const auto height = [](const PointStore::Node& node) {
+    return std::pair(node.points == 0, node.level);
+  };
+  const auto found = std::ranges::min_element(layout.nodes, {}, height);
+  return static_cast<std::size_t>(found - layout.nodes.begin());
+}
 
 std::vector<PointCloud> read_nodes(const PointStore& store, std::span<const std::size_t> nodes) {
   std::vector<PointCloud> clouds(nodes.size());

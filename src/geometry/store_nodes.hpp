@@ -10,6 +10,10 @@
 
 namespace palpate::detail {
 
+/// The coarsest node that has points, the first of several: they lie all over the cloud, so they
+/// tell what is the same for all nodes. There has to be one.
+[[nodiscard]] std::size_t coarsest_node(const PointStore::Layout& layout);
+
 /// The clouds of some nodes, in their order, read on all cores. Where several are damaged, the
 /// first one's error is thrown.
 [[nodiscard]] std::vector<PointCloud> read_nodes(const PointStore& store,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/store_nodes.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/copc.hpp"
 
@@ -32,7 +33,7 @@ class CopcStore final : public PointStore {
     layout_.edge = scale * 2 * copc->half_size;
     layout_.spacing = scale * copc->spacing;
     layout_.points = header_.points;
-    look_at_root();
+    learn_from_sample();
   }
 
   [[nodiscard]] const Layout& layout() const override { return layout_; }
@@ -68,12 +69,9 @@ class CopcStore final : public PointStore {
     return numbers.cwiseProduct(scale_) + offset_;
   }
 
-  /// The root thins the whole file, so it tells which columns are of use, and where points lie.
-  void look_at_root() {
-    const auto root = std::ranges::find_if(
-        nodes_, [](const CopcNode& node) { return node.key.level == 0 && node.points > 0; });
-    if (root == nodes_.end()) return;
-    const auto points = points_of(static_cast<std::size_t>(root - nodes_.begin()));
+  void learn_from_sample() {
+    if (layout_.points == 0) return;
+    const std::vector<LasPoint> points = points_of(detail::coarsest_node(layout_));
     layout_.origin = choose_origin(points.size(), [&](std::size_t i) { return place(points[i]); });
     std::uint16_t most_color = 0;
     for (const LasPoint& point : points) {

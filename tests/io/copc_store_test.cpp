@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -74,6 +75,22 @@ TEST(CopcStore, OfARealSurveyLiesInItsCubes) {
     box.upper.array() += 1e-3;
     const PointCloud node = store->read(k);
     for (std::size_t i = 0; i < node.size(); ++i) ASSERT_TRUE(box.contains(node.point(i)));
+  }
+}
+
+TEST(CopcStore, WhoseRootHasNoPointsHasColumnsAllTheSame) {
+  const test::Folder folder;
+  const auto swap_root = [](std::vector<CopcEntry>& entries) {
+    const auto empty = std::ranges::find(entries, 0, &CopcEntry::points);
+    std::swap(empty->key, entries[0].key);
+  };
+  const auto store = open_store(written(folder, copc_bytes(swap_root)));
+  ASSERT_TRUE(store);
+  for (std::size_t k = 0; k < store->layout().nodes.size(); ++k) {
+    const PointCloud node = store->read(k);
+    if (node.empty()) continue;
+    EXPECT_EQ(node.intensities.size(), node.size());
+    EXPECT_EQ(node.colors.size(), node.size());
   }
 }
 

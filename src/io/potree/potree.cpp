@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/store_nodes.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
 #include "io/potree/hierarchy.hpp"
@@ -110,13 +111,9 @@ class PotreeStore final : public PointStore {
     return bytes;
   }
 
-  // The root's points, or those of the highest node that has some, lie all over the cloud.
   void learn_from_sample() {
     if (layout_.points == 0) return;
-    const auto height = [](const Node& node) { return std::pair(node.points == 0, node.level); };
-    const auto highest = std::ranges::min_element(layout_.nodes, {}, height);
-    const std::vector<potree::RawPoint> sample =
-        raw(static_cast<std::size_t>(highest - layout_.nodes.begin()));
+    const std::vector<potree::RawPoint> sample = raw(detail::coarsest_node(layout_));
     layout_.origin =
         choose_origin(sample.size(), [&](std::size_t i) { return position(sample[i]); });
     const double most_color = largest_of(metadata_.color, sample, [](const potree::RawPoint& p) {
