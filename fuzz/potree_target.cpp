@@ -1,6 +1,4 @@
 // Gives bytes to the reader of Potree stores and checks its promises.
-#include "io/potree/potree.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "io/potree/potree.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 #include "support/folder.hpp"
@@ -48,7 +47,7 @@ void check_layout(const PointStore& store) {
     const PointStore::Node& node = layout.nodes[i];
     points += node.points;
     check_that(cubes.emplace(node.level, node.cell).second, "two nodes of one cube");
-    check_that(!layout.box(i).empty() && layout.spacing_of(i) > 0, "a node without a box");
+    check_that(!layout.box(i).empty(), "a node without a box");
     for (const std::int32_t c : node.cell) check_that(c >= 0 && c >> node.level == 0, "a cell");
   }
   for (PointStore::Node node : layout.nodes) {

@@ -18,10 +18,6 @@ Box PointStore::Layout::box(std::size_t node) const {
   return {at, at + Eigen::Vector3d::Constant(size)};
 }
 
-double PointStore::Layout::spacing_of(std::size_t node) const {
-  return std::ldexp(spacing, -nodes[node].level);
-}
-
 namespace detail {
 namespace {
 
@@ -47,7 +43,8 @@ std::size_t coarsest_node(const PointStore::Layout& layout) {
   return static_cast<std::size_t>(found - layout.nodes.begin());
 }
 
-std::vector<PointCloud> read_nodes(const PointStore& store, std::span<const std::size_t> nodes) {
+std::vector<PointCloud> read_nodes(const PointStore& store, std::span<const std::size_t> nodes,
+                                   std::exception_ptr* first) {
   std::vector<PointCloud> clouds(nodes.size());
   std::vector<std::exception_ptr> errors(nodes.size());
   parallel_each(nodes.size(), 1, [&](std::size_t i) {
@@ -57,9 +54,10 @@ std::vector<PointCloud> read_nodes(const PointStore& store, std::span<const std:
       errors[i] = std::current_exception();
     }
   });
-  for (const std::exception_ptr& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  const auto found =
+      std::ranges::find_if(errors, [](const auto& error) { return error != nullptr; });
+  if (found != errors.end() && first == nullptr) std::rethrow_exception(*found);
+  if (found != errors.end()) *first = *found;
   return clouds;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "geometry/store_nodes.hpp"
 #include "io/laz/laz_file.hpp"
 #include "io/laz/points.hpp"
 #include "io/text_scanner.hpp"
@@ -76,10 +77,10 @@ class CopcReader {
     for (std::size_t offset = 0; offset < page.bytes; offset += kEntrySize) {
       const std::byte* entry = entries.span().data() + offset;
       const std::size_t at = page.place + offset;
-      CopcNode node;
-      node.key.level = load_as<std::int32_t>(entry);
+      StoredNode node;
+      node.node.level = load_as<std::int32_t>(entry);
       for (std::size_t k = 0; k < 3; ++k) {
-        node.key.cell[k] = load_as<std::int32_t>(entry + 4 + 4 * k);
+        node.node.cell[k] = load_as<std::int32_t>(entry + 4 + 4 * k);
       }
       const auto place = load_as<std::uint64_t>(entry + 16);
       const auto bytes = load_as<std::int32_t>(entry + 24);
@@ -90,41 +91,41 @@ class CopcReader {
         add_page(at, place, node.bytes);
       } else {
         node.place = place;
-        node.points = static_cast<std::size_t>(points);
+        node.node.points = static_cast<std::size_t>(points);
         add_node(at, node);
       }
     }
   }
 
-  void add_node(std::size_t at, const CopcNode& node) {
-    const std::int32_t level = node.key.level;
-    const std::array<std::int32_t, 3>& cell = node.key.cell;
-    if (level < 0 || level > kDeepest ||
-        std::ranges::any_of(cell, [&](std::int32_t c) { return c < 0 || c >> level != 0; })) {
+  void add_node(std::size_t at, const StoredNode& node) {
+    const auto& [level, cell, points] = node.node;
+    if (level < 0 || level > kDeepest || std::ranges::any_of(cell, [top = level](std::int32_t c) {
+          return c < 0 || c >> top != 0;
+        })) {
       wrong(at,
             fmt::format("no cube of level {} is at {}, {}, {}", level, cell[0], cell[1], cell[2]));
     }
     const std::size_t size = file_.size;
     const bool outside = node.place > size || node.bytes > size - node.place;
-    if (node.points > 0 && (outside || !laz::can_hold(header_, node.bytes, node.points))) {
-      wrong(at, fmt::format("a node of {} points in {} bytes at byte {} of a file of {}",
-                            node.points, node.bytes, node.place, size));
+    if (points > 0 && (outside || !laz::can_hold(header_, node.bytes, points))) {
+      wrong(at, fmt::format("a node of {} points in {} bytes at byte {} of a file of {}", points,
+                            node.bytes, node.place, size));
     }
     copc_.nodes.push_back(node);
   }
 
   void check_nodes() {
-    std::vector<CopcNode>& nodes = copc_.nodes;
-    std::ranges::sort(nodes, {}, &CopcNode::key);
-    const auto twice = std::ranges::adjacent_find(nodes, {}, &CopcNode::key);
-    if (twice != nodes.end()) wrong(info_, fmt::format("{} is listed twice", name(twice->key)));
+    std::vector<StoredNode>& nodes = copc_.nodes;
+    const auto key = [](const StoredNode& each) { return detail::key_of(each.node); };
+    std::ranges::sort(nodes, {}, key);
+    const auto twice = std::ranges::adjacent_find(nodes, {}, key);
+    if (twice != nodes.end()) wrong(info_, name_of(twice->node) + " is listed twice");
     std::size_t points = 0;
-    for (const CopcNode& node : nodes) {
-      points += node.points;
-      CopcKey parent{node.key.level - 1, node.key.cell};
-      for (std::int32_t& c : parent.cell) c /= 2;
-      if (parent.level >= 0 && !std::ranges::binary_search(nodes, parent, {}, &CopcNode::key)) {
-        wrong(info_, fmt::format("{} is listed, but its parent is not", name(node.key)));
+    for (const StoredNode& each : nodes) {
+      points += each.node.points;
+      const detail::NodeKey parent = detail::above(key(each));
+      if (parent.first >= 0 && !std::ranges::binary_search(nodes, parent, {}, key)) {
+        wrong(info_, name_of(each.node) + " is listed, but its parent is not");
       }
     }
     if (points != header_.points) {
@@ -136,10 +137,6 @@ class CopcReader {
       wrong(info_, fmt::format("{} points in a file of {} bytes, which cannot hold them", points,
                                file_.size));
     }
-  }
-
-  static std::string name(const CopcKey& key) {
-    return fmt::format("node {}-{}-{}-{}", key.level, key.cell[0], key.cell[1], key.cell[2]);
   }
 
   [[noreturn]] void wrong(std::size_t at, std::string_view what) const {
@@ -167,26 +164,17 @@ std::optional<Copc> read_copc(const Input& head, const LasHeader& header, const 
   return CopcReader(head, header, file, info->place).run();
 }
 
-Box box_of(const Copc& copc, const CopcKey& key) {
-  const double size = std::ldexp(2 * copc.half_size, -key.level);
-  const Eigen::Vector3d cell(key.cell[0], key.cell[1], key.cell[2]);
-  const Eigen::Vector3d low = copc.center.array() - copc.half_size + size * cell.array();
-  Box box;
-  box.extend(low);
-  box.extend(low + Eigen::Vector3d::Constant(size));
-  return box;
+std::string name_of(const PointStore::Node& node) {
+  return fmt::format("node {}-{}-{}-{}", node.level, node.cell[0], node.cell[1], node.cell[2]);
 }
 
-std::vector<LasPoint> read_node(const Input& head, const LasHeader& header, const Parts& file,
-                                const CopcNode& node) {
-  std::vector<LasPoint> points(node.points);
-  if (node.points == 0) return points;
-  const Bytes chunk = file.read(node.place, node.bytes);
-  const std::size_t decoded = laz::decode_points(header, chunk.span(), points);
-  if (decoded == node.points) return points;
-  fail_at_byte(head, node.place,
-               fmt::format("the node ends inside its point {} of {}", decoded + 1, node.points),
-               "Download the file again");
+std::vector<LasPoint> decode_node(const Input& head, const LasHeader& header,
+                                  std::span<const std::byte> bytes, const StoredNode& node) {
+  std::vector<LasPoint> points(node.node.points);
+  if (points.empty()) return points;
+  laz::require_whole(head, node.place, name_of(node.node),
+                     laz::decode_points(header, bytes, points), points.size());
+  return points;
 }
 
 }  // namespace palpate::io

@@ -157,7 +157,7 @@ OpenFile::~OpenFile() {
   ::close(descriptor_);
 }
 
-Bytes OpenFile::read(std::size_t place, std::size_t size) const {
+Bytes OpenFile::read(std::size_t place, std::size_t size, std::string_view part) const {
   Bytes bytes(size);
   std::size_t done = 0;
   while (done < size) {
@@ -167,10 +167,13 @@ Bytes OpenFile::read(std::size_t place, std::size_t size) const {
     if (got > 0) {
       done += static_cast<std::size_t>(got);
     } else if (got == 0) {
-      throw Error(fmt::format("{}, byte {}: the file ends here, {} bytes too early. Copy it again.",
-                              name_, place + done, size - done));
+      throw Error(fmt::format(
+          "{}, byte {}: the file ends {}here, {} bytes too early. Copy it again.", name_,
+          place + done, part.empty() ? "" : fmt::format("inside {} ", part), size - done));
     } else if (errno != EINTR) {
-      fail_reading(name_, errno);
+      fail_reading(
+          fmt::format("{}, byte {}{}{}", name_, place + done, part.empty() ? "" : ", ", part),
+          errno);
     }
   }
   return bytes;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "io/input.hpp"
 
@@ -48,8 +49,8 @@ class OpenFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t size() const { return size_; }  ///< bytes, when it was opened
 
-  /// @throws Error where the file ends before that, or reading fails.
-  [[nodiscard]] Bytes read(std::size_t place, std::size_t size) const;
+  /// @throws Error where the file ends before that, or reading fails: names the `part` of the file.
+  [[nodiscard]] Bytes read(std::size_t place, std::size_t size, std::string_view part = "") const;
 
  private:
   std::string name_;

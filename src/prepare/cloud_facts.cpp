@@ -127,16 +127,20 @@ CloudFacts measure_facts(const PointCloud& cloud, const PrepareOptions& options,
   return facts_of({drawn, {}, placed.viewpoint}, without_facts(options), sample_points);
 }
 
-CloudFacts measure_facts(const PointStore& store, const PrepareOptions& options,
+CloudFacts measure_facts(const StoreSample& sample, const PrepareOptions& options,
                          const Eigen::Isometry3d& T_world_sensor) {
   PrepareOptions whole = without_facts(options);
   whole.clip.reset();
-  const StoreSample taken = sample_of(store, kAsked, kDrawnPlaces, kPointsAround);
-  const Placed all = place(taken.all, whole, T_world_sensor);
-  const Placed drawn = place(taken.places, whole, T_world_sensor);
+  const Placed all = place(sample.all, whole, T_world_sensor);
+  const Placed drawn = place(sample.places, whole, T_world_sensor);
   detail::require_finite(all.cloud().positions);
   detail::require_finite(drawn.cloud().positions);
   return facts_of(drawn, whole, all.cloud().positions);
+}
+
+CloudFacts measure_facts(const PointStore& store, const PrepareOptions& options,
+                         const Eigen::Isometry3d& T_world_sensor) {
+  return measure_facts(sample_of(store), options, T_world_sensor);
 }
 
 }  // namespace palpate

@@ -119,6 +119,10 @@ void take_columns(const PointCloud& cloud, const PrepareOptions& options, Sampli
 
 }  // namespace
 
+double voxel_of(const CloudFacts& facts, const PrepareOptions& options) {
+  return options.voxel.value_or(is_noisy(facts) ? kLeafSpacings * facts.spacing : 0);
+}
+
 Sampling sample(const Placed& placed, const PrepareOptions& options, Prepared::Report& report) {
   Stopwatch watch;
   Sampling sampling;
@@ -134,7 +138,7 @@ Sampling sample(const Placed& placed, const PrepareOptions& options, Prepared::R
   CloudFacts& facts = sampling.facts;
   if (!options.facts) facts.spacing = sampling.spacing;
   measure_of_all(options, sampling);
-  sampling.voxel = options.voxel.value_or(is_noisy(facts) ? kLeafSpacings * facts.spacing : 0);
+  sampling.voxel = voxel_of(facts, options);
   watch.lap(report.seconds_spacing);
   if (sampling.voxel > 0) thin(options, less, cloud, sampling, report);
   if (sampling.local.sigmas.empty()) {

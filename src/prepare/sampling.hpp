@@ -29,6 +29,9 @@ struct Sampling {
   double voxel = 0;    ///< leaf of the filter, m; 0: none
 };
 
+/// The leaf of the voxel filter for a cloud with these facts, m; 0: none.
+[[nodiscard]] double voxel_of(const CloudFacts& facts, const PrepareOptions& options);
+
 /// Indices of the first point at each position, in input order.
 [[nodiscard]] std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid);
 

@@ -3,10 +3,11 @@
 #include "prepare/store_sample.hpp"
 
 #include <algorithm>
-#include <compare>
+#include <cstddef>
+#include <exception>
 #include <map>
 #include <numeric>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/store_nodes.hpp"
@@ -17,29 +18,23 @@ namespace {
 
 using Eigen::Vector3f;
 using Layout = PointStore::Layout;
+using Key = detail::NodeKey;
 
-/// Level and cell of a node.
-using Key = std::pair<std::int32_t, std::array<std::int32_t, 3>>;
-
-Key key_of(const PointStore::Node& node) {
-  return {node.level, node.cell};
-}
-
-Key above(Key key) {
-  --key.first;
-  for (std::int32_t& c : key.second) c >>= 1;
-  return key;
-}
+constexpr std::size_t kOfStore = 1
+                                 << 17;  // points of all of the store: enough for a page; judgement
+constexpr std::size_t kStorePlaces = 32;  // judgement
+constexpr std::size_t kAtPlace = 4096;    // points at a place: windows of 20 s fit in; judgement
 
 /// Nodes with points under which there are none, in the order of the store.
 std::vector<std::size_t> leaves_of(const Layout& layout) {
   std::map<Key, bool> has_child;
   for (const PointStore::Node& node : layout.nodes) {
-    if (node.points > 0) has_child[above(key_of(node))] = true;
+    if (node.points > 0) has_child[detail::above(detail::key_of(node))] = true;
   }
   std::vector<std::size_t> leaves;
   for (std::size_t k = 0; k < layout.nodes.size(); ++k) {
-    if (layout.nodes[k].points == 0 || has_child.contains(key_of(layout.nodes[k]))) continue;
+    if (layout.nodes[k].points == 0 || has_child.contains(detail::key_of(layout.nodes[k])))
+      continue;
     leaves.push_back(k);
   }
   return leaves;
@@ -65,7 +60,7 @@ std::vector<std::size_t> drawn(const Layout& layout, const std::vector<std::size
 /// A node and those over it.
 std::vector<std::size_t> chain(const std::map<Key, std::size_t>& numbers, Key key) {
   std::vector<std::size_t> nodes;
-  for (; key.first >= 0; key = above(key)) {
+  for (; key.first >= 0; key = detail::above(key)) {
     const auto found = numbers.find(key);
     if (found != numbers.end()) nodes.push_back(found->second);
   }
@@ -73,32 +68,25 @@ std::vector<std::size_t> chain(const std::map<Key, std::size_t>& numbers, Key ke
 }
 
 /// Leaves the points of the box, and of these the nearest ones to the one nearest to their middle.
-void keep_middle(const Box& box, std::size_t most, PointCloud& cloud) {
-  cloud = clip(cloud, box);
-  if (cloud.size() <= most) return;
+void keep_middle(const Box& box, PointCloud& cloud) {
+  PointCloud places;
+  places.origin = cloud.origin;
+  places.positions = std::move(cloud.positions);
+  cloud = clip(places, box);
+  if (cloud.size() <= kAtPlace) return;
   const auto nearest_to = [](const Vector3f& place) {
     return [place](const Vector3f& p) { return (p - place).squaredNorm(); };
   };
   Vector3f middle = Vector3f::Zero();
   for (const Vector3f& p : cloud.positions) middle += p / static_cast<float>(cloud.size());
   const Vector3f start = *std::ranges::min_element(cloud.positions, {}, nearest_to(middle));
-  std::ranges::nth_element(cloud.positions, cloud.positions.begin() + static_cast<long>(most), {},
-                           nearest_to(start));
-  cloud.positions.resize(most);
+  std::ranges::nth_element(cloud.positions, cloud.positions.begin() + static_cast<long>(kAtPlace),
+                           {}, nearest_to(start));
+  cloud.positions.resize(kAtPlace);
 }
 
-/// Clouds of some nodes, by their numbers.
-std::map<std::size_t, PointCloud> read(const PointStore& store, std::vector<std::size_t> nodes) {
-  std::ranges::sort(nodes);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<PointCloud> clouds = detail::read_nodes(store, nodes);
-  std::map<std::size_t, PointCloud> found;
-  for (std::size_t k = 0; k < nodes.size(); ++k) found[nodes[k]] = std::move(clouds[k]);
-  return found;
-}
-
-}  // namespace
-
+/// The nodes of the upper levels, the coarsest first: together they have at least `asked` points,
+/// if all have.
 std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
   std::vector<std::size_t> order(layout.nodes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -110,33 +98,49 @@ std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
   return order;
 }
 
-StoreSample sample_of(const PointStore& store, std::size_t asked, std::size_t places,
-                      std::size_t around) {
+/// Clouds of some nodes, by their numbers: those that can be read, or are none.
+struct Nodes {
+  Nodes(const PointStore& store, std::vector<std::size_t> nodes) {
+    std::ranges::sort(nodes);
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    std::vector<PointCloud> read = detail::read_nodes(store, nodes, &error);
+    for (std::size_t k = 0; k < nodes.size(); ++k) clouds[nodes[k]] = std::move(read[k]);
+  }
+
+  [[nodiscard]] PointCloud join(const std::vector<std::size_t>& some) const {
+    PointCloud all;
+    for (const std::size_t k : some) detail::append(clouds.at(k), all);
+    return all;
+  }
+
+  std::map<std::size_t, PointCloud> clouds;
+  std::exception_ptr error;  // the first
+};
+
+}  // namespace
+
+StoreSample sample_of(const PointStore& store) {
   const Layout& layout = store.layout();
   std::map<Key, std::size_t> numbers;
-  for (std::size_t k = 0; k < layout.nodes.size(); ++k) numbers[key_of(layout.nodes[k])] = k;
-  const std::vector<std::size_t> upper = upper_nodes(layout, asked);
-  const std::vector<std::size_t> leaves = drawn(layout, leaves_of(layout), places);
+  for (std::size_t k = 0; k < layout.nodes.size(); ++k)
+    numbers[detail::key_of(layout.nodes[k])] = k;
+  const std::vector<std::size_t> upper = upper_nodes(layout, kOfStore);
+  const std::vector<std::size_t> leaves = drawn(layout, leaves_of(layout), kStorePlaces);
   std::vector<std::size_t> wanted = upper;
   for (const std::size_t leaf : leaves) {
-    const auto over = chain(numbers, key_of(layout.nodes[leaf]));
+    const auto over = chain(numbers, detail::key_of(layout.nodes[leaf]));
     wanted.insert(wanted.end(), over.begin(), over.end());
   }
-  const std::map<std::size_t, PointCloud> clouds = read(store, wanted);
-  StoreSample sample;
-  for (const std::size_t k : upper) detail::append(clouds.at(k), sample.all);
+  const Nodes nodes(store, std::move(wanted));
+  StoreSample sample{nodes.join(upper), {}};
   for (const std::size_t leaf : leaves) {
-    PointCloud there;
-    for (const std::size_t k : chain(numbers, key_of(layout.nodes[leaf]))) {
-      detail::append(clouds.at(k), there);
-    }
-    keep_middle(layout.box(leaf), around, there);
+    PointCloud there = nodes.join(chain(numbers, detail::key_of(layout.nodes[leaf])));
+    keep_middle(layout.box(leaf), there);
     detail::append(there, sample.places);
   }
-  if (sample.all.empty() || sample.places.empty()) {
-    throw Error("none of the store's points can be used: make it again");
-  }
-  return sample;
+  if (!sample.all.empty() && !sample.places.empty()) return sample;
+  if (nodes.error) std::rethrow_exception(nodes.error);
+  throw Error("none of the store's points can be used: make it again");
 }
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 // Draws points of a store without reading all of it.
 #pragma once
 
-#include <cstddef>
-#include <vector>
+#include <Eigen/Geometry>
 
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/point_store.hpp"
+#include "palpate/prepare/prepare.hpp"
 
 namespace palpate {
 
@@ -15,15 +15,14 @@ struct StoreSample {
   PointCloud places;  ///< all that lie around some places
 };
 
-/// The nodes of the upper levels, the coarsest first: together they have at least `asked` points,
-/// if all have.
-[[nodiscard]] std::vector<std::size_t> upper_nodes(const PointStore::Layout& layout,
-                                                   std::size_t asked);
+/// At least a hundred thousand points of all of the store, and some thousand nearest ones at each
+/// of 32 places, which are spread over its points. Always the same of the same store. Nodes that
+/// cannot be read are left out.
+/// @throws Error when no point is left: the first that reading gave.
+[[nodiscard]] StoreSample sample_of(const PointStore& store);
 
-/// Takes at least `asked` points of all of the store, and the `around` nearest ones at each of so
-/// many `places`, which are spread over its points. Always the same of the same store.
-/// @throws Error as PointStore::read() does, and when no point is left.
-[[nodiscard]] StoreSample sample_of(const PointStore& store, std::size_t asked, std::size_t places,
-                                    std::size_t around);
+/// measure_facts() of the store that the sample is of.
+[[nodiscard]] CloudFacts measure_facts(const StoreSample& sample, const PrepareOptions& options,
+                                       const Eigen::Isometry3d& T_world_sensor);
 
 }  // namespace palpate

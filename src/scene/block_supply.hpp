@@ -19,12 +19,13 @@ namespace palpate {
 
 /// A part of a cloud that is prepared by itself.
 struct CloudBlock {
-  enum class State : std::uint8_t { missing, prepared, shown };
+  enum class State : std::uint8_t { missing, failed, prepared, shown };
 
   Division::Key key;
   Box box;    ///< that holds its points, world frame, m
   Box place;  ///< of a store: where it is needed, if a tool is near; holds `box`
   State state = State::missing;
+  double retry = 0;     ///< of one that failed: from when on it is tried again, s
   double presence = 0;  ///< at the start of what was shown last; 1 at its end
   double distance = 0;  ///< from what tools can reach, m; negative within
   Box sparser;          ///< around points in its cube that belong to further levels, where known
@@ -68,6 +69,7 @@ class BlockSupply {
   /// Is there memory for a block that is not near?
   [[nodiscard]] virtual bool has_room(std::span<const CloudBlock> blocks) const = 0;
 
+  /// @throws Error as PointStore::read() does; then the block is as it was.
   virtual void prepare(CloudBlock& block) = 0;
 };
 

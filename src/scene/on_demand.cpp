@@ -9,11 +9,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,6 +34,8 @@ constexpr std::size_t kMostShown = std::size_t{1} << 19;
 // Boxes that a servo looks through, 1.4 us a step (measured). A tool is not told of others: so many
 // are the blocks of about a hundred million points of a surface.
 constexpr std::size_t kMostMissing = 1024;
+// s until what could not be read is tried again: a disk or a network may be back; judgement.
+constexpr double kRetry = 10;
 
 }  // namespace
 
@@ -40,7 +45,7 @@ struct OnDemand::Inside {
   Inside(std::unique_ptr<BlockSupply> from, const PrepareOptions& options)
       : supply(std::move(from)), kernel(options.kernel), near(kAhead * supply->facts().radius) {}
 
-  void look(const Source& source);
+  void look(const Source& source, double now);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
   [[nodiscard]] int rank(const CloudBlock& block) const;
   [[nodiscard]] std::vector<CloudBlock*> chosen();
@@ -49,7 +54,7 @@ struct OnDemand::Inside {
   [[nodiscard]] bool was_missing();
   template <class Work>
   void beside_servos(const Work& work);
-  void prepare(CloudBlock& block);
+  void prepare(CloudBlock& block, double now);
   void show_near(Source& source, double now);
   void show_all(Source& source);
   void publish(Source& source, std::span<const Piece* const> shown, Snapshot snapshot);
@@ -61,6 +66,7 @@ struct OnDemand::Inside {
   std::vector<Box> unlisted;      // where no block is
   std::vector<Box> told_missing;  // where it was last shown that nothing is known
   double last_start = 0;          // of what was shown last, s
+  std::set<std::string> errors;   // that were thrown
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
@@ -71,7 +77,7 @@ struct OnDemand::Inside {
 };
 
 /// Where tools are; at the cloud's start before there are any.
-void OnDemand::Inside::look(const Source& at) {
+void OnDemand::Inside::look(const Source& at, double now) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
   if (balls.empty()) balls.push_back({supply->start(), 0});
@@ -81,7 +87,8 @@ void OnDemand::Inside::look(const Source& at) {
   std::size_t wanted = 0;  // ready, or to be prepared while tools stay where they are
   for (CloudBlock& block : blocks) {
     block.distance = distance(block.box, balls);
-    const bool is_ready = block.state != State::missing;
+    if (block.state == State::failed && block.retry <= now) block.state = State::missing;
+    const bool is_ready = block.state > State::failed;
     ready += is_ready ? 1 : 0;
     wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
   }
@@ -110,7 +117,7 @@ int OnDemand::Inside::rank(const CloudBlock& block) const {
 std::vector<CloudBlock*> OnDemand::Inside::chosen() {
   std::vector<CloudBlock*> order;
   for (CloudBlock& block : blocks) {
-    if (block.state != State::missing) order.push_back(&block);
+    if (block.state > State::failed) order.push_back(&block);
   }
   std::ranges::stable_sort(
       order, {}, [&](const CloudBlock* block) { return std::pair(rank(*block), block->distance); });
@@ -171,9 +178,16 @@ void OnDemand::Inside::beside_servos(const Work& work) {
   }
 }
 
-void OnDemand::Inside::prepare(CloudBlock& block) {
-  beside_servos([&] { supply->prepare(block); });
-  block.state = State::prepared;
+/// @throws what is wrong with a block, the first time that it is.
+void OnDemand::Inside::prepare(CloudBlock& block, double now) {
+  try {
+    beside_servos([&] { supply->prepare(block); });
+    block.state = State::prepared;
+  } catch (const std::exception& error) {
+    block.state = State::failed;
+    block.retry = now + kRetry;
+    if (errors.insert(error.what()).second) throw;
+  }
 }
 
 void OnDemand::Inside::show_near(Source& to, double now) {
@@ -248,7 +262,7 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
   Inside& in = *inside_;
   const std::lock_guard lock(in.mutex);
   if (in.done) return false;
-  in.look(source);
+  in.look(source, now);
   CloudBlock* wanted = in.nearest_missing(in.near);
   if (wanted == nullptr && in.share > 0 &&
       (in.source != &source || in.shows_more() || in.was_missing())) {
@@ -259,10 +273,10 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
     wanted = in.nearest_missing(std::numeric_limits<double>::infinity());
   }
   if (wanted != nullptr) {
-    in.prepare(*wanted);
+    in.prepare(*wanted, now);
     return true;
   }
-  if (!ahead || !in.supply->is_whole()) return false;
+  if (!ahead || !in.supply->is_whole() || in.share < 1) return false;
   in.show_all(source);
   return true;
 }

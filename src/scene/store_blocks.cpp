@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "geometry/store_nodes.hpp"
 #include "palpate/base/error.hpp"
 #include "prepare/place.hpp"
+#include "prepare/sampling.hpp"
 #include "prepare/store_sample.hpp"
 #include "scene/block_supply.hpp"
 #include "scene/node_cache.hpp"
@@ -27,6 +27,10 @@ using Key = Division::Key;
 // is for points that a turn, or rounding in the file, has moved.
 constexpr double kAround = 6.1;
 constexpr double kAroundSparse = 14.1;  // derived, too
+
+// Distances between points in the largest R that may be asked for. Derived: a block then has some
+// 4e8 pairs of points within R of each other, which take two cores some 10 s (measured).
+constexpr double kMostSpacings = 10;
 
 // Cubes around the one that holds a tool which are prepared before it comes there; judgement.
 constexpr int kSoon = 1;
@@ -44,9 +48,6 @@ constexpr double kMostCubes = 1 << 14;
 
 constexpr std::size_t kPieces = 4;       // one of so many bytes is for prepared blocks; judgement
 constexpr std::size_t kPieceBytes = 72;  // a point; derived from the columns of SurfacePoints
-
-// Points of the overview: what a page draws of all of the store; judgement.
-constexpr std::size_t kOverview = 100'000;
 
 /// A range of cubes of level 0, both ends included.
 struct Range {
@@ -99,10 +100,12 @@ class StoreBlocks final : public BlockSupply {
           "the paper's preparation and materials from intensities need all of a store: read "
           "it whole");
     }
-    if (!options_.facts) options_.facts = measure_facts(*store, options, pose);
+    const StoreSample sample = sample_of(*store);
+    if (!options_.facts) options_.facts = measure_facts(sample, options, pose);
+    check_radius();
     const PointStore::Layout& layout = store->layout();
     all_ = moved(pose_, {layout.lower, layout.lower + Vector3d::Constant(layout.edge)});
-    look_over(*store);
+    look_over(sample.all);
   }
 
   [[nodiscard]] const CloudFacts& facts() const override { return *options_.facts; }
@@ -142,6 +145,7 @@ class StoreBlocks final : public BlockSupply {
     const std::size_t read = nodes_.points_around(there);
     if (block.key.level > 0 && read > kMostRead) return;
     if (read > kMostReadAtOnce) fail_too_many(read);
+    if (nodes_.inside(moved(pose_.inverse(), Division::cube(facts(), block.key))).empty()) return;
     PointCloud near = nodes_.inside(there);
     if (options_.clip) near = clip(near, *options_.clip);
     if (near.empty()) return;
@@ -156,6 +160,19 @@ class StoreBlocks final : public BlockSupply {
   }
 
  private:
+  /// Nobody waits for blocks in which each point has thousands around it.
+  void check_radius() const {
+    if (!options_.radius && options_.minimum_radius == 0) return;  // it follows from the distances
+    const double apart = std::max(facts().spacing, voxel_of(facts(), options_));
+    const double most = kMostSpacings * apart;
+    if (facts().radius <= most) return;
+    throw Error(
+        fmt::format("an R of {:.3g} m is too large for a store whose points are {:.3g} m apart: a "
+                    "block would take minutes. Give a radius of at most {:.2g} m, or a voxel of at "
+                    "least {:.2g} m",
+                    facts().radius, apart, most, facts().radius / kMostSpacings));
+  }
+
   [[noreturn]] void fail_too_many(std::size_t points) const {
     throw Error(
         fmt::format("with an R of {:.3g} m one block of the cloud takes {} points: give a smaller "
@@ -163,14 +180,7 @@ class StoreBlocks final : public BlockSupply {
                     facts().radius, points));
   }
 
-  /// Reads the upper nodes.
-  void look_over(const PointStore& store) {
-    PointCloud all;
-    for (const PointCloud& part :
-         detail::read_nodes(store, upper_nodes(store.layout(), kOverview))) {
-      detail::append(part, all);
-    }
-    if (all.empty()) throw Error("none of the store's points can be used: make it again");
+  void look_over(const PointCloud& all) {
     const auto seen = std::make_shared<const PointCloud>(place(all, {}, pose_).cloud());
     overview_ = seen;
     const Vector3d middle = facts().extent.center();

@@ -18,10 +18,10 @@ std::string described(const io::Copc& copc) {
   const Eigen::Vector3d upper = copc.center.array() + copc.half_size;
   std::string text = fmt::format("{} {} {} {} {} {} {}\n", lower.x(), lower.y(), lower.z(),
                                  upper.x(), upper.y(), upper.z(), copc.spacing);
-  for (const io::CopcNode& node : copc.nodes) {
-    const auto& [x, y, z] = node.key.cell;
-    text += fmt::format("{} {} {} {} {} {} {}\n", node.key.level, x, y, z, node.place, node.bytes,
-                        node.points);
+  for (const io::StoredNode& node : copc.nodes) {
+    const auto& [x, y, z] = node.node.cell;
+    text += fmt::format("{} {} {} {} {} {} {}\n", node.node.level, x, y, z, node.place, node.bytes,
+                        node.node.points);
   }
   return text;
 }
@@ -41,10 +41,10 @@ class CopcPeer : public test::PeerTest {
     const std::string records = folder_.read("a.copc.laz.records");
     ASSERT_EQ(records.size(), header.points * header.record_size);
     const std::byte* record = std::as_bytes(std::span(records)).data();
-    for (const io::CopcNode& node : copc->nodes) {
+    for (const io::StoredNode& node : copc->nodes) {
       const std::vector<io::LasPoint> points =
-          io::read_node(input, header, io::parts_of(input.bytes), node);
-      ASSERT_EQ(points.size(), node.points);
+          io::decode_node(input, header, input.bytes.subspan(node.place, node.bytes), node);
+      ASSERT_EQ(points.size(), node.node.points);
       for (const io::LasPoint& point : points) {
         const io::LasPoint theirs = io::las_point(header, record);
         ASSERT_EQ(point.number, theirs.number);

@@ -38,7 +38,7 @@ class MadeStore final : public PointStore {
 
   [[nodiscard]] PointCloud read(std::size_t node) const override {
     ++reads_;
-    if (on_read) on_read();
+    if (on_read) on_read(node);
     return select(cloud_, members_[node]);
   }
 
@@ -52,7 +52,7 @@ class MadeStore final : public PointStore {
     return select(cloud_, order);
   }
 
-  std::function<void()> on_read;  ///< called on any thread
+  std::function<void(std::size_t node)> on_read;  ///< called on any thread
 
  private:
   static constexpr int kCells = 32;

@@ -1,6 +1,4 @@
 // Feeds the sources of a run in real time: streams, and clouds that are prepared on demand.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "apps/palpate/run/run.hpp"
+#include "apps/palpate/sources/large_cloud.hpp"
 
 namespace palpate::app {
 
@@ -37,13 +36,13 @@ LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Record
 void LiveFeed::prepare(std::size_t index, const std::stop_token& stop) {
   OnDemand& cloud = *loaded_.sources[index].on_demand;
   Source& source = loaded_.scene.source(index);
-  try {
-    while (!cloud.done() && !stop.stop_requested()) {
+  while (!cloud.done() && !stop.stop_requested()) {
+    try {
       if (!cloud.advance(source, clock_.now())) std::this_thread::sleep_for(kIdle);
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      problems_.push_back(missing_part(source, error));
     }
-  } catch (const std::exception& error) {
-    const std::lock_guard lock(mutex_);
-    problem_ = fmt::format("{}: {}; what is there stays", source.name(), error.what());
   }
 }
 
@@ -55,9 +54,9 @@ double LiveFeed::prepared() const {
   return least;
 }
 
-std::string LiveFeed::problem() const {
+std::vector<std::string> LiveFeed::problems() const {
   const std::lock_guard lock(mutex_);
-  return problem_;
+  return problems_;
 }
 
 std::vector<StreamState> LiveFeed::states() const {

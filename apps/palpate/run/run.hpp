@@ -120,8 +120,8 @@ class LiveFeed {
   /// The share of the clouds' blocks that is prepared, 0-1; the least of all. 1: all is there.
   [[nodiscard]] double prepared() const;
 
-  /// Why a cloud could not be prepared to its end; empty: nothing failed.
-  [[nodiscard]] std::string problem() const;
+  /// Why parts of clouds are not there, each thing once, in the order in which they were found.
+  [[nodiscard]] std::vector<std::string> problems() const;
 
   /// Ends the streams and puts what they were like into `loaded`, times counted from the start.
   void finish();
@@ -134,7 +134,7 @@ class LiveFeed {
   double start_;
   std::vector<Stream> streams_;
   mutable std::mutex mutex_;
-  std::string problem_;
+  std::vector<std::string> problems_;
   std::vector<std::jthread> preparing_;  // last: they use all of the above
 };
 

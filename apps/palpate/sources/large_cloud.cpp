@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
+#include <vector>
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
@@ -24,10 +26,27 @@ PointCloud in_file(PointCloud cloud, const Eigen::Isometry3d& T_world_file) {
   return cloud;
 }
 
+void tell(const Source& source, const std::exception_ptr& problem) {
+  try {
+    std::rethrow_exception(problem);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", without_controls(missing_part(source, error)));
+  }
+}
+
 const Source& first_surface(Scene& scene, LoadedSource& result) {
   Source& source = scene.add(result.plan.argument.name, result.plan.options);
   const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
-  while (is_empty() && result.on_demand->advance(source, 0)) continue;
+  std::vector<std::exception_ptr> problems;
+  for (bool more = true; more && is_empty();) {
+    try {
+      more = result.on_demand->advance(source, 0);
+    } catch (const std::exception&) {
+      problems.push_back(std::current_exception());
+    }
+  }
+  if (is_empty() && !problems.empty()) std::rethrow_exception(problems.front());
+  for (const std::exception_ptr& problem : problems) tell(source, problem);
   return source;
 }
 
@@ -49,6 +68,20 @@ void refuse_needs_of_whole(const LoadedSource& result, const LoadOptions& option
 }
 
 }  // namespace
+
+std::string missing_part(const Source& source, const std::exception& error) {
+  return fmt::format("{}: {} (what needs it is not there; it is tried again after 10 s)",
+                     source.name(), error.what());
+}
+
+bool advance(OnDemand& cloud, Source& source, double now) {
+  try {
+    return cloud.advance(source, now, false);
+  } catch (const std::exception&) {
+    tell(source, std::current_exception());
+    return true;
+  }
+}
 
 const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud>& cloud,
                             LoadedSource& result) {

@@ -1,7 +1,9 @@
 // Declares clouds that become a surface while they are touched.
 #pragma once
 
+#include <exception>
 #include <memory>
+#include <string>
 
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/geometry/point_cloud.hpp"
@@ -17,5 +19,11 @@ const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud
 /// read in the run. False: it is none, or fits.
 /// @throws Error as open_store() and OnDemand do, and where the run needs all of its points.
 [[nodiscard]] bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result);
+
+/// What is said where a part of a cloud could not be read or prepared.
+[[nodiscard]] std::string missing_part(const Source& source, const std::exception& error);
+
+/// Reads what tools may need; says on standard error what could not be read, and goes on.
+bool advance(OnDemand& cloud, Source& source, double now);
 
 }  // namespace palpate::app

@@ -191,14 +191,13 @@ LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed,
   return moment;
 }
 
-// Says once of each hand that its device failed, where others go on, and of a cloud that it cannot
-// be read further.
+// Says once of each hand that its device failed, where others go on, and of a cloud what of it
+// cannot be read.
 class FailureWatch {
  public:
   void look(const LiveHands& hands, const LiveFeed& feed, double now, LiveStatus& status) {
-    if (const std::string problem = feed.problem(); problem != problem_) {
-      status.tell(problem_ = problem);
-    }
+    const std::vector<std::string> problems = feed.problems();
+    for (; problems_ < problems.size(); ++problems_) status.tell(problems[problems_]);
     told_.resize(hands.size());
     if (!any_goes_on(hands, now)) return;
     for (std::size_t i = 0; i < hands.size(); ++i) {
@@ -211,7 +210,7 @@ class FailureWatch {
 
  private:
   std::vector<bool> told_;
-  std::string problem_;  // of the feed, told
+  std::size_t problems_ = 0;  // of the feed, told
 };
 
 // Topics are named hand, or hand1, hand2, ... where there are several.

@@ -6,6 +6,7 @@
 #include "apps/palpate/cli/process.hpp"
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/run/run.hpp"
+#include "apps/palpate/sources/large_cloud.hpp"
 #include "apps/palpate/touch/touch.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
@@ -37,7 +38,7 @@ void read_around_tools(Run& run, double time, const Interruption& interruption) 
     OnDemand* const cloud = run.loaded.sources[i].on_demand.get();
     if (cloud == nullptr) continue;
     Source& source = run.loaded.scene.source(i);
-    while (!interruption.asked() && cloud->advance(source, time, false)) continue;
+    while (!interruption.asked() && advance(*cloud, source, time)) continue;
   }
 }
 

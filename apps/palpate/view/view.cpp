@@ -245,6 +245,14 @@ struct View::Parts {
     return page;
   }
 
+  // What of a cloud could not be read, each thing once.
+  void tell_problems() {
+    const std::vector<std::string> problems = feed.problems();
+    for (; told < problems.size(); ++told) {
+      viewer.notice(Viewer::NoticeLevel::warning, problems[told]);
+    }
+  }
+
   void recording_broke(const std::string& why) {
     viewer.record_ended();
     viewer.notice(Viewer::NoticeLevel::warning, "the recording ended: " + why);
@@ -255,6 +263,7 @@ struct View::Parts {
   const LiveFeed& feed;
   const RosBridge* bridge;  // null: nobody is told
   ViewSettings initial;
+  std::size_t told = 0;  // problems of the feed
   std::mutex settings_mutex;
   ViewSettings settings;
   std::deque<PageHold> holds;  // of each hand
@@ -278,6 +287,7 @@ std::optional<PagePlan> View::look() {
   for (PageHold& hold : parts_->holds) {
     if (hold.possible()) hold.keep();
   }
+  parts_->tell_problems();
   if (!parts_->has_opened()) return {};
   return parts_->next_page();
 }

@@ -36,7 +36,6 @@ class PointStore {
     std::vector<Node> nodes;  ///< in the order in which their points are stored
 
     [[nodiscard]] Box box(std::size_t node) const;  ///< the cube of a node
-    [[nodiscard]] double spacing_of(std::size_t node) const;
   };
 
   virtual ~PointStore() = default;

@@ -47,7 +47,8 @@ class OnDemand {
   /// `ahead`: prepare also what no tool comes near yet.
   /// @return false: there was nothing to do. That is for good if done(); around a store it is until
   ///   a tool moves.
-  /// @throws Error as prepare() and PointStore::read() do.
+  /// @throws Error as prepare() and PointStore::read() do, once for each thing that is wrong. The
+  ///   next call goes on: what could not be read counts as missing, and is tried again after 10 s.
   bool advance(Source& source, double now, bool ahead = true);
 
   /// Waits until advance() is through, and publishes nothing from then on: the source becomes

@@ -38,11 +38,8 @@ std::unique_ptr<LasPoint[]> read_points(const Input& input, const LasHeader& hea
     if (std::this_thread::get_id() == caller) progress.at(done);
   });
   for (std::size_t i = 0; i < chunks.size(); ++i) {
-    if (decoded[i] == chunks[i].points) continue;
-    fail_at_byte(input, chunks[i].place,
-                 fmt::format("chunk {} of {} ends inside its point {} of {}", i + 1, chunks.size(),
-                             decoded[i] + 1, chunks[i].points),
-                 "Download the file again; \"lasinfo\" or \"pdal info\" tests it");
+    require_whole(input, chunks[i].place, fmt::format("chunk {} of {}", i + 1, chunks.size()),
+                  decoded[i], chunks[i].points);
   }
   return points;
 }

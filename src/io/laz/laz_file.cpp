@@ -87,6 +87,14 @@ bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points) {
   return bytes >= header.record_size && points <= largest_unpacked(bytes) / sizeof(LasPoint);
 }
 
+void require_whole(const Input& input, std::size_t place, std::string_view what,
+                   std::size_t decoded, std::size_t points) {
+  if (decoded == points) return;
+  fail_at_byte(input, place,
+               fmt::format("{} ends inside its point {} of {}", what, decoded + 1, points),
+               "Download the file again; \"lasinfo\" or \"pdal info\" tests it");
+}
+
 std::optional<std::size_t> read_chunk_size(const Input& input, const LasHeader& header) {
   if (header.format > 8 || header.format == 4 || header.format == 5) {
     fail(input,

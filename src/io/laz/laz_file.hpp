@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "io/file_bytes.hpp"
@@ -26,6 +27,10 @@ struct Chunk {
 
 /// False where so few bytes cannot be one or more chunks of so many points.
 [[nodiscard]] bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points);
+
+/// Refuses a chunk, which `what` names, of whose points fewer than `points` could be decoded.
+void require_whole(const Input& input, std::size_t place, std::string_view what,
+                   std::size_t decoded, std::size_t points);
 
 /// The chunks in the order of their points, all of them within the file. There are no more points
 /// than their bytes can hold.

@@ -7,16 +7,9 @@
 
 #include "io/input.hpp"
 #include "io/potree/metadata.hpp"
-#include "palpate/geometry/point_store.hpp"
+#include "io/stored_node.hpp"
 
 namespace palpate::io::potree {
-
-/// A node, and where octree.bin holds its points.
-struct StoredNode {
-  PointStore::Node node;
-  std::size_t place = 0;  ///< bytes from the start of octree.bin
-  std::size_t bytes = 0;
-};
 
 /// Potree's name of a node: "r", then the number of a child a level, such as "r0417".
 [[nodiscard]] std::string name_of(const PointStore::Node& node);

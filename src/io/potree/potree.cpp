@@ -26,13 +26,6 @@ namespace fs = std::filesystem;
 constexpr const char* kMetadata = "metadata.json";
 constexpr double kSmallestEdge = 1e-9;  // m: atoms are larger (judgement)
 
-// Which columns the clouds have, for all nodes alike.
-struct Shown {
-  bool intensities = false;
-  bool colors = false;
-  bool wide_colors = false;  // of 16 bits, not of 8
-};
-
 // The largest number of an attribute: of all points, where the metadata says it, else of a sample.
 template <class NumberOf>
 double largest_of(const std::optional<potree::Attribute>& attribute,
@@ -47,7 +40,7 @@ double largest_of(const std::optional<potree::Attribute>& attribute,
 class PotreeStore final : public PointStore {
  public:
   PotreeStore(const fs::path& folder, const potree::Metadata& metadata,
-              std::vector<potree::StoredNode> nodes, double scale)
+              std::vector<StoredNode> nodes, double scale)
       : metadata_(metadata),
         scale_(scale * metadata.scale),
         offset_(scale * metadata.offset),
@@ -63,7 +56,7 @@ class PotreeStore final : public PointStore {
       throw Error(fmt::format("{}: no cloud is {} m long or so far away. Give another scale.",
                               folder.string(), layout_.edge));
     }
-    for (const potree::StoredNode& each : nodes_) {
+    for (const StoredNode& each : nodes_) {
       layout_.nodes.push_back(each.node);
       layout_.points += each.node.points;
     }
@@ -77,22 +70,23 @@ class PotreeStore final : public PointStore {
     PointCloud cloud;
     cloud.origin = layout_.origin;
     cloud.positions.reserve(points.size());
-    if (shown_.colors) cloud.colors.reserve(points.size());
-    if (shown_.intensities) cloud.intensities.reserve(points.size());
+    if (colors_.largest > 0) cloud.colors.reserve(points.size());
+    if (has_intensities_) cloud.intensities.reserve(points.size());
     for (const potree::RawPoint& point : points) {
       const Eigen::Vector3d p = position(point);
       if (!is_usable(p)) continue;
       cloud.positions.emplace_back((p - cloud.origin).cast<float>());
-      if (shown_.colors) cloud.colors.push_back(color(point));
-      if (shown_.intensities) cloud.intensities.push_back(point.intensity);
+      if (colors_.largest > 0) cloud.colors.push_back(colors_(point.color));
+      if (has_intensities_) cloud.intensities.push_back(point.intensity);
     }
     return cloud;
   }
 
  private:
   [[nodiscard]] std::vector<potree::RawPoint> raw(std::size_t node) const {
-    const potree::StoredNode& stored = nodes_[node];
-    const Bytes bytes = octree_.read(stored.place, stored.bytes);
+    const StoredNode& stored = nodes_[node];
+    const Bytes bytes =
+        octree_.read(stored.place, stored.bytes, "node " + potree::name_of(stored.node));
     return decode(metadata_, stored, bytes.span(), octree_.name());
   }
 
@@ -101,38 +95,27 @@ class PotreeStore final : public PointStore {
     return number.cwiseProduct(scale_) + offset_;
   }
 
-  [[nodiscard]] std::array<std::uint8_t, 3> color(const potree::RawPoint& point) const {
-    std::array<std::uint8_t, 3> bytes{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const unsigned value = point.color[k];
-      bytes[k] = static_cast<std::uint8_t>(shown_.wide_colors ? (value + 128) / 257
-                                                              : std::min(value, 255U));
-    }
-    return bytes;
-  }
-
   void learn_from_sample() {
     if (layout_.points == 0) return;
     const std::vector<potree::RawPoint> sample = raw(detail::coarsest_node(layout_));
     layout_.origin =
         choose_origin(sample.size(), [&](std::size_t i) { return position(sample[i]); });
-    const double most_color = largest_of(metadata_.color, sample, [](const potree::RawPoint& p) {
+    colors_.largest = largest_of(metadata_.color, sample, [](const potree::RawPoint& p) {
       return static_cast<double>(std::ranges::max(p.color));
     });
-    const double brightest = largest_of(metadata_.intensity, sample, [](const potree::RawPoint& p) {
-      return static_cast<double>(std::abs(p.intensity));
-    });
-    shown_ = {
-        .intensities = brightest > 0, .colors = most_color > 0, .wide_colors = most_color > 255};
+    has_intensities_ = 0 < largest_of(metadata_.intensity, sample, [](const potree::RawPoint& p) {
+                         return static_cast<double>(std::abs(p.intensity));
+                       });
   }
 
   potree::Metadata metadata_;
   Eigen::Vector3d scale_;   // m
   Eigen::Vector3d offset_;  // m
-  std::vector<potree::StoredNode> nodes_;
+  std::vector<StoredNode> nodes_;
   OpenFile octree_;
   Layout layout_;
-  Shown shown_;
+  bool has_intensities_ = false;
+  ColorRule colors_;  // 0: without
 };
 
 }  // namespace
@@ -158,7 +141,7 @@ std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale
   const Bytes description = read_bytes(folder / kMetadata);
   const potree::Metadata metadata = potree::read_metadata(input_of(description, kMetadata));
   const Bytes hierarchy = read_bytes(folder / "hierarchy.bin");
-  std::vector<potree::StoredNode> nodes =
+  std::vector<StoredNode> nodes =
       potree::read_hierarchy(input_of(hierarchy, "hierarchy.bin"), metadata);
   return std::make_shared<PotreeStore>(folder, metadata, std::move(nodes), scale);
 }
