@@ -108,12 +108,12 @@ TEST(TileStop, GoingOnWithOtherInputsOrOptionsIsRefused) {
   EXPECT_EQ(tile_refusal({folder / "a.las"}, folder / "out", options), "no error");
 }
 
-TEST(TileStop, ADamagedListOfWhatIsDoneIsToldAndForceStartsAnew) {
+TEST(TileStop, AnotherJobThatIsUnfinishedIsToldAndForceStartsAnew) {
   const Folder folder;
   folder.write("a.las", las_bytes(2, 2, ground(500)));
-  folder.write("out/unfinished/tile.json", "{\"version\": 1}");
+  folder.write("out/unfinished/job.txt", "b.las");
   EXPECT_THAT(tile_refusal({folder / "a.las"}, folder / "out"),
-              HasSubstr("Start anew with --force"));
+              HasSubstr("with other inputs: b.las. Give these, or start anew with --force"));
   TileOptions options;
   options.force = true;
   EXPECT_EQ(tile_refusal({folder / "a.las"}, folder / "out", options), "no error");

@@ -1,41 +1,24 @@
 // Sorts points into files, one for each chunk.
-#include "io/tile/chunk_files.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
 
 #include "io/tile/out_file.hpp"
+#include "io/tile/pieces.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io::tile {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::size_t kBuffer = std::size_t{1} << 18U;  // bytes of a chunk written at once
-
-// A place on the Morton curve: the upper and the lower 15 bits of each number.
-using Code = std::pair<std::uint64_t, std::uint64_t>;
-
-Code code_of(const Numbers& n) {
-  constexpr int kLower = 15;
-  constexpr std::uint32_t kMask = (1U << kLower) - 1;
-  return {morton({n[0] >> kLower, n[1] >> kLower, n[2] >> kLower}),
-          morton({n[0] & kMask, n[1] & kMask, n[2] & kMask})};
-}
 
 class ChunkFiles {
  public:
-  ChunkFiles(const Plan& plan, std::filesystem::path folder)
-      : plan_(plan),
-        folder_(std::move(folder)),
-        sizes_(plan.chunks.size()),
-        buffers_(sizes_.size()) {
-    for (const Chunk& chunk : plan.chunks) {
-      Numbers first = chunk.cell.at;
-      for (std::uint32_t& n : first) n <<= plan.frame.bits - chunk.cell.level;
-      starts_.push_back(code_of(first));
-    }
-  }
+  ChunkFiles(const Plan& plan, const fs::path& folder)
+      : plan_(plan), folder_(folder), sizes_(plan.chunks.size()), buffers_(sizes_.size()) {}
 
   void add(StorePoint point, std::uint16_t color_factor) {
     for (std::uint16_t& c : point.color) c = static_cast<std::uint16_t>(c * color_factor);
@@ -47,27 +30,33 @@ class ChunkFiles {
     if (buffer.size() >= kBuffer) flush(last_, false);
   }
 
-  // @throws Error where a chunk has not the points that were counted in it.
-  void close() {
+  // Writes what is left. @return bytes of all.
+  std::uint64_t close() {
+    std::uint64_t all = 0;
     for (std::size_t i = 0; i < buffers_.size(); ++i) {
-      flush(i, true);
-      if (sizes_[i] == plan_.chunks[i].points * plan_.layout.size()) continue;
-      throw Error("the inputs have changed while they were read. Run it again with --force.");
+      if (sizes_[i] + buffers_[i].size() > 0) flush(i, true);
+      all += sizes_[i];
     }
+    return all;
   }
 
  private:
   // Makes `last_` the chunk of a point; that of the point before it is the likeliest.
   void find(const Numbers& numbers) {
-    const Cell& cell = plan_.chunks[last_].cell;
-    if (cell_of(numbers, cell.level, plan_.frame.bits) == cell) return;
-    const auto behind = std::ranges::upper_bound(starts_, code_of(numbers));
-    last_ = static_cast<std::size_t>(behind - starts_.begin());
-    if (last_ > 0) --last_;
+    const int bits = plan_.frame.bits;
+    const auto holds = [&](const Cell& cell) { return cell_of(numbers, cell.level, bits) == cell; };
+    if (holds(plan_.chunks[last_])) return;
+    const auto found = std::ranges::partition_point(plan_.chunks, [&](const Cell& cell) {
+      return before(cell.at, cell_of(numbers, cell.level, bits).at);
+    });
+    if (found == plan_.chunks.end() || !holds(*found)) {
+      throw Error("the inputs have changed while they were read. Run it again with --force.");
+    }
+    last_ = static_cast<std::size_t>(found - plan_.chunks.begin());
   }
 
   void flush(std::size_t chunk, bool sync) {
-    OutFile file(chunk_file(folder_, chunk), sizes_[chunk]);
+    OutFile file(folder_ / std::to_string(chunk), sizes_[chunk]);
     file.append(buffers_[chunk]);
     if (sync) file.sync();
     sizes_[chunk] = file.size();
@@ -75,8 +64,7 @@ class ChunkFiles {
   }
 
   const Plan& plan_;
-  std::filesystem::path folder_;
-  std::vector<Code> starts_;
+  fs::path folder_;
   std::vector<std::uint64_t> sizes_;  // bytes that are in the files
   std::vector<std::vector<std::byte>> buffers_;
   std::size_t last_ = 0;
@@ -84,21 +72,18 @@ class ChunkFiles {
 
 }  // namespace
 
-std::filesystem::path chunk_file(const std::filesystem::path& folder, std::size_t chunk) {
-  return folder / fmt::format("{:05}", chunk);
-}
-
-void distribute(const Inputs& inputs, const Plan& plan, const std::filesystem::path& folder,
+void distribute(const std::vector<TileInput>& inputs, const Plan& plan, const fs::path& folder,
                 const Told& told) {
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
+  fs::remove_all(folder);
+  fs::create_directories(folder);
   ChunkFiles files(plan, folder);
   read_all(inputs, plan.frame, told, [&](const Piece& piece) {
     for (const StorePoint& point : piece.points) {
       files.add(point, plan.color_factors[piece.input]);
     }
   });
-  files.close();
+  if (files.close() == plan.points * plan.layout.size()) return;
+  throw Error("the inputs have changed while they were read. Run it again with --force.");
 }
 
 }  // namespace palpate::io::tile

@@ -8,8 +8,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <vector>
+#include <span>
 
 #include "base/little_endian.hpp"
 #include "io/text_scanner.hpp"
@@ -22,12 +21,28 @@ inline constexpr int kMostBits = 30;
 /// Coordinates as whole numbers of steps from the lower corner of the root's cube.
 using Numbers = std::array<std::uint32_t, 3>;
 
+/// Does a place come first along the Morton curve, whose bits are those of x, y and z in turn? The
+/// axis decides in which the highest bit differs.
+[[nodiscard]] inline bool before(const Numbers& a, const Numbers& b) {
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k) {
+    const std::uint32_t most = a[axis] ^ b[axis];
+    const std::uint32_t differ = a[k] ^ b[k];
+    if (most < differ && most < (most ^ differ)) axis = k;
+  }
+  return a[axis] < b[axis];
+}
+
 struct Frame {
-  double step = 0;                                  ///< m
-  Eigen::Vector3d lower = Eigen::Vector3d::Zero();  ///< m, corner of the root's cube
-  int bits = 0;                                     ///< its edge has 2^bits steps
+  double step = 0;                                   ///< m
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();     ///< steps from there to the root's cube
+  int bits = 0;                                      ///< its edge has 2^bits steps
 
   [[nodiscard]] double edge() const { return std::ldexp(step, bits); }  ///< m
+  [[nodiscard]] Eigen::Vector3d place(const Numbers& n) const {         ///< m
+    return origin + step * (low + Eigen::Vector3d(n[0], n[1], n[2]));
+  }
 };
 
 /// A cube of the octree: level 0 is the root, whose edge each level halves.
@@ -45,23 +60,17 @@ struct Cell {
   }
 };
 
-/// The cube of a level around a place.
+/// The cube of a level around a place, which is counted in so many bits.
 [[nodiscard]] inline Cell cell_of(const Numbers& numbers, int level, int bits) {
   const int shift = bits - level;
   return {level, {numbers[0] >> shift, numbers[1] >> shift, numbers[2] >> shift}};
 }
 
-/// Spreads the lower 21 bits of three numbers so that those of x come first, then y and z.
-[[nodiscard]] inline std::uint64_t morton(const Numbers& numbers) {
-  const auto spread = [](std::uint64_t v) {
-    v &= 0x1FFFFF;
-    v = (v | v << 32) & 0x1F00000000FFFF;
-    v = (v | v << 16) & 0x1F0000FF0000FF;
-    v = (v | v << 8) & 0x100F00F00F00F00F;
-    v = (v | v << 4) & 0x10C30C30C30C30C3;
-    return (v | v << 2) & 0x1249249249249249;
-  };
-  return spread(numbers[0]) << 2 | spread(numbers[1]) << 1 | spread(numbers[2]);
+/// Which child of a cube of a level holds a place in it. Rises along the Morton curve.
+[[nodiscard]] inline unsigned child_at(const Numbers& numbers, int level, int bits) {
+  const int shift = bits - level - 1;
+  return (numbers[0] >> shift & 1U) << 2U | (numbers[1] >> shift & 1U) << 1U |
+         (numbers[2] >> shift & 1U);
 }
 
 /// A point of a store.
@@ -73,8 +82,8 @@ struct StorePoint {
 
 /// How a point lies in bytes: three int32, then what the store has of intensity and colour.
 struct Layout {
-  bool intensities = false;
-  bool colors = false;
+  bool intensities = true;
+  bool colors = true;
 
   [[nodiscard]] std::size_t size() const {
     return 12 + (intensities ? 2U : 0U) + (colors ? 6U : 0U);

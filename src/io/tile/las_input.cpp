@@ -3,61 +3,62 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
+#include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
 #include "io/laz/laz_file.hpp"
 #include "io/laz/points.hpp"
 #include "io/tile/input.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate::io::tile {
 namespace {
 
 constexpr std::size_t kSlice = 65536;  // records that are read at once (judgement)
 
-class LasInput final : public TileInput {
+class LasFile {
  public:
-  LasInput(const std::string& path, double scale) : file_(path) {
-    const Bytes head = read_las_head(file_);
-    header_ = read_las_header({head.span(), path, options_});
-    find_chunks({head.span(), path, options_});
-    facts_.name = path;
-    facts_.format = header_.name();
-    facts_.points = header_.points;
-    facts_.scale = scale * header_.scale;
-    facts_.offset = scale * header_.offset;
-    facts_.box = {scale * header_.lower, scale * header_.upper};
-    facts_.colors = header_.color_offset().has_value();
-    facts_.surveyed = true;
+  LasFile(const std::string& path, double scale)
+      : file_(path),
+        head_(read_las_head(file_)),
+        header_(read_las_header(input())),
+        scale_(scale * header_.scale),
+        offset_(scale * header_.offset) {
+    if (header_.compressed) {
+      chunks_ = laz::read_chunk_table(input(), header_, parts_of(file_));
+    } else {
+      cut();
+    }
   }
 
-  [[nodiscard]] const Facts& facts() const override { return facts_; }
-  [[nodiscard]] std::size_t pieces() const override { return chunks_.size(); }
+  [[nodiscard]] TileInput described() const {
+    TileInput input{.name = file_.name(), .points = header_.points, .pieces = chunks_.size()};
+    input.steps = scale_;
+    input.origin = offset_;
+    return input;
+  }
 
-  [[nodiscard]] std::vector<LasPoint> read(std::size_t piece) const override {
-    const laz::Chunk& chunk = chunks_[piece];
-    std::vector<LasPoint> points(chunk.points);
-    const Bytes bytes = file_.read(chunk.place, chunk.bytes);
-    if (!header_.compressed) {
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i] = las_point(header_, bytes.span().data() + i * header_.record_size);
-      }
-    } else if (!points.empty()) {
-      decode(bytes.span(), piece, points);
+  [[nodiscard]] std::vector<InputPoint> read(std::size_t piece) const {
+    std::vector<InputPoint> points;
+    points.reserve(chunks_[piece].points);
+    for (const LasPoint& point : decode(piece)) {
+      const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
+      const Eigen::Vector3d place = numbers.cwiseProduct(scale_) + offset_;
+      if (point.withheld || !is_usable(place)) continue;
+      points.push_back({place, point.intensity, point.color});
     }
     return points;
   }
 
  private:
-  void find_chunks(const Input& head) {
-    if (header_.compressed) {
-      chunks_ = laz::read_chunk_table(head, header_, parts_of(file_));
-      return;
-    }
+  [[nodiscard]] Input input() const { return {head_.span(), file_.name(), options_}; }
+
+  // Makes chunks of records that are not compressed.
+  void cut() {
     const std::size_t begin = std::min(header_.points_offset, file_.size());
     const std::size_t present = (file_.size() - begin) / header_.record_size;
     if (present < header_.points) {
-      fail_at_byte(head, file_.size(),
+      fail_at_byte(input(), file_.size(),
                    fmt::format("the file ends after {} of {} points", present, header_.points),
                    "Download or copy it again");
     }
@@ -68,27 +69,38 @@ class LasInput final : public TileInput {
     }
   }
 
-  void decode(std::span<const std::byte> bytes, std::size_t piece,
-              std::span<LasPoint> points) const {
-    const std::size_t decoded = laz::decode_points(header_, bytes, points);
-    if (decoded == points.size()) return;
-    throw Error(fmt::format(
-        "{}, byte {}: chunk {} of {} ends inside its point {} of {}. Download "
-        "the file again; \"lasinfo\" or \"pdal info\" tests it.",
-        file_.name(), chunks_[piece].place, piece + 1, chunks_.size(), decoded + 1, points.size()));
+  [[nodiscard]] std::vector<LasPoint> decode(std::size_t piece) const {
+    const laz::Chunk& chunk = chunks_[piece];
+    std::vector<LasPoint> points(chunk.points);
+    const Bytes bytes = file_.read(chunk.place, chunk.bytes);
+    if (header_.compressed && !points.empty()) {
+      laz::require_whole(input(), chunk.place,
+                         fmt::format("chunk {} of {}", piece + 1, chunks_.size()),
+                         laz::decode_points(header_, bytes.span(), points), points.size());
+      return points;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = las_point(header_, bytes.span().data() + i * header_.record_size);
+    }
+    return points;
   }
 
   OpenFile file_;
   ReadOptions options_;
+  Bytes head_;
   LasHeader header_;
-  Facts facts_;
+  Eigen::Vector3d scale_;           // m
+  Eigen::Vector3d offset_;          // m
   std::vector<laz::Chunk> chunks_;  // of a LAS file: slices
 };
 
 }  // namespace
 
-std::unique_ptr<TileInput> open_las(const std::string& path, double scale) {
-  return std::make_unique<LasInput>(path, scale);
+TileInput open_las(const std::string& path, double scale) {
+  const auto file = std::make_shared<const LasFile>(path, scale);
+  TileInput input = file->described();
+  input.read = [file](std::size_t piece) { return file->read(piece); };
+  return input;
 }
 
 }  // namespace palpate::io::tile

@@ -52,11 +52,12 @@ void OutFile::fail(const char* what) const {
                           name_, what, std::strerror(errno)));
 }
 
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+void write_file(const std::filesystem::path& path,
+                std::initializer_list<std::span<const std::byte>> parts) {
   std::filesystem::path growing = path;
   growing += ".new";
   OutFile file(growing, 0);
-  file.append(bytes);
+  for (const std::span<const std::byte> part : parts) file.append(part);
   file.sync();
   std::filesystem::rename(growing, path);
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -34,8 +35,9 @@ class OutFile {
   std::uint64_t size_;
 };
 
-/// Writes a whole file under another name, and then gives it its own.
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
+/// Writes a whole file of some parts under another name, and then gives it its own.
+void write_file(const std::filesystem::path& path,
+                std::initializer_list<std::span<const std::byte>> parts);
 
 /// A folder of work that this process alone has, until it ends in whatever way.
 class Locked {

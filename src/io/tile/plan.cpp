@@ -3,49 +3,73 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
-#include "io/cloud_builder.hpp"
-#include "io/tile/in_order.hpp"
+#include "io/tile/pieces.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io::tile {
 namespace {
 
-constexpr std::size_t kAhead = 8;  // pieces that wait or are read at once (judgement)
+using Inputs = const std::vector<TileInput>&;
 
-Piece convert(const TileInput::Facts& facts, const Frame& frame,
-              const std::vector<LasPoint>& points) {
-  const Eigen::Vector3d factor = facts.scale / frame.step;
-  const Eigen::Vector3d shift = (facts.offset - frame.lower) / frame.step;
-  const double end = std::ldexp(1.0, frame.bits);
-  Piece piece;
-  piece.points.reserve(points.size());
-  for (const LasPoint& point : points) {
-    const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
-    if (point.withheld || !is_usable(numbers.cwiseProduct(facts.scale) + facts.offset)) {
-      ++piece.dropped;
-      continue;
+constexpr std::size_t kSample = std::size_t{1}
+                                << 20U;   // points: a chunk of 10^9 has 8000 (judgement)
+constexpr std::uint16_t kByteTo16 = 257;  // 255 becomes 65535
+
+// Some of the places of points: all, or those whose hash ends in zeros. So it does not depend on
+// their order.
+class Sample {
+ public:
+  void add(const Numbers& numbers) {
+    if (!takes(numbers)) return;
+    places_.push_back(numbers);
+    constexpr std::uint64_t kSparsest = 0xFFFF;  // one in so many
+    while (places_.size() > kSample && zeros_ < kSparsest) {
+      zeros_ = 2 * zeros_ + 1;
+      std::erase_if(places_, [&](const Numbers& each) { return !takes(each); });
     }
-    const Eigen::Vector3d place =
-        (numbers.cwiseProduct(factor) + shift).array().unaryExpr([](double x) {
-          return std::floor(x + 0.5);
-        });
-    piece.box.extend(place);
-    if ((place.array() < 0).any() || (place.array() >= end).any()) {
-      ++piece.outside;
-      continue;
-    }
-    piece.points.push_back(
-        {{static_cast<std::uint32_t>(place.x()), static_cast<std::uint32_t>(place.y()),
-          static_cast<std::uint32_t>(place.z())},
-         point.intensity,
-         point.color});
   }
-  return piece;
-}
+
+  // The largest cubes of at most `most` points along the Morton curve.
+  std::vector<Cell> chunks(const Numbers& lowest, int bits, std::size_t most) {
+    for (Numbers& each : places_) {
+      for (std::size_t k = 0; k < 3; ++k) each[k] -= lowest[k];
+    }
+    std::ranges::sort(places_, before);
+    std::vector<Cell> cells;
+    split({}, places_, bits, most / (zeros_ + 1), cells);
+    return cells;
+  }
+
+ private:
+  [[nodiscard]] bool takes(const Numbers& n) const {
+    // Spreads every bit over all of it, as SplitMix64 does at its end.
+    std::uint64_t z = (std::uint64_t{n[0]} << 32U | n[1]) ^ n[2] * 0x9e3779b97f4a7c15U;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+    return ((z ^ (z >> 31)) & zeros_) == 0;
+  }
+
+  void split(const Cell& cell, std::span<const Numbers> inside, int bits, std::size_t most,
+             std::vector<Cell>& cells) const {
+    if (inside.empty() && zeros_ == 0) return;
+    if (inside.size() <= most || cell.level == bits) return cells.push_back(cell);
+    for (unsigned i = 0; i < 8; ++i) {
+      const auto end = std::ranges::partition_point(
+          inside, [&](const Numbers& n) { return child_at(n, cell.level, bits) <= i; });
+      const auto count = static_cast<std::size_t>(end - inside.begin());
+      split(cell.child(i), inside.first(count), bits, most, cells);
+      inside = inside.subspan(count);
+    }
+  }
+
+  std::vector<Numbers> places_;
+  std::uint64_t zeros_ = 0;  // the bits of a hash that are zero
+};
 
 int bits_for(const Eigen::Vector3d& steps) {
   int bits = 0;
@@ -53,166 +77,106 @@ int bits_for(const Eigen::Vector3d& steps) {
   return bits;
 }
 
-// The finest step of the surveys, where that of each is a whole number of it.
-double common_step(const Inputs& inputs, double length) {
+// The finest step of the surveys, where that of each is a whole number of it; else one that suits
+// the longest.
+double common_step(Inputs inputs) {
   double finest = std::numeric_limits<double>::infinity();
-  for (const auto& each : inputs)
-    finest = std::min(finest, each->facts().scale.cwiseAbs().minCoeff());
-  const bool agree = std::ranges::all_of(inputs, [&](const auto& each) {
-    const Eigen::Array3d ratio = each->facts().scale.cwiseAbs().array() / finest;
-    constexpr double kEqual = 1e-9;  // doubles that were computed in two ways (judgement)
-    return each->facts().surveyed && ((ratio - ratio.round()).abs() < kEqual * ratio).all();
-  });
+  double length = 0;
+  for (const TileInput& each : inputs) {
+    finest = std::min(finest, each.steps.cwiseAbs().minCoeff());
+    length = std::max(length, each.length);
+  }
+  constexpr double kEqual = 1e-9;  // doubles that were computed in two ways (judgement)
+  const bool agree = finest > 0 && std::ranges::all_of(inputs, [&](const TileInput& each) {
+                       const Eigen::Array3d ratio = each.steps.cwiseAbs().array() / finest;
+                       return ((ratio - ratio.round()).abs() < kEqual * ratio).all();
+                     });
   return agree ? finest : step_for(length);
 }
 
-// The smallest cube of whole bits over a box (m). Where the step is too fine for it, ten times as
-// coarse, and again.
-Frame frame_over(const Box& box, double step, const Eigen::Vector3d& offset) {
-  Frame frame{.step = step};
-  while ((frame.bits = bits_for(box.size() / frame.step)) > kMostBits) frame.step *= 10;
-  const Eigen::Array3d lower = ((box.lower - offset) / frame.step).array().round();
-  frame.lower = offset.array() + frame.step * lower;
-  return frame;
-}
-
-bool is_box(const Box& box) {
-  return is_usable(box.lower) && is_usable(box.upper) && !box.empty();
-}
-
-class Planner {
+// Finds out what there is, in steps of one length.
+class Survey {
  public:
-  Planner(const Inputs& inputs, std::size_t most, const Told& told)
-      : inputs_(inputs), most_(most), told_(told) {}
+  Survey(Inputs inputs, const Frame& frame, const Told& told)
+      : intensities_(inputs.size()), colors_(inputs.size()) {
+    plan_.frame = frame;
+    for (const TileInput& each : inputs) plan_.dropped += each.points;
+    read_all(inputs, frame, told, [&](const Piece& piece) {
+      plan_.points += piece.points.size();
+      plan_.dropped -= piece.points.size();
+      box_.extend(piece.box);
+      for (const StorePoint& point : piece.points) add(point, piece.input);
+    });
+    if (!box_.empty()) return;
+    throw Error(
+        fmt::format("{}: no point that can be used ({} are marked as not to be). Give "
+                    "another file.",
+                    inputs.front().name, plan_.dropped));
+  }
 
-  Plan run() {
-    Box announced;
-    std::size_t points = 0;
-    for (const auto& each : inputs_) {
-      points += each->facts().points;
-      announced.extend(each->facts().box);
+  [[nodiscard]] int bits() const { return bits_for(box_.size()); }
+
+  Plan plan(std::size_t most) {
+    plan_.frame.low = box_.lower;
+    plan_.frame.bits = bits();
+    Numbers lowest{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto low = static_cast<std::int64_t>(box_.lower[static_cast<int>(k)]);
+      lowest[k] = static_cast<std::uint32_t>(low);
+      plan_.highest[k] = static_cast<std::uint32_t>(
+          static_cast<std::int64_t>(box_.upper[static_cast<int>(k)]) - low);
     }
-    if (points > kMostCounted) {
-      throw Error(fmt::format("{} points, but a store holds {} at most. Tile fewer files at once.",
-                              points, kMostCounted));
-    }
-    if (!is_box(announced)) announced = {{0, 0, 0}, {0, 0, 0}};
-    step_ = common_step(inputs_, announced.size().maxCoeff());
-    Box box = survey(announced);
-    // Headers that are wrong cost a second reading.
-    if (outside_ > 0 || bits_for(box.size() / plan_.frame.step) != plan_.frame.bits)
-      box = survey(box);
-    for (CellCounter& counter = *counter_; counter.refine(most_);) count_again(counter);
-    finish(box);
+    plan_.chunks = sample_.chunks(lowest, plan_.frame.bits, most);
+    for (std::size_t i = 0; i < colors_.size(); ++i) finish_columns(i);
     return std::move(plan_);
   }
 
  private:
-  // Counts all points in a cube over `box`; gives the box in which they are (m).
-  Box survey(const Box& box) {
-    plan_ = {};
-    plan_.frame = frame_over(box, step_, inputs_.front()->facts().offset);
-    counter_ = std::make_unique<CellCounter>(plan_.frame.bits);
-    outside_ = 0;
-    intensities_.assign(inputs_.size(), {});
-    colors_.assign(inputs_.size(), {});
-    Box numbers;
-    read_all(inputs_, plan_.frame, told_, [&](const Piece& piece) {
-      plan_.points += piece.points.size();
-      plan_.dropped += piece.dropped;
-      outside_ += piece.outside;
-      numbers.extend(piece.box);
-      for (const StorePoint& point : piece.points) add(point, piece.input);
-    });
-    if (numbers.empty()) {
-      throw Error(
-          fmt::format("{}: no point that can be used ({} are marked as not to be). Give "
-                      "another file.",
-                      inputs_.front()->facts().name, plan_.dropped));
-    }
-    const Eigen::Vector3d& lower = plan_.frame.lower;
-    return {lower + plan_.frame.step * numbers.lower, lower + plan_.frame.step * numbers.upper};
-  }
-
   void add(const StorePoint& point, std::size_t input) {
-    counter_->add(point.numbers);
+    sample_.add(point.numbers);
     intensities_[input].add(point.intensity);
     for (std::size_t k = 0; k < 3; ++k) colors_[input][k].add(point.color[k]);
   }
 
-  void count_again(CellCounter& counter) {
-    read_all(inputs_, plan_.frame, told_, [&](const Piece& piece) {
-      for (const StorePoint& point : piece.points) counter.add(point.numbers);
-    });
-  }
-
-  void finish(const Box& box) {
-    plan_.chunks = counter_->chunks(most_);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      const auto number = [&](double place) {
-        return static_cast<std::uint32_t>(
-            std::lround((place - plan_.frame.lower[axis]) / plan_.frame.step));
-      };
-      plan_.lowest[k] = number(box.lower[axis]);
-      plan_.highest[k] = number(box.upper[axis]);
-    }
-    plan_.layout = {true, true};
-    for (std::size_t i = 0; i < inputs_.size(); ++i) finish_columns(i);
-  }
-
   // A column is kept that is in all inputs and nowhere zero throughout.
   void finish_columns(std::size_t input) {
-    constexpr std::uint16_t kByteTo16 = 257;  // 255 becomes 65535
     const auto& color = colors_[input];
     const std::uint16_t most = std::max({color[0].high, color[1].high, color[2].high});
     plan_.layout.intensities &= intensities_[input].high > 0;
     plan_.layout.colors &= most > 0;
     const std::uint16_t factor = most <= 255 ? kByteTo16 : std::uint16_t{1};
     plan_.color_factors.push_back(factor);
-    plan_.intensity.add(intensities_[input]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      plan_.color[k].add(static_cast<std::uint16_t>(factor * color[k].low));
-      plan_.color[k].add(static_cast<std::uint16_t>(factor * color[k].high));
-    }
+    const auto join = [](const Range& range, std::uint16_t by, Range& all) {
+      all.add(static_cast<std::uint16_t>(by * range.low));
+      all.add(static_cast<std::uint16_t>(by * range.high));
+    };
+    join(intensities_[input], 1, plan_.intensity);
+    for (std::size_t k = 0; k < 3; ++k) join(color[k], factor, plan_.color[k]);
   }
 
-  const Inputs& inputs_;
-  std::size_t most_;
-  const Told& told_;
-  double step_ = 0;
   Plan plan_;
-  std::unique_ptr<CellCounter> counter_;
-  std::size_t outside_ = 0;
+  Box box_;  // steps from the origin
+  Sample sample_;
   std::vector<Range> intensities_;  // of each input
   std::vector<std::array<Range, 3>> colors_;
 };
 
 }  // namespace
 
-void read_all(const Inputs& inputs, const Frame& frame, const Told& told,
-              const std::function<void(const Piece&)>& take) {
-  std::vector<std::pair<std::size_t, std::size_t>> pieces;  // input, its piece
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    for (std::size_t k = 0; k < inputs[i]->pieces(); ++k) pieces.emplace_back(i, k);
+Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most, const Told& told) {
+  constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max();
+  std::size_t points = 0;
+  for (const TileInput& each : inputs) points += each.points;
+  if (points > kMostPoints) {
+    throw Error(fmt::format("{} points, but a store holds {} at most. Tile fewer files at once.",
+                            points, kMostPoints));
   }
-  std::size_t done = 0;
-  in_order(
-      pieces.size(), kAhead,
-      [&](std::size_t i) {
-        const TileInput& input = *inputs[pieces[i].first];
-        Piece piece = convert(input.facts(), frame, input.read(pieces[i].second));
-        piece.input = pieces[i].first;
-        return piece;
-      },
-      [&](const Piece& piece) {
-        take(piece);
-        told(static_cast<double>(++done) / static_cast<double>(pieces.size()));
-      });
-}
-
-Plan make_plan(const Inputs& inputs, std::size_t most, const Told& told) {
-  return Planner(inputs, most, told).run();
+  Frame frame{.step = common_step(inputs), .origin = inputs.front().origin};
+  while (true) {
+    Survey survey(inputs, frame, told);
+    if (survey.bits() <= kMostBits) return survey.plan(most);
+    frame.step *= 10;  // the step is too fine for so large a cube
+  }
 }
 
 }  // namespace palpate::io::tile

@@ -1,20 +1,17 @@
-// Declares what is decided of a store before its points are sorted.
+// Declares what is decided of a store before its points are sorted, and their first sorting.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "io/tile/cell_counter.hpp"
 #include "io/tile/frame.hpp"
 #include "io/tile/input.hpp"
 
 namespace palpate::io::tile {
-
-using Inputs = std::vector<std::unique_ptr<TileInput>>;
 
 /// Called with 0 ... 1 now and then, never twice at once; may throw to give up.
 using Told = std::function<void(double)>;
@@ -28,10 +25,6 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  void add(const Range& other) {
-    low = std::min(low, other.low);
-    high = std::max(high, other.high);
-  }
 };
 
 struct Plan {
@@ -39,29 +32,23 @@ struct Plan {
   Layout layout;
   std::size_t points = 0;
   std::size_t dropped = 0;  ///< marked as not to be used, or beyond 10^12 m
-  Numbers lowest{};         ///< of all points
-  Numbers highest{};
+  Numbers highest{};        ///< of all points; the lowest are 0
   Range intensity;
   std::array<Range, 3> color;
   std::vector<std::uint16_t> color_factors;  ///< of each input: 257 where it has colours of a byte
-  std::vector<Chunk> chunks;                 ///< along the Morton curve
+  std::vector<Cell> chunks;  ///< cubes that are sorted by themselves, along the Morton curve
 };
 
-/// Reads all points once, and more often where their cloud has strays.
-/// @param most points of a chunk. @throws Error where there is no point, or too many.
-[[nodiscard]] Plan make_plan(const Inputs& inputs, std::size_t most, const Told& told);
+/// Reads all points; again where the step was too fine for where they are.
+/// @param most points of a chunk; more have the same place. Of many points a sample tells where
+///   they are, so it is a little more at times.
+/// @throws Error where there is no point, or too many.
+[[nodiscard]] Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most,
+                             const Told& told);
 
-/// What reading a piece of an input gave.
-struct Piece {
-  std::size_t input = 0;
-  std::vector<StorePoint> points;  ///< those inside the cube
-  std::size_t dropped = 0;
-  std::size_t outside = 0;
-  Box box;  ///< of all that are not dropped, in steps from the cube's corner
-};
-
-/// Reads all points of all inputs and calls take() with one piece after another.
-void read_all(const Inputs& inputs, const Frame& frame, const Told& told,
-              const std::function<void(const Piece&)>& take);
+/// Reads all points again and appends each to the file of its chunk, which has the chunk's number
+/// for a name. A chunk without points has no file.
+void distribute(const std::vector<TileInput>& inputs, const Plan& plan,
+                const std::filesystem::path& folder, const Told& told);
 
 }  // namespace palpate::io::tile

@@ -1,149 +1,166 @@
 // Sorts the chunks of a cloud and joins them to one octree on the disk.
 #include "io/tile/store_builder.hpp"
 
-#include <array>
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "io/file_bytes.hpp"
-#include "io/tile/chunk_files.hpp"
 #include "io/tile/in_order.hpp"
-#include "io/tile/metadata.hpp"
 
 namespace palpate::io::tile {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kNodeBytes = 25;  // of a settled node in the list of nodes
-constexpr std::size_t kRootHead = 9;    // bytes before the points of a chunk's root
-constexpr std::size_t kAtOnce = 2;      // chunks that are sorted side by side, for memory
+constexpr std::size_t kAtOnce = 2;       // chunks that are sorted side by side, for memory
+constexpr std::size_t kEntry = 22;       // bytes of a node in hierarchy.bin (format)
+constexpr double kSpacingsInEdge = 128;  // (format)
 
-void put(const StoreNode& node, std::span<std::byte> bytes) {
-  LittleEndianWriter out(bytes);
-  out.put(static_cast<std::uint8_t>(node.cell.level));
-  for (const std::uint32_t at : node.cell.at) out.put(at);
-  out.put(node.points);
-  out.put(node.place);
-}
+// What the file of a chunk that is done begins with. The nodes follow, then the root's points.
+struct Head {
+  std::uint64_t octree = 0;  // bytes of octree.bin with this chunk and those before
+  std::uint64_t nodes = 0;
+  std::uint64_t inner = 0;  // of the root
+};
 
-StoreNode node_at(const std::byte* bytes) {
-  return {{std::to_integer<int>(bytes[0]), numbers_of(bytes + 1)},
-          load_as<std::uint32_t>(bytes + 13),
-          load_as<std::uint64_t>(bytes + 17)};
+Head head_of(const fs::path& path) {
+  Head head;
+  const Bytes bytes = OpenFile(path).read(0, sizeof head);
+  std::memcpy(&head, bytes.span().data(), sizeof head);
+  return head;
 }
 
 bool is_within(const Cell& cell, const Cell& around) {
   return cell.level >= around.level && cell_of(cell.at, around.level, cell.level) == around;
 }
 
+// All nodes in one chunk: level after level, each along the Morton curve, so the children of a node
+// follow those of the nodes before it.
+std::vector<std::byte> hierarchy_of(std::vector<StoreNode> nodes, std::size_t record) {
+  const auto is_before = [](const Cell& a, const Cell& b) {
+    return a.level != b.level ? a.level < b.level : before(a.at, b.at);
+  };
+  std::ranges::sort(nodes, is_before, &StoreNode::cell);
+  std::vector<std::byte> bytes(kEntry * nodes.size());
+  LittleEndianWriter out(bytes);
+  for (const StoreNode& node : nodes) {
+    unsigned mask = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      const bool is_there =
+          std::ranges::binary_search(nodes, node.cell.child(i), is_before, &StoreNode::cell);
+      mask |= is_there ? 1U << i : 0U;
+    }
+    out.put(static_cast<std::uint8_t>(mask == 0 ? 1 : 0));  // a leaf
+    out.put(static_cast<std::uint8_t>(mask));
+    out.put(node.points);
+    out.put(node.points > 0 ? node.place : 0);
+    out.put(std::uint64_t{node.points * record});
+  }
+  return bytes;
+}
+
+Json list_of(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json attribute(const char* name, const char* type, std::size_t bytes, const Json& low,
+               const Json& high) {
+  return {{"name", name},
+          {"description", ""},
+          {"size", low.size() * bytes},
+          {"numElements", low.size()},
+          {"elementSize", bytes},
+          {"type", type},
+          {"min", low},
+          {"max", high}};
+}
+
+std::string metadata_of(const Plan& plan, std::size_t hierarchy, int depth,
+                        const std::string& name) {
+  const Frame& frame = plan.frame;
+  const Eigen::Vector3d lower = frame.place({});
+  Json attributes{
+      attribute("position", "int32", 4, list_of(lower), list_of(frame.place(plan.highest)))};
+  if (plan.layout.intensities) {
+    attributes.push_back(attribute("intensity", "uint16", 2, Json::array({plan.intensity.low}),
+                                   Json::array({plan.intensity.high})));
+  }
+  if (plan.layout.colors) {
+    const auto& c = plan.color;
+    attributes.push_back(attribute("rgb", "uint16", 2, {c[0].low, c[1].low, c[2].low},
+                                   {c[0].high, c[1].high, c[2].high}));
+  }
+  const Eigen::Vector3d edge = Eigen::Vector3d::Constant(frame.edge());
+  const Json data = {
+      {"version", "2.0"},
+      {"name", name},
+      {"description", ""},
+      {"points", plan.points},
+      {"projection", ""},
+      {"hierarchy", {{"firstChunkSize", hierarchy}, {"stepSize", 4}, {"depth", depth}}},
+      {"offset", list_of(lower)},
+      {"scale", list_of(Eigen::Vector3d::Constant(frame.step))},
+      {"spacing", frame.edge() / kSpacingsInEdge},
+      {"boundingBox", {{"min", list_of(lower)}, {"max", list_of(lower + edge)}}},
+      {"encoding", "DEFAULT"},
+      {"attributes", attributes}};
+  return data.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::size_t count_done(const Plan& plan, const fs::path& work) {
+  std::size_t done = 0;
+  while (done < plan.chunks.size() && fs::exists(work / std::to_string(done))) ++done;
+  return done;
+}
+
 }  // namespace
 
-// A chunk that is sorted; its root may still lose points to the levels above.
-struct StoreBuilder::Grown {
-  Settled settled;
-  Branch root;
-};
-
-// Makes the levels above the chunks, from the roots of these, which are read one after another.
-class StoreBuilder::Top {
- public:
-  Top(const Plan& plan, const fs::path& roots, const std::function<void(Settled&)>& settle)
-      : plan_(plan), roots_(roots), settle_(settle), joiner_(plan.layout, plan.frame.bits) {}
-
-  void run() {
-    settled_.add(branch_at({}), plan_.layout);
-    settle_(settled_);
-  }
-
- private:
-  Branch branch_at(const Cell& cell) {
-    if (plan_.chunks[chunk_].cell == cell) {
-      ++chunk_;
-      return next_root(cell);
-    }
-    std::vector<Branch> children;
-    for (unsigned i = 0; i < 8; ++i) {
-      const Cell child = cell.child(i);
-      if (chunk_ < plan_.chunks.size() && is_within(plan_.chunks[chunk_].cell, child)) {
-        children.push_back(branch_at(child));
-      }
-    }
-    Branch parent = joiner_.join(cell, std::move(children), settled_);
-    settle_(settled_);
-    settled_ = {};
-    return parent;
-  }
-
-  Branch next_root(const Cell& cell) {
-    const Bytes head = roots_.read(place_, kRootHead);
-    const std::size_t size = load_as<std::uint64_t>(head.span().data() + 1);
-    const Bytes records = roots_.read(place_ + kRootHead, size);
-    place_ += kRootHead + size;
-    return {cell, head.span()[0] != std::byte{0}, {records.span().begin(), records.span().end()}};
-  }
-
-  const Plan& plan_;
-  OpenFile roots_;
-  const std::function<void(Settled&)>& settle_;
-  Joiner joiner_;
-  Settled settled_;
-  std::size_t chunk_ = 0;
-  std::size_t place_ = 0;  // of its root, bytes
-};
-
-StoreBuilder::StoreBuilder(State& state, const fs::path& work)
-    : state_(state),
-      plan_(state.plan),
+// What of octree.bin no file of a chunk tells is cut off.
+StoreBuilder::StoreBuilder(const Plan& plan, std::size_t most, const fs::path& work)
+    : plan_(plan),
+      tree_{plan.layout, plan.frame.bits, most},
       work_(work),
-      octree_(work / "octree.bin", state.octree),
-      nodes_(work / "nodes", state.nodes),
-      roots_(work / "roots", state.roots) {}
+      done_(count_done(plan, work)),
+      octree_(work / "octree.bin", done_ == 0 ? 0 : head_of(file(done_ - 1)).octree) {}
+
+fs::path StoreBuilder::file(std::size_t chunk) const {
+  return work_ / std::to_string(chunk);
+}
 
 void StoreBuilder::sort_chunks(const Told& told) {
-  const std::size_t first = state_.chunks;
+  const std::size_t first = done_;
   in_order(
       plan_.chunks.size() - first, kAtOnce, [&](std::size_t i) { return grow(first + i); },
       [&](Grown& grown) {
-        take(grown);
-        told(static_cast<double>(state_.chunks) / static_cast<double>(plan_.chunks.size()));
+        take(done_, grown);
+        told(static_cast<double>(++done_) / static_cast<double>(plan_.chunks.size()));
       });
 }
 
-StoreBuilder::Grown StoreBuilder::grow(std::size_t i) const {
-  const Chunk& chunk = plan_.chunks[i];
-  const std::size_t size = chunk.points * plan_.layout.size();
-  std::vector<std::byte> records;
-  {
-    const Bytes unsorted = OpenFile(chunk_file(work_ / "points", i)).read(0, size);
-    records = sort_records(unsorted.span(), plan_.layout, chunk.cell, plan_.frame.bits);
-  }
+StoreBuilder::Grown StoreBuilder::grow(std::size_t chunk) const {
   Grown grown;
-  grown.settled.bytes.reserve(size);
-  Joiner joiner(plan_.layout, plan_.frame.bits);
-  grown.root = joiner.grow(chunk.cell, records, state_.job.leaf_points, grown.settled);
+  const fs::path path = work_ / "points" / std::to_string(chunk);
+  Bytes records;
+  if (fs::exists(path)) {
+    const OpenFile points(path);
+    records = points.read(0, points.size());
+  }
+  tree_.sort(records.span());
+  grown.settled.bytes.reserve(records.size());
+  grown.root = tree_.grow(plan_.chunks[chunk], records.span(), grown.settled);
   return grown;
 }
 
-// What is on the disk before tile.json says so is cut off again after a stop.
-void StoreBuilder::take(Grown& grown) {
+void StoreBuilder::take(std::size_t chunk, Grown& grown) {
   append(grown.settled);
-  std::vector<std::byte> listed(kNodeBytes * grown.settled.nodes.size());
-  for (std::size_t i = 0; i < grown.settled.nodes.size(); ++i) {
-    put(grown.settled.nodes[i], std::span(listed).subspan(i * kNodeBytes));
-  }
-  nodes_.append(listed);
-  std::array<std::byte, kRootHead> head;
-  LittleEndianWriter out(head);
-  out.put(static_cast<std::uint8_t>(grown.root.inner));
-  out.put(std::uint64_t{grown.root.records.size()});
-  roots_.append(head);
-  roots_.append(grown.root.records);
-  for (const OutFile* each : {&octree_, &nodes_, &roots_}) each->sync();
-  state_.octree = octree_.size();
-  state_.nodes = nodes_.size();
-  state_.roots = roots_.size();
-  ++state_.chunks;
-  save(state_, work_ / "tile.json");
-  fs::remove(chunk_file(work_ / "points", state_.chunks - 1));
+  octree_.sync();
+  const std::vector<StoreNode>& nodes = grown.settled.nodes;
+  const Head head{octree_.size(), nodes.size(), grown.root.inner ? 1U : 0U};
+  const auto bytes_of = [](const auto& some) { return std::as_bytes(std::span(some)); };
+  write_file(file(chunk), {bytes_of(std::span(&head, 1)), bytes_of(nodes), grown.root.records});
+  fs::remove(work_ / "points" / std::to_string(chunk));
 }
 
 void StoreBuilder::append(Settled& settled) {
@@ -151,27 +168,50 @@ void StoreBuilder::append(Settled& settled) {
   octree_.append(settled.bytes);
 }
 
-std::vector<StoreNode> StoreBuilder::listed_nodes() const {
-  const Bytes listed = OpenFile(work_ / "nodes").read(0, state_.nodes);
-  std::vector<StoreNode> nodes;
-  for (std::size_t at = 0; at < listed.size(); at += kNodeBytes) {
-    nodes.push_back(node_at(listed.span().data() + at));
+// Adds the nodes of a chunk that is done; gives its root.
+Branch StoreBuilder::read(std::size_t chunk) {
+  const Head head = head_of(file(chunk));
+  const OpenFile file(this->file(chunk));
+  const std::size_t before = nodes_.size();
+  const std::size_t size = head.nodes * sizeof(StoreNode);
+  nodes_.resize(before + head.nodes);
+  const Bytes bytes = file.read(sizeof head, file.size() - sizeof head);
+  std::copy_n(bytes.span().begin(), size,
+              std::as_writable_bytes(std::span(nodes_).subspan(before)).begin());
+  const auto records = bytes.span().subspan(size);
+  return {plan_.chunks[chunk], head.inner != 0, {records.begin(), records.end()}};
+}
+
+// `chunk`: the next one along the curve.
+Branch StoreBuilder::branch_at(const Cell& cell, std::size_t& chunk) {
+  if (plan_.chunks[chunk] == cell) return read(chunk++);
+  std::vector<Branch> children;
+  for (unsigned i = 0; i < 8; ++i) {
+    const Cell child = cell.child(i);
+    if (chunk < plan_.chunks.size() && is_within(plan_.chunks[chunk], child)) {
+      children.push_back(branch_at(child, chunk));
+    }
   }
-  return nodes;
+  Settled settled;
+  Branch parent = tree_.join(cell, std::move(children), settled);
+  append(settled);
+  nodes_.insert(nodes_.end(), settled.nodes.begin(), settled.nodes.end());
+  return parent;
 }
 
 void StoreBuilder::finish(const std::string& name) {
-  std::vector<StoreNode> nodes = listed_nodes();
-  const std::function<void(Settled&)> settle = [&](Settled& settled) {
-    append(settled);
-    nodes.insert(nodes.end(), settled.nodes.begin(), settled.nodes.end());
-  };
-  Top(plan_, work_ / "roots", settle).run();
+  std::size_t chunk = 0;
+  Settled settled;
+  settled.add(branch_at({}, chunk), plan_.layout);
+  append(settled);
+  nodes_.insert(nodes_.end(), settled.nodes.begin(), settled.nodes.end());
   octree_.sync();
-  const Hierarchy hierarchy = hierarchy_of(std::move(nodes), plan_.layout);
-  const std::string metadata = metadata_of(plan_, hierarchy, name);
-  write_file(work_ / "hierarchy.bin", hierarchy.bytes);
-  write_file(work_ / "metadata.json", std::as_bytes(std::span(metadata)));
+  const int depth =
+      std::ranges::max(nodes_, {}, [](const StoreNode& n) { return n.cell.level; }).cell.level;
+  const std::vector<std::byte> hierarchy = hierarchy_of(std::move(nodes_), plan_.layout.size());
+  write_file(work_ / "hierarchy.bin", {hierarchy});
+  const std::string metadata = metadata_of(plan_, hierarchy.size(), depth, name);
+  write_file(work_ / "metadata.json", {std::as_bytes(std::span(metadata))});
 }
 
 }  // namespace palpate::io::tile

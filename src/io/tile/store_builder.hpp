@@ -1,42 +1,48 @@
 // Declares how the files of chunks become a store's own files.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
 #include "io/tile/out_file.hpp"
-#include "io/tile/state.hpp"
+#include "io/tile/plan.hpp"
 #include "io/tile/tree.hpp"
 
 namespace palpate::io::tile {
 
-/// Sorts the chunks, two side by side, and joins them. Goes on where `state` says.
+/// Makes a store of sorted chunks. Of each one that is done a file says what came of it, so another
+/// builder in the same folder goes on behind them.
 class StoreBuilder {
  public:
-  /// `work`: the folder with the chunks, in which the store grows. What is in its files beyond what
-  /// `state` says is cut off.
-  StoreBuilder(State& state, const std::filesystem::path& work);
+  /// `work`: the folder in which the store grows; the chunks are in `work`/points.
+  /// @param most points of a leaf.
+  StoreBuilder(const Plan& plan, std::size_t most, const std::filesystem::path& work);
 
-  /// Saves the state after each chunk.
+  /// Sorts the chunks, two side by side.
   void sort_chunks(const Told& told);
 
-  /// Adds the levels above the chunks, and writes what describes the store.
+  /// Adds the levels above the chunks, and writes what describes the store, metadata.json last.
   void finish(const std::string& name);
 
  private:
-  struct Grown;
-  [[nodiscard]] Grown grow(std::size_t i) const;
-  void take(Grown& grown);
+  struct Grown {
+    Settled settled;
+    Branch root;  // it may still lose points to the levels above
+  };
+  [[nodiscard]] std::filesystem::path file(std::size_t chunk) const;
+  [[nodiscard]] Grown grow(std::size_t chunk) const;
+  void take(std::size_t chunk, Grown& grown);
   void append(Settled& settled);
-  [[nodiscard]] std::vector<StoreNode> listed_nodes() const;
-  class Top;
+  [[nodiscard]] Branch read(std::size_t chunk);
+  [[nodiscard]] Branch branch_at(const Cell& cell, std::size_t& chunk);
 
-  State& state_;
   const Plan& plan_;
+  Tree tree_;
   std::filesystem::path work_;
+  std::size_t done_;  // chunks
   OutFile octree_;
-  OutFile nodes_;
-  OutFile roots_;
+  std::vector<StoreNode> nodes_;  // that are settled, once the chunks are
 };
 
 }  // namespace palpate::io::tile

@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <cstring>
-#include <optional>
+#include <span>
+#include <string_view>
 
-#include "io/tile/chunk_files.hpp"
+#include "io/file_bytes.hpp"
 #include "io/tile/out_file.hpp"
+#include "io/tile/plan.hpp"
 #include "io/tile/store_builder.hpp"
 #include "palpate/base/error.hpp"
 
@@ -17,13 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-NamedInput name_input(const std::string& path) {
-  struct stat status {};
-  const std::string file = split_scan(path).file;
-  if (::stat(file.c_str(), &status) != 0) return {path};
-  constexpr std::int64_t kNanoseconds = 1'000'000'000;
-  return {path, static_cast<std::uint64_t>(status.st_size),
-          status.st_mtim.tv_sec * kNanoseconds + status.st_mtim.tv_nsec};
+constexpr const char* kJob = "job.txt";
+constexpr const char* kMetadata = "metadata.json";
+
+// Says what makes the bytes of a store what they are: the inputs' names in the first line.
+std::string job_of(const std::vector<std::string>& inputs, const TileOptions& options) {
+  std::string names;
+  std::string details = fmt::format("scale {}, {} points a chunk, {} a leaf\n", options.scale,
+                                    options.chunk_points, options.leaf_points);
+  for (const std::string& path : inputs) {
+    names += (names.empty() ? "" : " ") + path;
+    struct stat status {};
+    if (::stat(split_scan(path).file.c_str(), &status) != 0) continue;
+    details += fmt::format("{} bytes, changed at {}.{:09}\n", status.st_size, status.st_mtim.tv_sec,
+                           status.st_mtim.tv_nsec);
+  }
+  return names + "\n" + details;
 }
 
 class Tiler {
@@ -33,23 +43,27 @@ class Tiler {
         out_(out),
         work_(out / "unfinished"),
         options_(options),
-        job_{{}, options.scale, options.chunk_points, options.leaf_points} {
-    for (const std::string& path : inputs) job_.inputs.push_back(name_input(path));
-  }
+        job_(job_of(inputs, options)) {}
 
   TileResult run() {
     make_folder();
     const Locked lock(work_);
     refuse_others_files();
-    begin();
-    if (!state_.finished) build();
+    const bool goes_on = was_begun();
+    std::vector<TileInput> inputs;
+    for (const std::string& path : paths_) inputs.push_back(open_input(path, options_.scale));
+    const Plan plan = make_plan(inputs, options_.chunk_points, told("counting"));
+    if (!goes_on) begin();
+    if (!fs::exists(work_ / kMetadata)) build(inputs, plan);
     publish();
-    return result();
+    constexpr double kSpacings = 128;  // along the edge of a node (format)
+    return {plan.points, plan.dropped, fs::file_size(out_ / "octree.bin"), plan.frame.step,
+            plan.frame.edge() / kSpacings};
   }
 
  private:
   void make_folder() const {
-    if (fs::exists(out_ / "metadata.json") && !fs::exists(work_ / "tile.json") && !options_.force) {
+    if (fs::exists(out_ / kMetadata) && !fs::exists(work_ / kJob) && !options_.force) {
       throw Error(out_.string() + " is complete; --force replaces it.");
     }
     std::error_code error;
@@ -62,80 +76,66 @@ class Tiler {
 
   // A folder of this name that somebody else made is not to be emptied, even with --force.
   void refuse_others_files() const {
-    if (fs::exists(work_ / "tile.json")) return;
+    if (fs::exists(work_ / kJob)) return;
     for (const auto& each : fs::directory_iterator(work_)) {
-      // A run may have been stopped while it wrote its first tile.json.
-      if (each.path().filename().string().starts_with("tile.json")) continue;
+      // A run may have been stopped while it wrote this.
+      if (each.path().filename().string().starts_with(kJob)) continue;
       throw Error(each.path().string() + ": palpate did not write it. Name another folder.");
     }
   }
 
-  // tile.json goes last: it says whose files these are.
+  // Leaves what says whose folder it is, and what makes a store of files that are in place.
   void clear_folder() const {
     for (const auto& each : fs::directory_iterator(work_)) {
-      if (each.path().filename() != "tile.json") fs::remove_all(each);
+      const fs::path name = each.path().filename();
+      if (name != kJob && name != kMetadata) fs::remove_all(each);
     }
-    fs::remove(work_ / "tile.json");
   }
 
-  // Finds how far an earlier run came, or plans.
-  void begin() {
-    if (std::optional<State> earlier = earlier_state()) {
-      state_ = std::move(*earlier);
-      return;
-    }
+  // Did an earlier run begin the same?
+  [[nodiscard]] bool was_begun() const {
+    if (!fs::exists(work_ / kJob)) return false;
+    const Bytes bytes = read_bytes(work_ / kJob);
+    const std::string_view earlier(reinterpret_cast<const char*>(bytes.span().data()),
+                                   bytes.size());
+    if (earlier != job_ && !options_.force) throw Error(difference(earlier));
+    return earlier == job_;
+  }
+
+  void begin() const {
+    fs::remove(work_ / kMetadata);
     clear_folder();
-    state_ = {.job = job_,
-              .plan = make_plan(open_inputs(), options_.chunk_points, told("counting"))};
-    save(state_, work_ / "tile.json");
+    write_file(work_ / kJob, {std::as_bytes(std::span(job_))});
   }
 
-  std::optional<State> earlier_state() const {
-    try {
-      std::optional<State> earlier = load_state(work_ / "tile.json");
-      if (!earlier || earlier->job == job_) return earlier;
-      throw Error(difference(earlier->job));
-    } catch (const Error&) {
-      if (options_.force) return std::nullopt;
-      throw;
-    }
-  }
-
-  [[nodiscard]] std::string difference(const Job& earlier) const {
-    const auto names = [](const Job& job) {
-      std::string text;
-      for (const NamedInput& each : job.inputs) text += (text.empty() ? "" : " ") + each.name;
-      return text;
-    };
-    const bool same = names(earlier) == names(job_);
+  [[nodiscard]] std::string difference(std::string_view earlier) const {
+    const std::string_view names = earlier.substr(0, earlier.find('\n'));
+    const bool same = names == job_.substr(0, job_.find('\n'));
     return fmt::format("{} was begun with {}. {}, or start anew with --force.", out_.string(),
                        same ? "other options, or its inputs have changed since"
-                            : "other inputs: " + names(earlier),
+                            : fmt::format("other inputs: {}", names),
                        same ? "Give the same options" : "Give these");
   }
 
-  void build() {
-    if (!state_.distributed) {
-      check_space();
-      distribute(open_inputs(), state_.plan, work_ / "points", told("sorting into chunks"));
-      state_.distributed = true;
-      save(state_, work_ / "tile.json");
+  void build(const std::vector<TileInput>& inputs, const Plan& plan) const {
+    if (!fs::exists(work_ / "points")) {
+      check_space(plan);
+      distribute(inputs, plan, work_ / "sorting", told("sorting into chunks"));
+      fs::rename(work_ / "sorting", work_ / "points");
     }
-    StoreBuilder builder(state_, work_);
+    StoreBuilder builder(plan, options_.leaf_points, work_);
     builder.sort_chunks(told("building the octree"));
     builder.finish(fs::path(paths_.front()).stem().string());
     tell("finishing", 0);
-    state_.finished = true;
-    save(state_, work_ / "tile.json");
   }
 
   // The files of chunks go while octree.bin grows, so that all points are there once, two chunks
   // and the roots twice.
-  void check_space() const {
+  void check_space(const Plan& plan) const {
     constexpr std::uint64_t kOthers = std::uint64_t{64} << 20U;  // bytes, judgement
-    const std::uint64_t points = state_.plan.points * state_.plan.layout.size();
+    const std::uint64_t points = plan.points * plan.layout.size();
     const std::uint64_t needed = points + points / 4 + kOthers;
-    fs::remove_all(work_ / "points");
+    fs::remove_all(work_ / "sorting");
     const std::uint64_t free =
         options_.free_bytes ? options_.free_bytes(work_) : fs::space(work_).available;
     if (free >= needed) return;
@@ -146,29 +146,18 @@ class Tiler {
                             size(needed), out_.string(), size(free)));
   }
 
-  // Moves the files to where they belong, metadata.json last: it makes a store of them.
-  void publish() {
-    if (fs::exists(work_ / "metadata.json")) fs::remove(out_ / "metadata.json");
-    constexpr std::array kFiles{"octree.bin", "hierarchy.bin", "metadata.json"};
-    for (std::size_t i = 0; i < kFiles.size(); ++i) {
-      if (fs::exists(work_ / kFiles[i])) fs::rename(work_ / kFiles[i], out_ / kFiles[i]);
-      tell("finishing", static_cast<double>(i + 1) / kFiles.size());
+  // Moves the files to where they belong, metadata.json last: it makes a store of them. Before
+  // that, nothing is left of which another run could think that it has to go on with it.
+  void publish() const {
+    fs::remove(out_ / kMetadata);
+    for (const char* const file : {"octree.bin", "hierarchy.bin"}) {
+      if (fs::exists(work_ / file)) fs::rename(work_ / file, out_ / file);
+      tell("finishing", 0.5);
     }
     clear_folder();
-    fs::remove(work_);
-  }
-
-  [[nodiscard]] TileResult result() const {
-    constexpr double kSpacings = 128;  // along the edge of a node (format)
-    const Plan& plan = state_.plan;
-    return {plan.points, plan.dropped, fs::file_size(out_ / "octree.bin"), plan.frame.step,
-            plan.frame.edge() / kSpacings};
-  }
-
-  [[nodiscard]] Inputs open_inputs() const {
-    Inputs inputs;
-    for (const std::string& path : paths_) inputs.push_back(open_input(path, options_.scale));
-    return inputs;
+    fs::rename(work_ / kMetadata, out_ / kMetadata);
+    tell("finishing", 1);
+    fs::remove_all(work_);
   }
 
   void tell(const std::string& step, double done) const {
@@ -182,8 +171,7 @@ class Tiler {
   fs::path out_;
   fs::path work_;
   const TileOptions& options_;
-  Job job_;
-  State state_;
+  std::string job_;
 };
 
 }  // namespace

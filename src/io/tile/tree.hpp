@@ -33,35 +33,23 @@ struct Settled {
   void add(const Branch& branch, const Layout& layout);
 };
 
-/// Joins branches to their parent. It takes a subsample of their points, one spacing apart: the
-/// first along the curve wins. The spacing is 1/128 of the node's edge.
-class Joiner {
- public:
-  Joiner(const Layout& layout, int bits);
+/// What makes nodes of points.
+struct Tree {
+  Layout layout;
+  int bits = 0;          ///< of the root's edge
+  std::size_t most = 0;  ///< points of a leaf, unless they have one place
 
-  /// The octree of a cube's sorted records down to leaves of at most `most` points.
-  [[nodiscard]] Branch grow(const Cell& cell, std::span<const std::byte> records, std::size_t most,
-                            Settled& settled);
+  /// Sorts records along the Morton curve, equal places by what else they hold: so the result does
+  /// not depend on the order in which they came.
+  void sort(std::span<std::byte> records) const;
 
-  /// The parent; what it leaves to its children is settled.
-  [[nodiscard]] Branch join(const Cell& cell, std::vector<Branch> children, Settled& settled);
+  /// The octree of a cube's sorted records.
+  [[nodiscard]] Branch grow(const Cell& cell, std::span<const std::byte> records,
+                            Settled& settled) const;
 
- private:
-  struct Taken {
-    Numbers numbers;
-    std::uint32_t next;  // the one before in the same small cell; 0: none
-  };
-  bool take(const Numbers& numbers, int shift, std::uint64_t least);
-
-  Layout layout_;
-  int bits_;
-  std::vector<std::uint32_t> heads_;  // the last one in each small cell, an edge of 0 around them
-  std::vector<Taken> taken_;
+  /// Joins branches to their parent: it takes a subsample of their points, the first along the
+  /// curve of each cube of 1/128 of its edge. What it leaves to its children is settled.
+  [[nodiscard]] Branch join(const Cell& cell, std::vector<Branch> children, Settled& settled) const;
 };
-
-/// Sorts the records of a chunk along the Morton curve, equal places by what else they hold: so
-/// the result does not depend on the order in which they came.
-[[nodiscard]] std::vector<std::byte> sort_records(std::span<const std::byte> records,
-                                                  const Layout& layout, const Cell& cell, int bits);
 
 }  // namespace palpate::io::tile
