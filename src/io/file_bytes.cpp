@@ -167,9 +167,9 @@ Bytes OpenFile::read(std::size_t place, std::size_t size, std::string_view part)
     if (got > 0) {
       done += static_cast<std::size_t>(got);
     } else if (got == 0) {
-      throw Error(fmt::format(
-          "{}, byte {}: the file ends {}here, {} bytes too early. Copy it again.", name_,
-          place + done, part.empty() ? "" : fmt::format("inside {} ", part), size - done));
+      throw Error(
+          fmt::format("{}, byte {}: the file ends here{}{}, {} bytes too early. Copy it again.",
+                      name_, place + done, part.empty() ? "" : ", inside ", part, size - done));
     } else if (errno != EINTR) {
       fail_reading(
           fmt::format("{}, byte {}{}{}", name_, place + done, part.empty() ? "" : ", ", part),

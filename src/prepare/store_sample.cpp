@@ -20,10 +20,11 @@ using Eigen::Vector3f;
 using Layout = PointStore::Layout;
 using Key = detail::NodeKey;
 
-constexpr std::size_t kOfStore = 1
-                                 << 17;  // points of all of the store: enough for a page; judgement
-constexpr std::size_t kStorePlaces = 32;  // judgement
-constexpr std::size_t kAtPlace = 4096;    // points at a place: windows of 20 s fit in; judgement
+constexpr std::size_t kOfStore = 1 << 17;  // points, enough for a page; judgement
+// Of an airborne survey 64 places give an R of 1 % less than 256 do, 32 one of 12 % less
+// (measured).
+constexpr std::size_t kStorePlaces = 64;
+constexpr std::size_t kAtPlace = 4096;  // points at a place: windows of 20 s fit in; judgement
 
 /// Nodes with points under which there are none, in the order of the store.
 std::vector<std::size_t> leaves_of(const Layout& layout) {
