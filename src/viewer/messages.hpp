@@ -171,6 +171,7 @@ constexpr std::uint32_t kSoftened = 2048;
 constexpr std::uint32_t kClutched = 4096;
 constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
 constexpr std::uint32_t kBehind = 16384;
+constexpr std::uint32_t kNotLoaded = 32768;
 }  // namespace state_flag
 
 /// Message 1. Places relative to the origin, m.

@@ -139,6 +139,7 @@ std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
   set(state.guard.fault != Guard::Fault::none, state_flag::kFault);
   set(has(state.field_notes, FieldNote::thinned), state_flag::kThinned);
   set(has(state.field_notes, FieldNote::behind), state_flag::kBehind);
+  set(has(state.field_notes, FieldNote::not_loaded), state_flag::kNotLoaded);
   set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);
   counts_ = counts;
   return flags;

@@ -16,6 +16,7 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: st
   slewed: ["warning", "slew limit active", "The force changed faster than the hand's motion explains"],
   braked: ["warning", "brake: dissipating energy", "The hand had received more energy than it put in"],
   softened: ["info", "stiffness limited by the device", "The requested stiffness would make the device vibrate"],
+  notLoaded: ["info", "not loaded: nothing is felt here yet", "The cloud here is still read and prepared, or cannot be read"],
   thinned: ["warning", "points skipped: too many near the tool", "Some were skipped to keep the servo rate"],
 };
 const kLift = "lift the tool to feel full force again";

@@ -22,6 +22,7 @@ export const Flag = {
   clutched: 4096,
   oriented: 8192,
   behind: 16384, // what a camera sees: nothing is felt from there
+  notLoaded: 32768, // the cloud is not read or prepared there
 } as const;
 
 export interface StateMessage {

@@ -13,6 +13,7 @@ import { changed } from "./pixels.mjs";
 import { kTable, kTwoHands, run, startProgram } from "./real_program.mjs";
 import { relayTo } from "./relay.mjs";
 import { scrub } from "./scrub.mjs";
+import { feelsStore } from "./store.mjs";
 import { hold, lift, press, pressUntil, staysOnTable, touchDown } from "./touching.mjs";
 
 const kStiffness = 500; // N/m, of kTable
@@ -23,10 +24,7 @@ before(async () => {
   browser = await openBrowser();
   table = await startProgram(kTable);
 });
-after(async () => {
-  await browser?.close();
-  await table?.stop();
-});
+after(() => Promise.all([browser?.close(), table?.stop()]));
 
 const text = (page, selector) => page.locator(selector).innerText();
 const phase = (page) => page.getAttribute("#link-state", "data-phase");
@@ -98,6 +96,7 @@ test("a drag moves the program's hand", () =>
 
 test("drags over a scan touch it, wherever they begin", (context) => dragsTouch(context, browser));
 test("a cloud that is dropped on the page is touched next", () => opens(browser));
+test("of a store on disk all is seen and what is around the tool is felt", () => feelsStore(browser));
 
 test("a changed stiffness is felt at the next touch, and a pause takes the force away", () =>
   onTable(async (page) => {
