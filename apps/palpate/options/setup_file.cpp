@@ -207,6 +207,7 @@ DescribedSource SetupFile::source(const SourcePlan& base, const toml::table& par
   CLI::App app;
   OptionTable table(app);
   add_source_options(table, plan);
+  add_cache_option(table, plan);
   for (const auto& [key, node] : part) {
     if (key.str() == "name") {
       plan.argument.name = name(node);

@@ -176,6 +176,17 @@ std::size_t parse_size(std::string text) {
 
 }  // namespace
 
+void add_cache_option(OptionTable& table, SourcePlan& s) {
+  table.under("Reading", "reading", true);
+  table
+      .add_text(
+          "--cache", KeyKind::text, "SIZE",
+          [&s](const std::string& text) { s.cache = parse_size(text); },
+          "memory for a COPC file or Potree folder; a larger one stays on disk, and what is around "
+          "the tools is read: 500M, 2G (1G)")
+      .only_for(kCloud);
+}
+
 void add_source_options(OptionTable& table, SourcePlan& s) {
   add_reading_options(table, s.reading);
   PrepareOptions& prepare = s.options.prepare;
@@ -194,13 +205,6 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
                 "fitted normals instead of the depth filter")
       .only_for({&RunFacts::depth,
                  "applies only to depth images, organised clouds and streams; no source is one"});
-  table
-      .add_text(
-          "--cache", KeyKind::text, "SIZE",
-          [&s](const std::string& text) { s.cache = parse_size(text); },
-          "memory for a COPC file or Potree folder; a larger one stays on disk, and what is around "
-          "the tools is read: 500M, 2G (1G)")
-      .only_for(kCloud);
   add_surface_of_source(table, s);
   add_stream_options(table, s);
 }

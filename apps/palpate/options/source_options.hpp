@@ -31,7 +31,10 @@ struct SourcePlan {
 /// Registers the options that say how the bytes of a file become points.
 void add_reading_options(OptionTable& table, ReadOptions& options);
 
-/// Registers those of one source, of a [[source]] or of all.
+/// Registers the memory for a store, where it may stay on disk.
+void add_cache_option(OptionTable& table, SourcePlan& source);
+
+/// Registers the others of one source, of a [[source]] or of all.
 void add_source_options(OptionTable& table, SourcePlan& source);
 
 /// Help text for the sources of a command.

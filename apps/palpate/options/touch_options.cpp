@@ -255,6 +255,7 @@ void add_page_options(OptionTable& table, PagePlan& page) {
 
 void add_touch_options(OptionTable& table, TouchChoices& o) {
   add_placed_sources(table, o);
+  add_cache_option(table, o.every_source);
   add_field_options(table, o);
   add_material_options(table, o);
   add_hand_options(table, o.plan);
