@@ -139,6 +139,8 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
           .noise = {share * s[0], share * s[1], share * s[2]},
           .shared = shared_error(noise.correlation),
           .pixel_noise = {s[0], s[1], s[2]},
+          .close = double{SameSurface::kClose},
+          .steep = double{SameSurface(noise, grid).steep},
           .normal_error = normal_error,
           .growth = std::min(2.0, std::sqrt(noise.correlation))};
 }

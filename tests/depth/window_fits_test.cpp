@@ -10,52 +10,12 @@
 #include "depth/metric_fit.hpp"
 #include "depth/simd/fits.hpp"
 #include "depth/small_frames.hpp"
+#include "depth/window_errors.hpp"
 
 namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& noise,
-                         const simd::FitFunctions& functions = simd::best_fits()) {
-  depth::BlockFits fits;
-  fits.resize(blocks.grid);
-  depth::fit_plain(blocks, noise, fits);
-  depth::FitRegion region;
-  region.set(blocks.grid);
-  depth::WindowFits windows(functions);
-  windows.fit(blocks, noise, 0.0035, region, fits);
-  return fits;
-}
-
-Vector3d normal_of(const depth::BlockFits& fits, int column, int row) {
-  const std::size_t i = fits.grid.index(column, row);
-  const double a = fits.slope_x[i];
-  const double b = fits.slope_y[i];
-  return -Vector3d(a, b, fits.rho[i] - a * fits.grid.x(column) - b * fits.grid.y(row)).normalized();
-}
-
-Vector3d position_of(const depth::BlockFits& fits, int column, int row) {
-  return Vector3d(fits.grid.x(column), fits.grid.y(row), 1) /
-         fits.rho[fits.grid.index(column, row)];
-}
-
-/// Root mean squares over blocks.
-struct Errors {
-  double height = 0;  // m
-  double angle = 0;   // rad
-  int count = 0;
-
-  void add(const Solid& truth, const Vector3d& position, const Vector3d& normal) {
-    const Distance exact = distance_and_normal(truth, position);
-    height += exact.value * exact.value;
-    const double turned = std::acos(std::min(1.0, exact.gradient.dot(normal)));
-    angle += turned * turned;
-    ++count;
-  }
-  [[nodiscard]] double rms_height() const { return std::sqrt(height / count); }
-  [[nodiscard]] double rms_angle() const { return std::sqrt(angle / count); }
-};
 
 struct Comparison {
   Errors fast;

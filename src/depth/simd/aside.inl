@@ -5,15 +5,21 @@
 
 #include <cmath>
 
-#include "depth/simd/windows.inl"
+#include "depth/simd/surfaces.inl"
 
 namespace palpate::simd {
 namespace {
 
 constexpr int kChunk = 64;  // blocks (judgement)
-// Sizes of quadratic fits, up to 0.57 r_max: cubic terms would bias larger ones
-// (docs/method.md 6.3)
+// Sizes of quadratic fits, up to 0.57 r_max; the next one, 0.76 r_max, serves where the bend is
+// clear. Terms of the fourth degree would bias larger ones (docs/method.md 6.3).
 constexpr int kBentSizes = 4;
+
+// Where a fit with quadratic terms serves at this size.
+[[gnu::always_inline]] inline Mask bends(const Fits& f, int size) {
+  if (size < kBentSizes) return f.quadratic;
+  return size == kBentSizes ? f.quadratic & f.bent : Mask{};
+}
 
 enum Kind : int { kNone, kAffine, kQuadratic };
 
@@ -55,8 +61,8 @@ inline void round_sizes(Chunk& c) {
 
 // Sets the largest windows: by noise and wanted error, in blocks that the slopes foreshorten.
 inline void size_windows(const FitInput& in, int row, Chunk& c) {
-  // Half side over radius: a rectangle has a disc's second moments at sqrt(3) / 2 = .866 and its area
-  // at sqrt(pi) / 2 = .886; between them (judgement; docs/method.md 6.3).
+  // Half side over radius: a rectangle has a disc's second moments at sqrt(3) / 2 = .866 and its
+  // area at sqrt(pi) / 2 = .886; between them (judgement; docs/method.md 6.3).
   constexpr float kSide = .88F;
   const auto y = static_cast<float>(in.y0 + row * in.step_y);
   const auto step_x = static_cast<float>(in.step_x);
@@ -133,6 +139,12 @@ inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
   return fit(in, shape(half_u, half_v), s);
 }
 
+// `column`, `row`: of the windows' middles, in blocks of the image.
+[[gnu::always_inline]] inline Rays rays_of(const FitInput& in, const Doubles& column,
+                                           const Doubles& row) {
+  return {in.x0 + in.step_x * column, in.y0 + in.step_y * row, 1 / in.step_x, 1 / in.step_y};
+}
+
 // Four windows beside a block.
 struct Directions {
   int u[kLanes];
@@ -196,11 +208,15 @@ inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   s.u = double(search.column - in.table.columns / 2) - du;
   s.v = double(search.row - in.table.rows / 2) - dv;
   const Fits f = fit(in, shape(half_u, half_v), s);
-  const Mask good = f.affine | (aside.size < kBentSizes ? f.quadratic : Mask{});
+  const Mask good = f.affine | bends(f, aside.size);
   if (!any(good)) return good;
-  const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
   const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
-  const Mask wins = good & (off * off <= 4 * c.variance[search.i]) & (scores < search.score);
+  Mask wins = good & (scores < search.score);
+  if (!any(wins)) return good;
+  const Rays rays = rays_of(in, double(in.table.columns / 2 + in.table.first_column) + s.u,
+                            double(in.table.rows / 2 + in.table.first_row) + s.v);
+  const Doubles off = surface_at(f, f.affine, rays, du, dv).rho - c.rho[search.i];
+  wins &= off * off <= 4 * c.variance[search.i];
   if (!any(wins)) return good;
   for (int l = 0; l < kLanes; ++l) {
     if (!wins[l] || !(scores[l] < search.score)) continue;

@@ -63,6 +63,7 @@ struct FitInput {
   double noise[3];        // sigma(rho) = noise[2] + noise[1] rho + noise[0] rho^2 of a full block
   double shared;          // by how much means of many vary more than if their blocks erred alone
   double pixel_noise[3];  // of one pixel, without correlation, alike
+  double close, steep;    // BlockLimits'
   double normal_error;    // theta, rad
   double growth;          // min(2, sqrt c): how much larger windows are for correlated noise
 };

@@ -54,32 +54,36 @@ inline bool same_size(const Chunk& c, int k, const int four[kLanes]) {
   return differ == 0;
 }
 
-// Grows windows around four blocks for as long as one surface explains them.
+// Grows windows around four blocks for as long as one surface explains them. Nothing is known of a
+// window with few rows that no plane explains: growing goes on over it, but does not take it.
 inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk& c) {
   Mask growing = ~Mask{};
+  Mask good{};    // is the last size taken?
   Mask affine{};  // of the largest windows that are explained
   Mask edge{};
   Mask curved{};           // by what the first window shows that is too large
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
     if (same_size(c, k, four)) {
-      size -= growing;
+      size -= good;
       continue;
     }
     const Fits f = fit_four(in, row, c, four, c.half_u[k], c.half_v[k]);
-    const Mask good = f.affine | (k < kBentSizes ? f.quadratic : Mask{});
-    edge |= growing & ~good & ~f.quadratic;
-    curved |= growing & ~good & f.quadratic & f.bent;
-    growing &= good;
-    affine = growing ? f.affine : affine;
-    size -= growing;
+    const Mask vague = f.full & f.torn & ~f.affine;
+    const Mask ends = growing & ~vague & ~(f.affine | bends(f, k));
+    edge |= ends & ~f.quadratic;
+    curved |= ends & f.quadratic & f.bent;
+    growing &= ~ends;
+    good = growing & ~vague;
+    affine = good ? f.affine : affine;
+    size = good ? Mask{} + k : size;
   }
   for (int l = 0; l < kLanes; ++l) {
     const int i = four[l];
     c.edge[i] = edge[l] != 0;
     if (size[l] < 0) continue;
     // Where the next window is clearly bent, this one seemed flat by luck.
-    const bool flat = affine[l] && !(curved[l] && size[l] < kBentSizes);
+    const bool flat = affine[l] && !(curved[l] && size[l] <= kBentSizes);
     c.kind[i] = flat ? kAffine : kQuadratic;
     c.best_u[i] = c.half_u[size[l]][i];
     c.best_v[i] = c.half_v[size[l]][i];
@@ -142,16 +146,19 @@ inline int fit_planes(const FitInput& in, int row, Chunk& c, const FitRow& out, 
 inline void finish(const FitInput& in, int row, const Chunk& c, const int* blocks, int count,
                    const FitRow& out) {
   by_fours(blocks, count, [&](const int* four, int filled) {
+    Doubles columns;
     Doubles du;
     Doubles dv;
     Mask affine;
     for (int l = 0; l < kLanes; ++l) {
+      columns[l] = c.columns[four[l]];
       du[l] = -c.shift_u[four[l]];
       dv[l] = -c.shift_v[four[l]];
       affine[l] = c.kind[four[l]] == kAffine ? -1 : 0;
     }
     const Fits f = fit_four(in, row, c, four, c.best_u, c.best_v);
-    const Surface s = surface_at(f, affine, du, dv);
+    const Rays rays = rays_of(in, columns - du, double(row) - dv);
+    const Surface s = surface_at(f, affine, rays, du, dv);
     for (int l = 0; l < filled; ++l) write(in, c, four[l], s, l, out);
   });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Windows of blocks and the surfaces fitted to them, four windows side by side. Everything stands
+// Windows of blocks and the fits to them, four windows side by side. Everything stands
 // in an anonymous namespace: code for a newer processor must never stand in for an older one's.
 
 #include <cstring>
@@ -24,6 +24,10 @@ typedef long long Mask __attribute__((vector_size(kLanes * sizeof(double))));
 }
 [[gnu::always_inline]] inline Doubles larger(const Doubles& a, const Doubles& b) {
   return a > b ? a : b;
+}
+
+[[gnu::always_inline]] inline Doubles absolute(const Doubles& v) {
+  return larger(v, -v);
 }
 
 inline bool any(const Mask& mask) {
@@ -72,6 +76,7 @@ constexpr Extents kExtents;
 // Moments of four windows, as fits need them.
 struct Shape {
   Doubles per_n, per_mu, per_mv, per_ku, per_kv, mu, mv, area;
+  Mask few_u, few_v;  // columns, rows are three, which any parabola goes through
 };
 
 [[gnu::always_inline]] inline Four extents(const int half[kLanes]) {
@@ -83,8 +88,14 @@ struct Shape {
   const Four u = extents(half_u);
   const Four v = extents(half_v);
   Doubles area;
-  for (int l = 0; l < kLanes; ++l) area[l] = (2 * half_u[l] + 1) * (2 * half_v[l] + 1);
-  return {u.v[0] * v.v[0], u.v[1], v.v[1], u.v[2], v.v[2], u.v[3], v.v[3], area};
+  Mask few_u;
+  Mask few_v;
+  for (int l = 0; l < kLanes; ++l) {
+    area[l] = (2 * half_u[l] + 1) * (2 * half_v[l] + 1);
+    few_u[l] = half_u[l] <= 1 ? -1 : 0;
+    few_v[l] = half_v[l] <= 1 ? -1 : 0;
+  }
+  return {u.v[0] * v.v[0], u.v[1], v.v[1], u.v[2], v.v[2], u.v[3], v.v[3], area, few_u, few_v};
 }
 
 // The same for four windows of one size.
@@ -92,8 +103,16 @@ struct Shape {
   const Extent& u = kExtents.of[half_u];
   const Extent& v = kExtents.of[half_v];
   const int area = (2 * half_u + 1) * (2 * half_v + 1);
-  return {same(u.per_n * v.per_n), same(u.per_mu), same(v.per_mu), same(u.per_ku),
-          same(v.per_ku),          same(u.mu),     same(v.mu),     same(area)};
+  return {same(u.per_n * v.per_n),
+          same(u.per_mu),
+          same(v.per_mu),
+          same(u.per_ku),
+          same(v.per_ku),
+          same(u.mu),
+          same(v.mu),
+          same(area),
+          half_u <= 1 ? ~Mask{} : Mask{},
+          half_v <= 1 ? ~Mask{} : Mask{}};
 }
 
 // Sums over four windows.
@@ -126,7 +145,9 @@ struct Fits {
   Doubles m, cu, cv, cuv, cuu, cvv;
   Doubles variance;  // of one block
   double shared;     // FitInput's
-  Mask affine;       // no hole, and the noise explains what the affine fit leaves
+  Mask full;         // no hole
+  Mask torn;         // the three rows or columns need not be one surface: a parabola tells nothing
+  Mask affine;       // full, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
   Mask bent;         // by far more than noise would bend it
 };
@@ -175,73 +196,17 @@ template <class T>
   f.shared = input.shared;
   const Doubles left = srr - r * f.m - f.cu * bu - f.cv * bv;
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
-  const Mask full = weights >= 0.0;
+  f.full = weights >= 0.0;
   // A Gaussian's square is half as wide, so squares share half of what the errors do.
   const double together = input.shared > 2 ? 0.5 * input.shared : 1;
   const Doubles bend = variance * shared_over(input.shared, 2, g.per_n);
-  f.affine = full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * bend);
+  f.affine = f.full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * bend);
   f.bent = bent > 30.0 * bend;
-  f.quadratic = full & explained(left - bent, variance, g.area - 6.0, together);
+  const Doubles same_surface = input.close * sigma + input.steep * f.m;
+  f.torn = (g.few_u & (absolute(f.cu) + absolute(f.cuu) > same_surface)) |
+           (g.few_v & (absolute(f.cv) + absolute(f.cvv) > same_surface));
+  f.quadratic = f.full & ~f.torn & explained(left - bent, variance, g.area - 6.0, together);
   return f;
-}
-
-// The surface of a fit at (du, dv) blocks from the middle.
-struct Surface {
-  Doubles rho, slope_u, slope_v;  // per block
-  Doubles var_rho, var_u, var_v;
-};
-
-[[gnu::always_inline]] inline Surface affine_at(const Fits& f, const Doubles& du,
-                                                const Doubles& dv) {
-  const Doubles& per_n = f.shape.per_n;
-  const Doubles mean = f.variance * per_n * shared_over(f.shared, 0, per_n);
-  const Doubles var = f.variance * per_n * shared_over(f.shared, 1, per_n);
-  return {f.m + f.cu * du + f.cv * dv,
-          f.cu,
-          f.cv,
-          mean + var * (du * du * f.shape.per_mu + dv * dv * f.shape.per_mv),
-          var * f.shape.per_mu,
-          var * f.shape.per_mv};
-}
-
-// The part of the surface that the quadratic terms add.
-[[gnu::always_inline]] inline Surface bend_at(const Fits& f, const Doubles& du, const Doubles& dv) {
-  const Doubles& per_n = f.shape.per_n;
-  const Doubles var = f.variance * per_n * shared_over(f.shared, 2, per_n);
-  const Doubles uu = du * du - f.shape.mu;
-  const Doubles vv = dv * dv - f.shape.mv;
-  const Doubles per_uv = f.shape.per_mu * f.shape.per_mv;
-  return {f.cuv * du * dv + f.cuu * uu + f.cvv * vv,
-          f.cuv * dv + 2.0 * f.cuu * du,
-          f.cuv * du + 2.0 * f.cvv * dv,
-          var * (du * du * dv * dv * per_uv + uu * uu * f.shape.per_ku + vv * vv * f.shape.per_kv),
-          var * (dv * dv * per_uv + 4.0 * du * du * f.shape.per_ku),
-          var * (du * du * per_uv + 4.0 * dv * dv * f.shape.per_kv)};
-}
-
-// The affine surface where `affine` is set, the quadratic one elsewhere.
-[[gnu::always_inline]] inline Surface surface_at(const Fits& f, const Mask& affine,
-                                                 const Doubles& du, const Doubles& dv) {
-  const Surface a = affine_at(f, du, dv);
-  const Surface b = bend_at(f, du, dv);
-  const Doubles none{};
-  return {a.rho + (affine ? none : b.rho),         a.slope_u + (affine ? none : b.slope_u),
-          a.slope_v + (affine ? none : b.slope_v), a.var_rho + (affine ? none : b.var_rho),
-          a.var_u + (affine ? none : b.var_u),     a.var_v + (affine ? none : b.var_v)};
-}
-
-// Expected squared error, slopes at a lever of L blocks: variance, and for an affine fit the square
-// of what the quadratic one would change beyond its own variance.
-[[gnu::always_inline]] inline Doubles score(const Fits& f, const Mask& affine, const Doubles& du,
-                                            const Doubles& dv, const Doubles& lever_u2,
-                                            const Doubles& lever_v2) {
-  const Surface a = affine_at(f, du, dv);
-  const Surface b = bend_at(f, du, dv);
-  const auto term = [&](const Doubles& variance, const Doubles& change, const Doubles& more) {
-    return variance + (affine ? larger(change * change - more, same(0)) : more);
-  };
-  return term(a.var_rho, b.rho, b.var_rho) + lever_u2 * term(a.var_u, b.slope_u, b.var_u) +
-         lever_v2 * term(a.var_v, b.slope_v, b.var_v);
 }
 
 }  // namespace
