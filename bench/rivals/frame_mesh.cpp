@@ -65,6 +65,15 @@ FrameMesh::FrameMesh(const DepthFrame& frame, double jump)
   }
 }
 
+void FrameMesh::come_from(const FrameMesh& before) {
+  begins_ = vertices_;
+  share_ = 0;
+  if (before.vertices() != vertices()) return;
+  for (int i = 0; i < vertices(); ++i) {
+    if (measured(i) && before.measured(i)) begins_[static_cast<std::size_t>(i)] = before.at(i);
+  }
+}
+
 bool FrameMesh::joined(int a, int b, int c) const {
   const auto [low, high] = std::minmax({at(a).z(), at(b).z(), at(c).z()});
   return low > 0 && high - low <= jump_ * low;
@@ -133,8 +142,8 @@ Vector3d FrameMesh::smooth_normal(const Triangle& t, const Vector3d& place) cons
   const Vector3d n = area_normal(at(t[0]), at(t[1]), at(t[2]));
   Vector3d sum = Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
-    const Vector3d& a = at(t[(i + 1) % 3]);
-    const Vector3d& b = at(t[(i + 2) % 3]);
+    const Vector3d a = at(t[(i + 1) % 3]);
+    const Vector3d b = at(t[(i + 2) % 3]);
     const double share = std::clamp(n.dot((b - a).cross(place - a)) / n.squaredNorm(), 0.0, 1.0);
     sum += share * vertex_normal(t[i]);
   }

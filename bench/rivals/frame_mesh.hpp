@@ -24,9 +24,17 @@ class FrameMesh {
   /// `jump`: no triangle has corners whose depths differ by more pixel footprints than that.
   FrameMesh(const DepthFrame& frame, double jump);
 
-  [[nodiscard]] bool measured(int vertex) const { return at(vertex).z() > 0; }
-  [[nodiscard]] const Eigen::Vector3d& at(int vertex) const {
-    return vertices_[static_cast<std::size_t>(vertex)];
+  /// Vertices begin where they are in `before` and go in straight lines: `share` of the way.
+  void come_from(const FrameMesh& before);
+  void go_on(double share) { share_ = share; }
+
+  [[nodiscard]] bool measured(int vertex) const {
+    return vertices_[static_cast<std::size_t>(vertex)].z() > 0;
+  }
+  [[nodiscard]] Eigen::Vector3d at(int vertex) const {
+    const auto i = static_cast<std::size_t>(vertex);
+    if (share_ >= 1) return vertices_[i];
+    return begins_[i] + share_ * (vertices_[i] - begins_[i]);
   }
   [[nodiscard]] int vertices() const { return static_cast<int>(vertices_.size()); }
   /// Unit, towards the sensor.
@@ -55,7 +63,9 @@ class FrameMesh {
   int height_ = 0;
   double jump_ = 0;  // share of the depth
   Pinhole pinhole_;
+  double share_ = 1;
   std::vector<Eigen::Vector3d> vertices_;  // z = 0: nothing measured
+  std::vector<Eigen::Vector3d> begins_;    // where they come from; empty: they do not move
   std::vector<std::uint8_t> cells_;        // bits: which of the two triangles, and which diagonal
 };
 

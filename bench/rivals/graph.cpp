@@ -1,4 +1,5 @@
-// The proxy graph: a proxy that stays on the edges of a depth image's triangles.
+// The proxy graph: a proxy that stays on the edges of a depth image's triangles; of a depth video
+// (Cha et al. 2006-09) these move from frame to frame.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -11,23 +12,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostMoves = 200;    // a step; judgement: a quarter of a metre of pixels
-constexpr double kNearer = 1e-12;  // m^2; judgement: rounding
-constexpr double kJump = 5;        // pixel footprints; judgement, as the terrain's
+constexpr int kMostMoves = 200;      // a step; judgement: a quarter of a metre of pixels
+constexpr double kNearer = 1e-12;    // m^2; judgement: rounding
+constexpr double kTick = 1e-3;       // s: the servo at 1 kHz
+constexpr double kFrame = 1.0 / 30;  // s: a camera at 30 Hz
+constexpr double kJump = 5;          // pixel footprints; judgement, as the terrain's
 
 // A vertex, where `end` is -1, or a point of the edge between two.
 struct Place {
   int begin = -1;
   int end = -1;
+  double share = 0;  // of the way to the edge's end
   Vector3d at = Vector3d::Zero();
 };
 
 class Graph final : public Rival {
  public:
-  explicit Graph(double scale) : jump_(kJump * scale) {}
+  Graph(bool video, double scale) : video_(video), jump_(kJump * scale) {}
 
   void show(const Shown& shown) override {
-    mesh_ = FrameMesh(*shown.frame, jump_);
+    FrameMesh next(*shown.frame, jump_);
+    if (video_) next.come_from(mesh_);
+    mesh_ = std::move(next);
+    age_ = 0;
     T_world_sensor_ = *shown.frame->T_world_sensor;
     around_.reserve(8);
   }
@@ -38,6 +45,9 @@ class Graph final : public Rival {
   }
 
   Step step(const Vector3d& hip) override {
+    age_ += kTick;
+    if (video_) mesh_.go_on(std::min(age_ / kFrame, 1.0));
+    if (touching_) keep_pixel();
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
     const Vector3d hand = T_sensor_world * hip;
     if (!touching_) begin(T_sensor_world * last_hip_, hand);
@@ -47,12 +57,20 @@ class Graph final : public Rival {
   }
 
  private:
+  // The same share of the same edge, wherever its pixels are now.
+  void keep_pixel() {
+    touching_ = mesh_.measured(place_.begin) && (place_.end < 0 || mesh_.measured(place_.end));
+    if (!touching_) return;
+    place_.at = mesh_.at(place_.begin);
+    if (place_.end >= 0) place_.at += place_.share * (mesh_.at(place_.end) - place_.at);
+  }
+
   void begin(const Vector3d& from, const Vector3d& hand) {
     const auto met = mesh_.first_met(from, hand, {});
     if (!met) return;
     const FrameMesh::Triangle& t = met->part;
     touching_ = true;
-    place_ = {t[0], -1, mesh_.at(t[0])};
+    place_ = {t[0], -1, 0, mesh_.at(t[0])};
     double nearest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 3; ++i) offer(t[i], t[(i + 1) % 3], hand, place_, nearest);
   }
@@ -65,10 +83,12 @@ class Graph final : public Rival {
     const double way = (hand - at).squaredNorm();
     if (way >= nearest - kNearer) return;
     nearest = way;
-    best = share == 0 ? Place{a, -1, at} : share == 1 ? Place{b, -1, at} : Place{a, b, at};
+    best = share == 0   ? Place{a, -1, 0, at}
+           : share == 1 ? Place{b, -1, 0, at}
+                        : Place{a, b, share, at};
   }
 
-  // Of a vertex the edges that meet there, of an edge those of its two triangles.
+  // At a vertex the edges that meet there, on an edge all edges of its two triangles.
   void offer_edges(const FrameMesh::Triangle& t, const Vector3d& hand, const Place& here,
                    Place& best, double& nearest) const {
     for (int i = 0; i < 3; ++i) {
@@ -100,7 +120,9 @@ class Graph final : public Rival {
     });
   }
 
+  bool video_;
   double jump_;
+  double age_ = 0;  // of the frame, s
   FrameMesh mesh_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   Vector3d last_hip_ = Vector3d::Zero();
@@ -112,7 +134,10 @@ class Graph final : public Rival {
 }  // namespace
 
 std::unique_ptr<Rival> make_graph(double scale) {
-  return std::make_unique<Graph>(scale);
+  return std::make_unique<Graph>(false, scale);
+}
+std::unique_ptr<Rival> make_video(double scale) {
+  return std::make_unique<Graph>(true, scale);
 }
 
 }  // namespace palpate::rivals

@@ -24,7 +24,7 @@ class Hexahedra final : public Rival {
     points_ = NearPoints(*shown.cloud);
     half_ = kHalfEdge * scale_ * shown.spacing;
     reach_ = kReach * shown.spacing;
-    touching_ = false;
+    if (touching_) point_ = points_.nearest(place_);
   }
 
   void reset(const Vector3d& hip) override {
@@ -40,9 +40,9 @@ class Hexahedra final : public Rival {
       touching_ = cube_at(hip) || !is_out(hip);
     }
     if (!touching_) return spring(hip, hip);
-    const Vector3d place = points_.at(point_);
+    place_ = points_.at(point_);
     // A point lies in the middle of its cube: a hand in the outer half is pushed by nothing yet.
-    return spring((place - hip).dot(out_) > 0 ? place : hip, hip);
+    return spring((place_ - hip).dot(out_) > 0 ? place_ : hip, hip);
   }
 
  private:
@@ -100,6 +100,7 @@ class Hexahedra final : public Rival {
   double reach_ = 0;
   NearPoints points_;
   Vector3d last_hip_ = Vector3d::Zero();
+  Vector3d place_ = Vector3d::Zero();
   Vector3d out_ = Vector3d::Zero();
   std::uint32_t point_ = 0;
   bool touching_ = false;

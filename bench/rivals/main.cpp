@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "accuracy/table.hpp"
+#include "rivals/compare_streams.hpp"
 #include "rivals/compare_table.hpp"
 #include "rivals/edge_slide.hpp"
 
@@ -21,6 +22,8 @@ struct Arguments {
   std::string out;
   bool tune = false;
   bool times = false;
+  bool streams = false;
+  palpate::streams::Options stream;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -41,6 +44,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 256));
   app.add_option("--out", arguments.out,
                  "Folder for scores.csv and edge.csv, which picture.py draws");
+  app.add_flag("--streams", arguments.streams, "Depth streams of table B instead");
+  app.add_option("--only", arguments.stream.names, "Of these, those whose names hold one of these")
+      ->delimiter(',');
   app.add_flag("--times", arguments.times, "Computing times, too; they differ from run to run");
   app.add_flag("--tune", arguments.tune, "Each method's length at 1/2, 1 and 2 times what it is");
 }
@@ -51,9 +57,14 @@ NoiseKind kind_of(const std::string& letter) {
   return letter == "c" ? NoiseKind::quantised : NoiseKind::independent;
 }
 
-std::vector<Method> chosen(const std::vector<std::string>& names) {
-  if (names.empty()) return methods();
+// All by default; where there is one frame, the graph of a video is the graph.
+std::vector<Method> chosen(const std::vector<std::string>& names, bool streams) {
   std::vector<Method> some;
+  if (names.empty()) {
+    some = methods();
+    std::erase_if(some,
+                  [&](const Method& m) { return !streams && m.name == std::string_view("video"); });
+  }
   for (const std::string& name : names) some.push_back(method_named(name));
   return some;
 }
@@ -90,8 +101,12 @@ void write_results(const Arguments& arguments, const std::string& scores) {
 }
 
 int run(Arguments& arguments) {
-  arguments.compare.methods = chosen(arguments.names);
+  arguments.compare.methods = chosen(arguments.names, arguments.streams);
   if (arguments.tune) return tune(arguments);
+  if (arguments.streams) {
+    fmt::print("{}", markdown_streams(arguments.stream, arguments.compare.methods));
+    return 0;
+  }
   const std::vector<Method>& methods = arguments.compare.methods;
   const bool ours = std::ranges::any_of(
       methods, [](const Method& m) { return std::string_view(m.name) == "ours"; });
@@ -101,7 +116,7 @@ int run(Arguments& arguments) {
   for (const std::string& noise : arguments.noises) {
     arguments.compare.bench.noise = kind_of(noise);
     const Compared found = compare(arguments.compare);
-    fmt::print("### Noise {}\n\n{}", noise, markdown_scores(found.scores, methods));
+    fmt::print("## Noise {}\n\n{}", noise, markdown_scores(found.scores, methods));
     if (ours) {
       fmt::print("Another method is more than a tenth before ours in:\n\n{}\n",
                  markdown_behind(found.scores, methods));
@@ -110,7 +125,7 @@ int run(Arguments& arguments) {
     scores += palpate::accuracy::csv(found.scores, arguments.compare.bench);
     if (times.empty()) times = markdown_times(found.times, methods);
   }
-  if (arguments.times) fmt::print("### Computing times\n\n{}", times);
+  if (arguments.times) fmt::print("## Computing times\n\n{}", times);
   if (!arguments.out.empty()) write_results(arguments, scores);
   return 0;
 }

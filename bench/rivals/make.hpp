@@ -8,6 +8,7 @@ namespace palpate::rivals {
 [[nodiscard]] std::unique_ptr<Rival> make_terrain(double scale);
 [[nodiscard]] std::unique_ptr<Rival> make_shaded(double scale);
 [[nodiscard]] std::unique_ptr<Rival> make_graph(double scale);
+[[nodiscard]] std::unique_ptr<Rival> make_video(double scale);
 [[nodiscard]] std::unique_ptr<Rival> make_hexahedra(double scale);
 [[nodiscard]] std::unique_ptr<Rival> make_mls(double scale);
 [[nodiscard]] std::unique_ptr<Rival> make_spheres(double scale);

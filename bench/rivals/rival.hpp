@@ -43,12 +43,11 @@ class Rival {
 /// A method by its name, and what a table says of it.
 struct Method {
   const char* name;
-  const char* after;         ///< whose it is
-  const char* rule;          ///< in a few words
-  const char* length;        ///< its one free length; empty: palpate's own choice
-  double scale = 1;          ///< of that length: the best of 1/2, 1 and 2 (compare_bench --tune)
-  bool needs_frame = false;  ///< else points will do
-  bool filtered = false;     ///< is given the frame after palpate's depth filter
+  const char* after;      ///< whose it is
+  const char* rule;       ///< in a few words
+  const char* length;     ///< its one free length; empty: palpate's own choice
+  double scale = 1;       ///< of that length: the best of 1/2, 1 and 2 (compare_bench --tune)
+  bool filtered = false;  ///< is given the frame after palpate's depth filter
   std::unique_ptr<Rival> (*make)(double scale) = nullptr;
 };
 

@@ -11,7 +11,8 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = FrameMesh::Triangle;
 
-constexpr double kJump = 5;  // pixel footprints; judgement: 79 degrees of slope
+constexpr double kJump = 5;       // pixel footprints; judgement: 79 degrees of slope
+constexpr double kBefore = 0.02;  // m from the sensor; judgement: nothing is measured nearer
 
 class Terrain final : public Rival {
   // The triangles, with their own normals or with those between the vertices'.
@@ -30,9 +31,17 @@ class Terrain final : public Rival {
   void show(const Shown& shown) override {
     mesh_ = FrameMesh(*shown.frame, jump_);
     T_world_sensor_ = *shown.frame->T_world_sensor;
+    if (!touching_) return;
+    // What has come over the point takes it along its pixel's ray.
+    const Vector3d place = T_world_sensor_.inverse() * place_;
+    const auto met = mesh_.first_met(place * (kBefore / place.z()), place, {});
+    if (met) place_ = T_world_sensor_ * met->stop;
   }
 
-  void reset(const Vector3d& hip) override { place_ = hip; }
+  void reset(const Vector3d& hip) override {
+    place_ = hip;
+    touching_ = false;
+  }
 
   Step step(const Vector3d& hip) override {
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
@@ -40,7 +49,8 @@ class Terrain final : public Rival {
     const Vector3d hand = T_sensor_world * hip;
     const Vector3d goal = shaded_ ? shaded_goal(from, hand) : hand;
     const Vector3d to = GodObject<Triangle>().go(from, goal, on(false));
-    place_ = to == hand ? hip : T_world_sensor_ * to;
+    touching_ = to != hand;
+    place_ = touching_ ? T_world_sensor_ * to : hip;
     return spring(place_, hip);
   }
 
@@ -60,6 +70,7 @@ class Terrain final : public Rival {
   FrameMesh mesh_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   Vector3d place_ = Vector3d::Zero();
+  bool touching_ = false;
 };
 
 }  // namespace
