@@ -6,6 +6,7 @@ more than a twentieth of the time. Right, one slide off the edge of a box: force
 """
 
 import csv
+import itertools
 import statistics
 import sys
 
@@ -13,6 +14,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
 
 ROWS = ["plane slide", "light slide", "sphere slide", "box edge", "thin push", "crease 10 mm"]
 SLIDES = ["terrain", "graph", "hexahedra", "mls", "paper-pointset", "ours"]
@@ -43,14 +46,15 @@ def medians(path):
 
 
 def label(axes, marks):
-    """Names beside their marks, moved up or down until none lies on another."""
-    figure = axes.figure
-    figure.canvas.draw()
-    taken = []
+    """Names beside their marks, moved up or down until none lies on another or on a mark."""
+    axes.figure.canvas.draw()
+    places = [axes.transData.transform((x, y)) for x, y, _ in marks.values()]
+    taken = [Bbox.from_bounds(x - 3, y - 3, 6, 6) for x, y in places]
     for method, (x, y, _) in sorted(marks.items(), key=lambda item: item[1][1]):
-        for shift in (0, 7, -7, 14, -14, 21, -21, 28, -28, 35, -35, 42, -42):
-            text = axes.annotate(method, (x, y), xytext=(5, shift - 2), textcoords="offset points", fontsize=6.5,
-                                 color=colour_of(method), fontweight="bold" if method == "ours" else "normal")
+        for shift, side in itertools.product((0, 7, -7, 14, -14, 21, -21, 28, -28, 35, -35), ("left", "right")):
+            text = axes.annotate(method, (x, y), xytext=(5 if side == "left" else -5, shift - 2),
+                                 textcoords="offset points", fontsize=6.5, ha=side, color=colour_of(method),
+                                 fontweight="bold" if method == "ours" else "normal")
             box = text.get_window_extent()
             if not any(box.overlaps(other) for other in taken):
                 taken.append(box)
@@ -65,7 +69,6 @@ def draw_errors(axes, row, marks):
     axes.set(xscale="log", yscale="log", title=row)
     axes.margins(0.22, 0.12)
     axes.grid(True, which="major", linewidth=0.3)
-    label(axes, marks)
 
 
 def draw_slides(figure, spec, path):
@@ -99,9 +102,11 @@ def main():
     figure = plt.figure(figsize=(15, 8.5), dpi=100, layout="constrained")
     left, right = figure.add_gridspec(1, 2, width_ratios=[3, 1])
     panels = left.subgridspec(2, 3)
+    panels_of = []
     for i, row in enumerate(row for row in ROWS if row in errors):
         axes = figure.add_subplot(panels[i // 3, i % 3])
         draw_errors(axes, row, errors[row])
+        panels_of.append((axes, row))
         axes.title.set_size(10)
         axes.tick_params(labelsize=7)
         if i // 3 == 1:
@@ -109,8 +114,14 @@ def main():
         if i % 3 == 0:
             axes.set_ylabel("error of the force, N RMS", fontsize=8)
     draw_slides(figure, right, f"{folder}/edge.csv")
-    for (family, (colour, _)), x in zip(FAMILIES.items(), (0.01, 0.07, 0.14, 0.21)):
-        figure.text(x, 0.985, family, color=colour, fontsize=9, va="top")
+    marks = [Line2D([], [], marker="o", linestyle="", color=colour, label=family)
+             for family, (colour, _) in FAMILIES.items()]
+    hollow = Line2D([], [], marker="o", linestyle="", color="0.4", markerfacecolor="none", label="loses contact")
+    panels_of[0][0].legend(handles=[*marks, hollow], loc="upper left", fontsize=7)
+    figure.canvas.draw()
+    figure.set_layout_engine("none")  # names are placed where their marks are now
+    for axes, row in panels_of:
+        label(axes, errors[row])
     figure.savefig(image)
 
 
