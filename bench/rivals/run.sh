@@ -20,6 +20,7 @@ say "streams"
 "$program" --streams --only "press,sphere slide,comes" >"$scratch/streams.md"
 say "computing times"
 "$program" --layouts 2 --seeds 1 --noise a --threads 1 --times | sed -n '/^| method | preparation/,$p' >"$scratch/times.md"
+reading=$(sed -n '/^## What it says/,/^## Methods/p' bench/RIVALS.md | sed '$d') # people wrote it: see whether it still holds
 say "picture"
 /usr/bin/python3 bench/rivals/picture.py "$scratch" docs/images/rivals.png
 
@@ -37,6 +38,10 @@ hold medians over the frames, with the worst in brackets; the first of a row is 
 speed, but for the last one.
 
 ![](../docs/images/rivals.png)
+
+$reading
+
+## Methods
 
 EOF
   cat "$scratch/drawn.md"
