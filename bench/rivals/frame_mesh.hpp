@@ -51,7 +51,14 @@ class FrameMesh {
                                                        const Eigen::Vector3d& to,
                                                        std::span<const Triangle> except) const;
 
+  /// The front that hides a place from the sensor.
+  [[nodiscard]] std::optional<Met<Triangle>> before(const Eigen::Vector3d& place) const {
+    if (vertices() == 0) return std::nullopt;
+    return first_met(place * (kBefore / place.z()), place, {});
+  }
+
  private:
+  static constexpr double kBefore = 0.02;  // m from the sensor; judgement: nothing is nearer
   struct Way;
   [[nodiscard]] bool joined(int a, int b, int c) const;
   [[nodiscard]] std::uint8_t divide(int corner) const;

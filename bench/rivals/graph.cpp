@@ -31,12 +31,17 @@ class Graph final : public Rival {
   Graph(bool video, double scale) : video_(video), jump_(kJump * scale) {}
 
   void show(const Shown& shown) override {
+    const bool was_seen =
+        mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * last_hip_);
     FrameMesh next(*shown.frame, jump_);
     if (video_) next.come_from(mesh_);
     mesh_ = std::move(next);
     age_ = 0;
     T_world_sensor_ = *shown.frame->T_world_sensor;
     around_.reserve(8);
+    // The surface may have come over a hand in free air.
+    const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
+    if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
   }
 
   void reset(const Vector3d& hip) override {
@@ -50,7 +55,7 @@ class Graph final : public Rival {
     if (touching_) keep_pixel();
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
     const Vector3d hand = T_sensor_world * hip;
-    if (!touching_) begin(T_sensor_world * last_hip_, hand);
+    if (!touching_) begin(mesh_.first_met(T_sensor_world * last_hip_, hand, {}), hand);
     if (touching_) descend(hand);
     last_hip_ = hip;
     return touching_ ? spring(T_world_sensor_ * place_.at, hip) : spring(hip, hip);
@@ -65,8 +70,7 @@ class Graph final : public Rival {
     if (place_.end >= 0) place_.at += place_.share * (mesh_.at(place_.end) - place_.at);
   }
 
-  void begin(const Vector3d& from, const Vector3d& hand) {
-    const auto met = mesh_.first_met(from, hand, {});
+  void begin(const std::optional<Met<FrameMesh::Triangle>>& met, const Vector3d& hand) {
     if (!met) return;
     const FrameMesh::Triangle& t = met->part;
     touching_ = true;

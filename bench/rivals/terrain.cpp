@@ -11,8 +11,7 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = FrameMesh::Triangle;
 
-constexpr double kJump = 5;       // pixel footprints; judgement: 79 degrees of slope
-constexpr double kBefore = 0.02;  // m from the sensor; judgement: nothing is measured nearer
+constexpr double kJump = 5;  // pixel footprints; judgement: 79 degrees of slope
 
 class Terrain final : public Rival {
   // The triangles, with their own normals or with those between the vertices'.
@@ -29,19 +28,15 @@ class Terrain final : public Rival {
   Terrain(bool shaded, double scale) : shaded_(shaded), jump_(kJump * scale) {}
 
   void show(const Shown& shown) override {
+    const bool was_seen = mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * place_);
     mesh_ = FrameMesh(*shown.frame, jump_);
     T_world_sensor_ = *shown.frame->T_world_sensor;
-    if (!touching_) return;
     // What has come over the point takes it along its pixel's ray.
-    const Vector3d place = T_world_sensor_.inverse() * place_;
-    const auto met = mesh_.first_met(place * (kBefore / place.z()), place, {});
-    if (met) place_ = T_world_sensor_ * met->stop;
+    const auto met = mesh_.before(T_world_sensor_.inverse() * place_);
+    if (was_seen && met) place_ = T_world_sensor_ * met->stop;
   }
 
-  void reset(const Vector3d& hip) override {
-    place_ = hip;
-    touching_ = false;
-  }
+  void reset(const Vector3d& hip) override { place_ = hip; }
 
   Step step(const Vector3d& hip) override {
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
@@ -49,8 +44,7 @@ class Terrain final : public Rival {
     const Vector3d hand = T_sensor_world * hip;
     const Vector3d goal = shaded_ ? shaded_goal(from, hand) : hand;
     const Vector3d to = GodObject<Triangle>().go(from, goal, on(false));
-    touching_ = to != hand;
-    place_ = touching_ ? T_world_sensor_ * to : hip;
+    place_ = to == hand ? hip : T_world_sensor_ * to;
     return spring(place_, hip);
   }
 
@@ -70,7 +64,6 @@ class Terrain final : public Rival {
   FrameMesh mesh_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   Vector3d place_ = Vector3d::Zero();
-  bool touching_ = false;
 };
 
 }  // namespace
