@@ -221,8 +221,10 @@ void run_target(std::string_view name, std::span<const std::byte> bytes) {
     } else if (name == "spz") {
       check_splats(io::read_spz(input));
     } else if (name == "trajectory") {
+      TrajectoryOptions columns{.forces = true};
+      if (input.text().starts_with('%')) columns.columns = {"t", "-", "hip_x", "hip_y", "hip_z"};
       std::istringstream stream{std::string(input.text())};
-      (void)read_trajectory(stream, "input");
+      (void)read_trajectory(stream, "input", columns);
     } else if (!run_device_target(name, bytes) && !run_sequence_target(name, input)) {
       const CloudFile file = read_as(name, input);
       check_promises(file);

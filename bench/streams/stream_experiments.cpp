@@ -105,7 +105,8 @@ void add_moving(Maker& maker, const Frames& slow) {
   maker.add("two cameras, sphere", slow, {}, two(1));
 }
 
-// Means of squares, largest steps, sums of pops, over set-ups.
+}  // namespace
+
 Measures together(const std::vector<Measures>& all) {
   Measures out;
   const auto n = static_cast<double>(all.size());
@@ -127,8 +128,6 @@ Measures together(const std::vector<Measures>& all) {
   }
   return out;
 }
-
-}  // namespace
 
 std::vector<Experiment> make_experiments(const Options& options) {
   Maker maker(options);

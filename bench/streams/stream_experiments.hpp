@@ -32,6 +32,9 @@ struct Result {
   Measures measures;
 };
 
+/// Joins what several set-ups gave: means of squares, largest steps, sums of pops.
+[[nodiscard]] Measures together(const std::vector<Measures>& all);
+
 /// One result a contender and tool.
 [[nodiscard]] std::vector<Result> run_experiment(const Experiment& experiment);
 

@@ -1,8 +1,9 @@
 // Reads trajectories from CSV.
 #include "palpate/io/trajectory.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -18,7 +19,10 @@ namespace palpate {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kColumns = {"t", "hip_x", "hip_y", "hip_z"};
+// First what every trajectory has, then what a measured force takes.
+constexpr std::array<std::string_view, 7> kColumns = {"t",  "hip_x", "hip_y", "hip_z",
+                                                      "fx", "fy",    "fz"};
+constexpr std::size_t kNeeded = 4;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlank = " \t\r\"";
@@ -37,6 +41,24 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
+// Values between blanks, commas and semicolons, up to a comment.
+std::vector<std::string_view> split_loosely(std::string_view line) {
+  constexpr std::string_view kBetween = " \t\r,;";
+  line = line.substr(0, line.find_first_of("#%"));
+  std::vector<std::string_view> cells;
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;) {
+    const std::size_t end = line.find_first_of(kBetween, at);
+    cells.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kBetween, std::min(end, line.size()));
+  }
+  return cells;
+}
+
+bool is_text(std::string_view line) {
+  return std::ranges::none_of(line,
+                              [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r'; });
+}
+
 char separator_of(std::string_view header) {
   for (const char candidate : {',', ';', '\t'}) {
     if (header.find(candidate) != std::string_view::npos) return candidate;
@@ -49,94 +71,115 @@ std::optional<double> number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-// Position of each of kColumns in the header.
-using Columns = std::array<std::size_t, kColumns.size()>;
-
 class Reader {
  public:
-  explicit Reader(std::string name) : name_(std::move(name)) {}
+  Reader(std::string name, const TrajectoryOptions& options)
+      : name_(std::move(name)), options_(options) {}
 
   Trajectory read(std::istream& stream) {
+    if (named()) take_columns({options_.columns.begin(), options_.columns.end()});
     std::string line;
     while (std::getline(stream, line)) {
       ++line_;
       if (line_ == 1 && io::is_utf16(line)) fail("this is UTF-16 text. Save it as UTF-8");
       if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-      const std::string_view text = trimmed(line);
-      if (text.empty() || text.front() == '#') continue;
-      if (!columns_) {
-        header(text);
-      } else {
-        row(line);
-      }
+      take_line(line);
     }
     if (stream.bad()) fail("could not be read completely");
-    if (!columns_) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
-    if (rows_.empty()) fail("has a header but no rows: give at least one step");
+    if (places_.empty()) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
+    if (rows_.empty()) fail("has no rows: give at least one step");
     return std::move(rows_);
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
+    if (line_ == 0) throw Error(fmt::format("{}: {}", name_, what));
     throw Error(fmt::format("{}, line {}: {}", name_, line_, what));
   }
 
-  void header(std::string_view text) {
-    separator_ = separator_of(text);
-    const std::vector<std::string_view> names = split(text, separator_);
-    Columns columns{};
-    for (std::size_t wanted = 0; wanted < kColumns.size(); ++wanted) {
-      std::size_t found = 0;
-      while (found < names.size() && names[found] != kColumns[wanted]) ++found;
-      if (found == names.size()) {
-        fail(fmt::format(
-            "no column '{}': the header line must name t,hip_x,hip_y,hip_z (it reads '{}')",
-            kColumns[wanted], text.substr(0, 80)));
-      }
-      columns[wanted] = found;
+  [[nodiscard]] bool named() const { return !options_.columns.empty(); }
+
+  void take_line(std::string_view line) {
+    if (named()) {
+      if (!is_text(line)) fail("this is not text; convert it to columns first");
+      const std::vector<std::string_view> cells = split_loosely(line);
+      if (!cells.empty()) row(cells);
+      return;
     }
-    columns_ = columns;
+    const std::string_view text = trimmed(line);
+    if (text.empty() || text.front() == '#') return;
+    if (places_.empty()) {
+      separator_ = separator_of(text);
+      take_columns(split(text, separator_));
+    } else {
+      row(split(line, separator_));
+    }
   }
 
-  void row(std::string_view line) {
-    const std::vector<std::string_view> cells = split(line, separator_);
-    std::array<double, kColumns.size()> values{};
-    for (std::size_t i = 0; i < kColumns.size(); ++i) {
-      const std::size_t place = (*columns_)[i];
-      if (place >= cells.size()) {
-        fail(fmt::format(
-            "the row ends before column '{}'; a row of this file has at least {} values",
-            kColumns[i], place + 1));
+  void take_columns(const std::vector<std::string_view>& names) {
+    for (std::size_t wanted = 0; wanted < (options_.forces ? kColumns.size() : kNeeded); ++wanted) {
+      const auto found = std::ranges::find(names, kColumns[wanted]);
+      if (found != names.end()) {
+        places_.push_back(static_cast<std::size_t>(found - names.begin()));
+        continue;
       }
-      const std::optional<double> value = number(cells[place]);
-      if (!value) {
-        fail(fmt::format("'{}' in column '{}' is not a finite number: correct or remove the row",
-                         cells[place].substr(0, 40), kColumns[i]));
-      }
-      values[i] = *value;
+      if (wanted >= kNeeded) break;
+      fail(fmt::format("no column '{}': {} must name t,hip_x,hip_y,hip_z (it reads '{}')",
+                       kColumns[wanted], named() ? "the list of columns" : "the header line",
+                       fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
     }
+    if (places_.size() < kColumns.size()) places_.resize(kNeeded);
+  }
+
+  void row(const std::vector<std::string_view>& cells) {
+    if (named() && cells.size() != options_.columns.size()) {
+      fail(fmt::format("{} values, but {} columns are named", cells.size(),
+                       options_.columns.size()));
+    }
+    std::array<double, kColumns.size()> values{};
+    for (std::size_t i = 0; i < places_.size(); ++i) values[i] = value(cells, i);
     if (!rows_.empty() && !(values[0] > rows_.back().time)) {
       fail(fmt::format("t = {} s follows t = {} s: times must increase from row to row", values[0],
                        rows_.back().time));
     }
-    rows_.push_back({values[0], {values[1], values[2], values[3]}});
+    TrajectoryRow& added = rows_.emplace_back();
+    added.time = values[0];
+    added.position = {values[1], values[2], values[3]};
+    if (places_.size() > kNeeded) added.force = {values[4], values[5], values[6]};
+  }
+
+  double value(const std::vector<std::string_view>& cells, std::size_t column) {
+    const std::size_t place = places_[column];
+    if (place >= cells.size()) {
+      fail(fmt::format("the row ends before column '{}'; a row of this file has at least {} values",
+                       kColumns[column], place + 1));
+    }
+    const std::optional<double> found = number(cells[place]);
+    if (!found) {
+      fail(fmt::format("'{}' in column '{}' is not a finite number: correct or remove the row",
+                       cells[place].substr(0, 40), kColumns[column]));
+    }
+    return *found;
   }
 
   std::string name_;
   std::size_t line_ = 0;
+  const TrajectoryOptions& options_;
   char separator_ = ',';
-  std::optional<Columns> columns_;
+  std::vector<std::size_t>
+      places_;  // of kColumns, in a row; without those of a force if it has none
   Trajectory rows_;
 };
 
 }  // namespace
 
-Trajectory read_trajectory(std::istream& stream, const std::string& name) {
-  return Reader(name).read(stream);
+Trajectory read_trajectory(std::istream& stream, const std::string& name,
+                           const TrajectoryOptions& options) {
+  return Reader(name, options).read(stream);
 }
 
-Trajectory read_trajectory(const std::filesystem::path& path) {
-  if (path == "-") return read_trajectory(std::cin, "standard input");
+Trajectory read_trajectory(const std::filesystem::path& path, const TrajectoryOptions& options) {
+  if (path == "-") return read_trajectory(std::cin, "standard input", options);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(fmt::format("{} is a folder: give the CSV file of a trajectory", path.string()));
@@ -146,7 +189,7 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
     throw Error(
         fmt::format("{} cannot be opened: check the path and its permissions", path.string()));
   }
-  return read_trajectory(stream, path.string());
+  return read_trajectory(stream, path.string(), options);
 }
 
 }  // namespace palpate

@@ -9,14 +9,14 @@
 namespace palpate {
 namespace {
 
-Trajectory parse(const std::string& text) {
+Trajectory parse(const std::string& text, const TrajectoryOptions& options = {}) {
   std::istringstream stream(text);
-  return read_trajectory(stream, "path.csv");
+  return read_trajectory(stream, "path.csv", options);
 }
 
-std::string message(const std::string& text) {
+std::string message(const std::string& text, const TrajectoryOptions& options = {}) {
   try {
-    (void)parse(text);
+    (void)parse(text, options);
   } catch (const Error& error) {
     return error.what();
   }
@@ -69,6 +69,43 @@ TEST(Trajectory, ErrorsNameFileLineAndRemedy) {
   EXPECT_NE(message("").find("is empty"), std::string::npos);
   EXPECT_NE(message(header).find("no rows"), std::string::npos);
   EXPECT_NE(message("0,1,2,3\n").find("no column 't'"), std::string::npos);
+}
+
+TEST(Trajectory, ForcesAreReadWhereTheyAreAskedForAndThere) {
+  const std::string text = "fz,t,hip_x,hip_y,hip_z,fx,fy\n3,0,7,8,9,1,2\n";
+  const TrajectoryOptions forces{.forces = true};
+  EXPECT_EQ(parse(text, forces)[0].force, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(parse(text)[0].force);
+  EXPECT_FALSE(parse("t,hip_x,hip_y,hip_z,fx,fy\n0,7,8,9,1,2\n", forces)[0].force);
+  EXPECT_NE(message("t,hip_x,hip_y,hip_z,fx,fy,fz\n0,7,8,9,1,2,nan\n", forces).find("'fz'"),
+            std::string::npos);
+}
+
+TEST(Trajectory, TextOfOthersIsReadByTheNamesOfItsColumns) {
+  const TrajectoryOptions options{
+      .columns = {"t", "-", "hip_x", "hip_y", "hip_z", "fx", "fy", "fz"}, .forces = true};
+  const Trajectory rows = parse(
+      "% probe of a duck\n  0 99  1 2 3  4 5 6\n\n# middle\n0.5, 99, 1, 2, 3.5, 4, 5, 6 % last\n",
+      options);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(rows[1].time, 0.5);
+  EXPECT_EQ(rows[1].position.z(), 3.5);
+  EXPECT_EQ(rows[1].force, Eigen::Vector3d(4, 5, 6));
+}
+
+TEST(Trajectory, ErrorsOfTextWithoutAHeaderNameTheLine) {
+  const TrajectoryOptions options{.columns = {"t", "hip_x", "hip_y", "hip_z"}};
+  EXPECT_EQ(message("0 1 2 3\n\n1 1 2\n", options),
+            "path.csv, line 3: 3 values, but 4 columns are named");
+  EXPECT_EQ(message("0 1 2 3\n1 1 2 3 4\n", options),
+            "path.csv, line 2: 5 values, but 4 columns are named");
+  EXPECT_EQ(message(std::string("\x01\0\x02", 3), options),
+            "path.csv, line 1: this is not text; convert it to columns first");
+  EXPECT_NE(message("0 1 2 3\n", {.columns = {"t", "x", "hip_y", "hip_z"}})
+                .find("path.csv: no column 'hip_x': the list of columns must name"),
+            std::string::npos);
+  EXPECT_NE(message("% nothing\n", options).find("no rows"), std::string::npos);
 }
 
 TEST(Trajectory, FileThatIsNotThereIsNamed) {

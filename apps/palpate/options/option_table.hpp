@@ -43,6 +43,8 @@ struct RunFacts {
   bool page_unasked = false;    ///< --view does not ask for one
   bool follows = false;         ///< a hand follows a trajectory or an exploration ...
   bool explores = false;        ///< ... an exploration
+  bool trajectory = false;      ///< ... a trajectory,
+  bool played = false;          ///< ... exactly, row by row
   bool has_duration = false;    ///< a hand explores, or has no end of its own
   bool has_rate = false;        ///< a hand's steps a second can be chosen
 };

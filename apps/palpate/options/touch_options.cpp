@@ -4,6 +4,8 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "apps/palpate/cli/errors.hpp"
 
 namespace palpate::app {
@@ -73,15 +75,39 @@ void add_material_options(OptionTable& table, TouchChoices& o) {
             "wavelength of that texture (0.004)");
 }
 
-void add_hand_options(OptionTable& table, TouchPlan& plan) {
-  MotionPlan& motion = plan.motion;
-  table.under("Hand", "hand");
+std::vector<std::string> list_of(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+  return names;
+}
+
+void add_trajectory_options(OptionTable& table, MotionPlan& motion) {
   table
       .add("--trajectory", motion.trajectory, "FILE",
            "CSV with columns t,hip_x,hip_y,hip_z (s, m), one servo step per row; a log works too")
       .only_for({&RunFacts::follows,
                  "applies only to scripted and simulated devices; remote and hardware devices "
                  "supply their own motion"});
+  table
+      .add_text(
+          "--columns", KeyKind::text, "NAMES",
+          [&motion](const std::string& text) { motion.reading.columns = list_of(text); },
+          "names of the trajectory's columns in their order, for text without a header line: "
+          "t,hip_x,hip_y,hip_z, perhaps fx,fy,fz, and - for one to pass over")
+      .only_for({&RunFacts::trajectory, "needs --trajectory"});
+  table
+      .add_flag("--compare", motion.reading.forces,
+                "compare forces with those that the trajectory holds in columns fx,fy,fz (N, on "
+                "the hand)")
+      .only_for(
+          {&RunFacts::played, "needs --trajectory, played by --device scripted in simulated time"});
+}
+
+void add_hand_options(OptionTable& table, TouchPlan& plan) {
+  MotionPlan& motion = plan.motion;
+  table.under("Hand", "hand");
+  add_trajectory_options(table, motion);
   add_device_option(table, plan.devices);
   table
       .add("--duration", motion.duration, "SECONDS",

@@ -134,6 +134,8 @@ RunFacts facts_of(const TouchPlan& plan, const TouchChoices& choices) {
   facts.page_unasked = !plan.page.wanted;
   facts.follows = std::ranges::any_of(plan.devices, &DevicePlan::follows_trajectory);
   facts.explores = facts.follows && plan.motion.trajectory.empty();
+  facts.trajectory = facts.follows && !facts.explores;
+  facts.played = facts.trajectory && any(DeviceKind::scripted) && !plan.time.real_time;
   facts.has_duration = facts.explores || any(DeviceKind::remote) || any(DeviceKind::hardware);
   facts.has_rate = facts.explores || any(DeviceKind::remote) || any(DeviceKind::simulated);
   return facts;

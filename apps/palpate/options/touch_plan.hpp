@@ -11,6 +11,7 @@
 #include "apps/palpate/options/source_options.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/field/field_options.hpp"
+#include "palpate/io/trajectory.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/servo_thread.hpp"
 
@@ -45,6 +46,7 @@ struct SurfacePlan {
 /// How hands move, and for how long.
 struct MotionPlan {
   std::string trajectory = {};          ///< file; empty: they explore
+  TrajectoryOptions reading = {};       ///< of that file; with forces: they are compared
   std::optional<double> duration = {};  ///< s
   std::uint64_t seed = 1;               ///< of the first hand's exploration
   std::optional<double> rate = {};      ///< steps a second, Hz

@@ -130,6 +130,19 @@ void add_forces(Report& report, const HandReport& hand) {
                       {"energy_along_path_in_world_J", s.path_energy()}});
 }
 
+void add_compared(Report& report, const MeasuredForces& forces) {
+  const MeasuredForces::Difference d = forces.difference();
+  report.row("compared",
+             "{compared/file}: {compared/steps} steps with a measured force of {_N} and more",
+             forces.file(), d.steps, MeasuredForces::kFelt);
+  report.row(
+      "",
+      "force differs by {compared/rms_N} RMS (median {compared/median_N}), direction by "
+      "{compared/direction_deg} RMS; felt only in the file {compared/only_measured_share}, only "
+      "here {compared/only_rendered_share}",
+      d.rms, d.median, d.direction, d.only_measured, d.only_rendered);
+}
+
 void add_notes(Report& report, const TouchStatistics& s) {
   Json& notes = report.data["notes"] = Json::array();
   for (const CountedNote& each : s.notes()) {
@@ -197,6 +210,7 @@ Report report_of(const HandReport& hand, const std::string& title) {
   if (real) add_live(report, *hand.live);
   if (hand.unguarded != nullptr) add_unguarded(report, *hand.unguarded);
   add_forces(report, hand);
+  if (hand.compared != nullptr) add_compared(report, *hand.compared);
   add_notes(report, s);
   report.data["advice"] = advice(hand);
   for (const std::string& sentence : advice(hand)) report.note({"advice", Mark::warning}, sentence);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/palpate/report/report.hpp"
+#include "apps/palpate/run/measured_forces.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/touch_statistics.hpp"
 #include "palpate/servo/guard.hpp"
@@ -30,13 +31,14 @@ struct HandReport {
   const Hand& hand;
   const TouchStatistics& statistics;
   FieldOptions field;
-  double stiffness = 0;                  ///< of the surface as the run began, N/m in the world
-  const LiveReport* live = nullptr;      ///< of a run in real time
-  const Unguarded* unguarded = nullptr;  ///< of one in simulated time
-  bool interrupted = false;              ///< by Ctrl-C
-  bool scales = true;                    ///< is there a file, whose units --scale can mend?
-  bool surface = true;                   ///< is there a source with one?
-  std::string unlogged = {};             ///< why its log is not whole; empty: it is
+  double stiffness = 0;                      ///< of the surface as the run began, N/m in the world
+  const LiveReport* live = nullptr;          ///< of a run in real time
+  const Unguarded* unguarded = nullptr;      ///< of one in simulated time
+  bool interrupted = false;                  ///< by Ctrl-C
+  bool scales = true;                        ///< is there a file, whose units --scale can mend?
+  bool surface = true;                       ///< is there a source with one?
+  std::string unlogged = {};                 ///< why its log is not whole; empty: it is
+  const MeasuredForces* compared = nullptr;  ///< that its trajectory holds; null: not compared
 };
 
 /// Work done on the hand, J: in its own metres, where the cloud is magnified (Workspace).

@@ -33,6 +33,7 @@ constexpr std::array kUnitWords = {
     UnitWords{"_s", duration},
     UnitWords{"seconds", duration},
     UnitWords{"_m", length},
+    UnitWords{"_deg", [](double x) { return fmt::format("{:.3g} degrees", x); }},
     UnitWords{"_share", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
     UnitWords{"overlap", [](double x) { return fmt::format("{:.3g} %", 100 * x); }},
     UnitWords{"width", [](double x) { return fmt::format("{}", x); }},

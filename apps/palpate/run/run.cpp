@@ -188,7 +188,10 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
 Trajectory trajectory_of(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
   const bool follows = std::ranges::any_of(devices, &DevicePlan::follows_trajectory);
   if (motion.trajectory.empty() || !follows) return {};
-  Trajectory trajectory = read_trajectory(motion.trajectory);
+  Trajectory trajectory = read_trajectory(motion.trajectory, motion.reading);
+  if (motion.reading.forces && !trajectory.front().force) {
+    throw Error(motion.trajectory + " has no columns fx, fy, fz; --compare needs them");
+  }
   const bool simulated = std::ranges::any_of(
       devices, [](const DevicePlan& each) { return each.kind == DeviceKind::simulated; });
   check(trajectory, motion.trajectory, simulated);

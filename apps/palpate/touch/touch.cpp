@@ -39,8 +39,10 @@ struct TouchOutputs {
   std::optional<OutputFile> json;
   std::optional<Recorder> recorder;
   std::optional<Unguarded> unguarded;  // of a run in simulated time
+  std::optional<MeasuredForces> measured;
 
-  explicit TouchOutputs(const TouchPlan& plan) {
+  TouchOutputs(const TouchPlan& plan, const Trajectory& trajectory) {
+    if (plan.motion.reading.forces) measured.emplace(plan.motion.trajectory, trajectory);
     const OutputPlan& files = plan.outputs;
     for (std::size_t i = 0; i < plan.devices.size(); ++i) hands.emplace_back(files, i);
     if (!files.json.empty()) json.emplace(files.json);
@@ -58,6 +60,7 @@ bool play_simulated(Run& run, TouchOutputs& outputs) {
   return run_simulated(run, [&](std::size_t, const ServoState& step) {
     kept.add(step, hand.device->info());
     unguarded.add(step);
+    if (outputs.measured) outputs.measured->add(step);
     const std::size_t steps = kept.statistics().steps();
     if (steps % 256 == 0) progress.update(static_cast<double>(steps) / whole);
   });
@@ -111,7 +114,8 @@ std::vector<HandReport> hand_reports(const Run& run, const TouchOutputs& outputs
     reports.push_back({run.hands[i], outputs.hands[i].statistics(), run.field, run.proxy.stiffness,
                        outcome.hands.empty() ? nullptr : &outcome.hands[i],
                        outputs.unguarded ? &*outputs.unguarded : nullptr, outcome.interrupted,
-                       scales, has_surface(run.loaded), outputs.unlogged[i]});
+                       scales, has_surface(run.loaded), outputs.unlogged[i],
+                       outputs.measured ? &*outputs.measured : nullptr});
   }
   return reports;
 }
@@ -155,7 +159,7 @@ struct Start {
   Start(TouchPlan chosen, WaitingClock* clock)
       : plan(std::move(chosen)),
         trajectory(trajectory_of(plan.motion, plan.devices)),
-        outputs(plan),
+        outputs(plan, trajectory),
         hands(open_hands(plan.devices, plan.motion, plan.time, clock)),
         left(leave_to_servo(plan.time)),
         loaded(load_sources(plan.sources,
