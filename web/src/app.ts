@@ -159,7 +159,7 @@ export class App {
         this.world.takeSources(message.sources);
         return this.sources.update(message.robot);
       case "notice":
-        return this.notices.add(message.level, message.text);
+        return this.notices.add(message.level, message.text, message.share);
       case "record":
         return this.bar.recording(message.on, message.file);
       case "time":
@@ -191,6 +191,7 @@ export class App {
       this.notices.add("warning", `the program uses protocol version ${welcome.version}, this page ${kVersion}: reload the page`);
     }
     this.session.begin(welcome);
+    this.notices.begin();
     this.world.begin(welcome, again);
     this.settings.begin(welcome.settings, welcome.presets);
     this.sources.begin(this.session.sources, () => this.relook());
