@@ -6,12 +6,13 @@ import {
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
 import { recall, remember } from "../model/memory";
-import { boundsOf, samplePlaces, type Bounds } from "./bounds";
+import { boundsOf, heightsOf, samplesOf, type Sample } from "./bounds";
 import { Cloud, type Colouring } from "./cloud";
 import { rampTexture } from "./colours";
 import { Frustum } from "./frustum";
 import type { Graphics } from "./graphics";
-import { firstDirection, Navigation } from "./navigation";
+import { firstDirection } from "./first_view";
+import { Navigation } from "./navigation";
 import { nearestTo, surfaceAlong, type Seen } from "./pick";
 import { scaleBar, type ScaleBar } from "./scale_bar";
 import { Stage } from "./stage";
@@ -28,7 +29,6 @@ export interface Look {
   trail: boolean;
 }
 
-const kSettling = 3000; // ms
 const kClose = 12; // support radii
 const kDropInterval = 100; // ms between two searches for what a tool hovers above
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
@@ -47,23 +47,22 @@ export class World {
   look: Look = { ...kFirstLook };
   followed: number | undefined; // device
   private upKey = ""; // of what was chosen in place of what the program says
+  known = false; // is there anything to see, and a place to see it from?
   dragging = false; // a hand that is dragged against the picture: the eye stands still
   clouds: Cloud[] = [];
   tools: Tool[] = [];
   visible: boolean[] = [];
   private surfaces: Surface[] = [];
   private frusta: Frustum[] = [];
-  private places: Vector3[][] = [];
+  private samples: Sample[][] = [];
   private cameras: Vector3[] = [];
   private eye: Vector3[] = []; // where it begins, if the program says so
-  private bounds: Bounds | undefined;
   private readonly ramps = rampTexture();
   readonly heights = new Vector2(0, 1); // along up, low and high, m
   private radius = 0.5;
   private time = NaN;
-  private framed = false;
+  private framedBy = -1; // what was known of the scene when it was framed; less than now: once more
   private heard = false; // of the sources: where cameras are
-  private begun = 0;
   private before = 0;
   private dropped = 0;
 
@@ -87,20 +86,22 @@ export class World {
     const chosen = recall<unknown>(this.upKey, undefined);
     this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
     this.radius = welcome.radius;
-    this.bounds = undefined;
     this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
     this.navigation.setUp(this.up);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
     this.tools = welcome.devices.map((_, i) => new Tool(i));
     this.surfaces = welcome.devices.map(() => new Surface());
-    this.places = welcome.sources.map(() => []);
+    this.samples = welcome.sources.map(() => []);
     this.visible = welcome.sources.map(() => true);
-    this.stage.scene.add(...this.objects());
-    this.framed = again && this.framed;
+    for (const object of this.objects()) this.stage.scene.add(object); // add() takes no empty list
     this.heard = false;
-    this.begun = performance.now();
-    if (!this.framed) this.fit();
+    this.known = true;
+    if (!again) {
+      this.framedBy = -1;
+      this.navigation.touched = false;
+    }
+    if (this.framedBy < 0) this.fit();
     this.stage.request();
   }
 
@@ -114,9 +115,9 @@ export class World {
     const cloud = this.clouds[message.source];
     if (cloud === undefined) return;
     cloud.take(message);
-    this.places[message.source] = samplePlaces(message);
-    this.bounds = boundsOf(this.places.flat(), this.up);
-    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    if (this.samples.flat().length === 0) this.navigation.touched = false; // by a press before there was something
+    this.samples[message.source] = samplesOf(message);
+    this.measureHeights();
     this.settle();
     this.stage.request();
   }
@@ -139,9 +140,8 @@ export class World {
   }
 
   fit(): void {
-    const nothing = { places: [], centre: new Vector3(), radius: this.radius, heights: this.heights };
-    const bounds = this.bounds ?? nothing;
-    this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds.centre));
+    const bounds = boundsOf(this.samples.flat()) ?? { samples: [], centre: new Vector3(), radius: this.radius };
+    this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds));
   }
 
   /** The next of the six axes is up, here and when this scene is seen again. */
@@ -150,8 +150,7 @@ export class World {
     this.up.copy(kAxes[(at + 1) % kAxes.length]!);
     remember(this.upKey, this.up.toArray());
     this.navigation.setUp(this.up);
-    this.bounds = boundsOf(this.places.flat(), this.up);
-    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    this.measureHeights();
     this.fit();
   }
 
@@ -179,11 +178,6 @@ export class World {
     return scaleBar(this.stage.pixelAt(this.navigation.controls.target), this.stage.canvas.clientWidth);
   }
 
-  /** Is there anything to see, and a place to see it from? */
-  get known(): boolean {
-    return this.begun > 0;
-  }
-
   /** What is asked for; where no cloud knows it, what tells several sources apart, or height. */
   get colouring(): Colouring {
     const { colouring } = this.look;
@@ -191,12 +185,17 @@ export class World {
     return colouring === "own" && this.clouds.length > 1 ? "source" : "height";
   }
 
-  /** The first place of the eye: gets better until all is known or somebody takes it. */
+  /** The first place of the eye: gets better with each source that is known, until somebody takes it. */
   private settle(): void {
-    if (this.framed) return;
-    const known = this.heard && this.places.every((places) => places.length > 0);
-    this.framed = known || this.navigation.touched || performance.now() - this.begun > kSettling;
+    const known = this.samples.filter((samples) => samples.length > 0).length + (this.heard ? 1 : 0);
+    if (known <= this.framedBy) return;
+    this.framedBy = known;
     if (!this.navigation.touched) this.fit();
+  }
+
+  private measureHeights(): void {
+    const samples = this.samples.flat();
+    if (samples.length > 1) this.heights.copy(heightsOf(samples, this.up));
   }
 
   private update(now: number): void {
