@@ -12,10 +12,10 @@ const kFavour = 0.25; // of the score, for the usual side and against the far on
 const kFavourCameras = 1.5; // where the usual one is the cameras'
 const kUnknown = 0.5; // cosine where no normal is known
 
-/** From the middle to the eye. Of the sides all around, those of `cameras` (or of any places to look from) count more. */
+/** From the middle to the eye. Of the sides all around, those count more that `cameras` look from: directions towards them. */
 export function firstDirection(up: Vector3, cameras: readonly Vector3[], bounds: Bounds): Vector3 {
   const first = new Vector3().crossVectors(new Vector3(Math.abs(up.x) < 0.9 ? 1 : 0, Math.abs(up.x) < 0.9 ? 0 : 1, 0), up);
-  const usual = cameras.reduce((sum, place) => sum.add(place.clone().sub(bounds.centre)), new Vector3());
+  const usual = cameras.reduce((sum, towards) => sum.add(towards), new Vector3());
   usual.addScaledVector(up, -usual.dot(up));
   if (usual.lengthSq() < 1e-12) usual.copy(first);
   usual.normalize().applyAxisAngle(up, kAside);

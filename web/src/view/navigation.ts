@@ -127,8 +127,13 @@ export class Navigation {
     controls.rotateSpeed = 0.8;
     controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;
-    controls.addEventListener("change", this.changed);
-    controls.addEventListener("start", () => (this.touched = true));
+    let held = false;
+    controls.addEventListener("start", () => (held = true));
+    controls.addEventListener("end", () => (held = false));
+    controls.addEventListener("change", () => {
+      this.touched ||= held; // a press alone moves nothing
+      this.changed();
+    });
     return controls;
   }
 }

@@ -1,7 +1,7 @@
 // Everything that is drawn, and what of it is shown.
 
 import {
-  Line, Mesh, Points, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
+  Line, Mesh, Points, Quaternion, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
 } from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
@@ -55,7 +55,7 @@ export class World {
   private surfaces: Surface[] = [];
   private frusta: Frustum[] = [];
   private samples: Sample[][] = [];
-  private cameras: Vector3[] = [];
+  private cameras: Vector3[] = []; // directions that lead back to them
   private eye: Vector3[] = []; // where it begins, if the program says so
   private readonly ramps = rampTexture();
   readonly heights = new Vector2(0, 1); // along up, low and high, m
@@ -133,7 +133,7 @@ export class World {
       const cloud = this.clouds[i];
       if (cloud !== undefined) cloud.whole = report.points ?? 0;
     });
-    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(...pose.position)] : []));
+    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(0, 0, -1).applyQuaternion(new Quaternion(...pose.quaternion))] : []));
     this.heard = true;
     this.settle();
     this.stage.request();
@@ -141,7 +141,8 @@ export class World {
 
   fit(): void {
     const bounds = boundsOf(this.samples.flat()) ?? { samples: [], centre: new Vector3(), radius: this.radius };
-    this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds));
+    const towards = this.cameras.length > 0 ? this.cameras : this.eye.map((place) => place.clone().sub(bounds.centre));
+    this.navigation.frame(bounds, firstDirection(this.up, towards, bounds));
   }
 
   /** The next of the six axes is up, here and when this scene is seen again. */
