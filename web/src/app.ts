@@ -33,8 +33,7 @@ import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
-const kSettled = 10_000; // ms, from when on the speed of drawing counts
-const kSlow = 100; // ms a picture
+const kCalm = 3000; // ms from the start, in which warnings are listed only
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -64,7 +63,7 @@ export class App {
   private readonly connection: Connection;
   private readonly plotInterval: number;
   private plotted = 0;
-  private saidSlow = false;
+  private calmUntil = 0; // ms: a start has its own troubles, which pass
   private run: string | undefined;
 
   constructor(private readonly link: Link, graphics: Graphics) {
@@ -159,7 +158,7 @@ export class App {
         this.world.takeSources(message.sources);
         return this.sources.update(message.robot);
       case "notice":
-        return this.notices.add(message.level, message.text, message.share);
+        return this.notices.add(message.level, message.text, message.share, performance.now() < this.calmUntil);
       case "record":
         return this.bar.recording(message.on, message.file);
       case "time":
@@ -204,6 +203,7 @@ export class App {
     this.relook();
     if (again) this.tour.putBack();
     else this.tour.forget();
+    if (first) this.calmUntil = performance.now() + kCalm;
     if (!first) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
@@ -242,21 +242,11 @@ export class App {
     this.tags.update(this.session.device);
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
-    this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height);
+    this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height, Number(this.session.values.get("stiffness")));
     this.settings.watch(this.session.tool, now);
     this.bar.update();
     this.hold.update();
     this.plots.update(now, this.world.stage.slow);
-    this.watchSpeed(now);
-  }
-
-  /** Says once where drawing is too slow to work with, and what helps. */
-  private watchSpeed(now: number): void {
-    const { frameTime, software } = this.world.stage;
-    if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
-    this.saidSlow = true;
-    this.notices.add("info", `rendering is slow (${frameTime.toFixed(0)} ms per frame): show fewer points, freeze the plots (H)` +
-      (software ? ", or enable hardware acceleration in the browser" : ""));
   }
 
   private relook(): void {

@@ -31,8 +31,9 @@ export class Notices {
     for (const notice of this.shown) if (notice.share !== undefined) this.remove(notice);
   }
 
-  /** share: of work that takes a while, 0 to 1. One such notice is shown, until that is 1. */
-  add(level: NoticeLevel, text: string, share?: number): void {
+  /** share: of work that takes a while, 0 to 1. One such notice is shown, until that is 1. calm: warnings are listed only. */
+  add(level: NoticeLevel, text: string, share?: number, calm = false): void {
+    if (calm && level === "warning") return this.log(this.makeNotice(level, text).entry);
     if (share === undefined) return this.put(level, text);
     const work = this.shown.find((notice) => notice.share !== undefined);
     if (share >= 1) {
