@@ -4,12 +4,12 @@ import { Vector3 } from "three";
 import type { Bounds, Sample } from "./bounds";
 
 const kRaise = 0.5; // of the distance, upward
-const kAside = 0.55; // radians beside an axis, and beside a camera's own direction: what is seen there has depth
+const kAside = 0.55; // radians beside an axis: what stands along the axes has depth there
 const kSides = 8; // that are tried, the same whatever is there: noise gives no other at the next start
 const kCells = 14; // across a coarse picture that tells what hides what
 const kLayer = 0.06; // of the radius: what is nearer to the foremost than this is not hidden by it
 const kFavour = 0.25; // of the score, for the usual side and against the far one
-const kFavourCameras = 1.5; // where the usual one is the cameras'
+const kFavourCameras = 0.6; // where the usual one is the cameras'
 const kUnknown = 0.5; // cosine where no normal is known
 
 /** From the middle to the eye. Of the sides all around, those count more that `cameras` look from: directions towards them. */
@@ -17,9 +17,9 @@ export function firstDirection(up: Vector3, cameras: readonly Vector3[], bounds:
   const first = new Vector3().crossVectors(new Vector3(Math.abs(up.x) < 0.9 ? 1 : 0, Math.abs(up.x) < 0.9 ? 0 : 1, 0), up);
   const usual = cameras.reduce((sum, towards) => sum.add(towards), new Vector3());
   usual.addScaledVector(up, -usual.dot(up));
-  if (usual.lengthSq() < 1e-12) usual.copy(first);
-  usual.normalize().applyAxisAngle(up, kAside);
   first.normalize().applyAxisAngle(up, kAside);
+  if (usual.lengthSq() < 1e-12) usual.copy(first);
+  usual.normalize();
   const favour = cameras.length > 0 ? kFavourCameras : kFavour;
   let best = first;
   let most = -Infinity;

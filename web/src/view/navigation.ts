@@ -45,7 +45,9 @@ export class Navigation {
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.minDistance = 0.02 * bounds.radius;
     this.controls.maxDistance = 12 * bounds.radius;
+    const { touched } = this;
     this.controls.update();
+    this.touched = touched; // this was nobody's
     this.changed();
   }
 

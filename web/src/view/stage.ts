@@ -4,6 +4,7 @@
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
+import { Backdrop } from "./backdrop";
 import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
@@ -12,6 +13,8 @@ import type { ScaleBar } from "./scale_bar";
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
 const kPatience = 40; // slow pictures before sharpness gives way
+const kLeastSharpness = 0.5; // pixels drawn for one of the style sheet, where the processor draws
+const kSamples = 4; // of a pixel, where a graphics card draws
 
 export class Stage {
   readonly scene = new Scene();
@@ -20,6 +23,8 @@ export class Stage {
   frameTime = NaN; // ms between pictures, smoothed
   width = 1;
   height = 1;
+  clouds = ""; // changes with what is seen of them
+  private readonly backdrop: Backdrop;
   readonly software: boolean;
   private sharpness: number;
   private wanted = true;
@@ -34,6 +39,8 @@ export class Stage {
     this.renderer = new WebGLRenderer({
       canvas, antialias: !this.software, powerPreference: "high-performance",
     });
+    this.backdrop = new Backdrop(this.software ? 0 : kSamples);
+    this.scene.add(this.backdrop.screen);
     const lamp = new DirectionalLight(0xffffff, 2.0);
     lamp.position.set(0.35, 0.55, 0.75);
     this.camera.add(lamp);
@@ -109,6 +116,7 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
+    this.backdrop.update(this.renderer, this.scene, this.camera, this.sharpness, this.clouds);
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -116,9 +124,10 @@ export class Stage {
     if (!(interval > 0) || interval > 1000) return;
     this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
     this.slowPictures = interval > kSlow ? this.slowPictures + 1 : Math.max(0, this.slowPictures - 1);
-    if (this.slowPictures < kPatience || this.sharpness <= 1) return;
+    const least = this.software ? kLeastSharpness : 1;
+    if (this.slowPictures < kPatience || this.sharpness <= least) return;
     this.slowPictures = 0;
-    this.sharpness = Math.max(1, this.sharpness / 1.4);
+    this.sharpness = Math.max(least, this.sharpness / 1.4);
     this.resize();
   }
 }

@@ -61,6 +61,7 @@ export class World {
   readonly heights = new Vector2(0, 1); // along up, low and high, m
   private radius = 0.5;
   private time = NaN;
+  private changes = 0; // of what clouds look like
   private framedBy = -1; // what was known of the scene when it was framed; less than now: once more
   private heard = false; // of the sources: where cameras are
   private before = 0;
@@ -82,6 +83,7 @@ export class World {
   /** What was there before goes, unless it is the same scene come back. */
   begin(welcome: Welcome, again: boolean): void {
     this.clear();
+    this.changes += 1;
     this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
     const chosen = recall<unknown>(this.upKey, undefined);
     this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
@@ -115,6 +117,7 @@ export class World {
     const cloud = this.clouds[message.source];
     if (cloud === undefined) return;
     cloud.take(message);
+    this.changes += 1;
     if (this.samples.flat().length === 0) this.navigation.touched = false; // by a press before there was something
     this.samples[message.source] = samplesOf(message);
     this.measureHeights();
@@ -151,6 +154,7 @@ export class World {
     this.up.copy(kAxes[(at + 1) % kAxes.length]!);
     remember(this.upKey, this.up.toArray());
     this.navigation.setUp(this.up);
+    this.changes += 1;
     this.measureHeights();
     this.fit();
   }
@@ -165,6 +169,7 @@ export class World {
   }
 
   retint(): void {
+    this.changes += 1;
     this.stage.retint();
     for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
   }
@@ -213,6 +218,8 @@ export class World {
       cloud.shade(colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
       cloud.scale(look.pointSize, stage.pixelScale);
     });
+    // Whatever else is asked for, the eye and what clouds are made of decide what they look like.
+    stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.pointSize, look.points, ...this.visible].join();
     this.frusta.forEach((frustum, i) => {
       frustum.lines.visible = look.cameras && this.visible[i] === true;
     });
