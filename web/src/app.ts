@@ -262,9 +262,11 @@ export class App {
 
   private watchPage(): void {
     byId("freeze").addEventListener("click", () => this.freeze());
-    byId("tour-start").addEventListener("click", () => {
-      if (!this.tour.start(performance.now())) this.notices.add("warning", "no tour: the view shows nothing to touch, or the tool cannot be taken");
-    });
+    for (const id of ["tour-start", "tour-offer"]) {
+      byId(id).addEventListener("click", () => {
+        if (!this.tour.start(performance.now())) this.notices.add("warning", "no tour: the view shows nothing to touch, or the tool cannot be taken");
+      });
+    }
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.world.retint();
       this.plots.redraw();

@@ -63,13 +63,21 @@ function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mes
   return mesh;
 }
 
+export interface Wanted {
+  sharpness: number; // pixels drawn for one of the style sheet
+  clouds: string; // changes with what is seen of them
+  rest: number; // ms
+}
+
 export class Backdrop {
   private readonly points: WebGLRenderTarget;
   private readonly shaded = new WebGLRenderTarget(1, 1, { depthBuffer: false, minFilter: NearestFilter, magFilter: NearestFilter });
   private readonly shade: Mesh<PlaneGeometry, ShaderMaterial>;
   private readonly shading = new Scene();
   private readonly flat = new OrthographicCamera();
-  private key = "";
+  private eye = "";
+  private clouds = "";
+  private drawn = -Infinity; // ms
   /** Puts the picture, with its depths, behind all that a scene draws. */
   readonly screen: Mesh<PlaneGeometry, ShaderMaterial>;
 
@@ -84,13 +92,17 @@ export class Backdrop {
     this.screen.renderOrder = -1;
   }
 
-  /** Draws the clouds of a scene, unless `key` and eye are as they were. */
-  update(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, sharpness: number, key: string): void {
+  /** Draws the clouds of a scene, unless `clouds` and eye are as they were. While the eye stands still, clouds that
+   * change wait until `rest` ms have passed. */
+  update(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, { sharpness, clouds, rest }: Wanted): void {
     const { width, height } = renderer.domElement;
     camera.updateMatrixWorld();
-    const now = [key, width, height, ...camera.matrixWorld.elements, ...camera.projectionMatrix.elements].join();
-    if (now === this.key) return;
-    this.key = now;
+    const eye = [width, height, ...camera.matrixWorld.elements, ...camera.projectionMatrix.elements].join();
+    const now = performance.now();
+    if (eye === this.eye && (clouds === this.clouds || now - this.drawn < rest)) return;
+    this.eye = eye;
+    this.clouds = clouds;
+    this.drawn = now;
     this.points.setSize(width, height);
     this.shaded.setSize(width, height);
     camera.layers.set(kCloudLayer);

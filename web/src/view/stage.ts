@@ -12,7 +12,9 @@ import type { ScaleBar } from "./scale_bar";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
-const kPatience = 40; // slow pictures before sharpness gives way
+const kPatience = 40; // slow pictures before sharpness gives way; where the processor draws:
+const kPatienceSoftware = 8;
+const kRest = 300; // ms between two pictures of clouds that change, where drawing is slow (judgement)
 const kLeastSharpness = 0.5; // pixels drawn for one of the style sheet, where the processor draws
 const kSamples = 4; // of a pixel, where a graphics card draws
 
@@ -116,7 +118,8 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
-    this.backdrop.update(this.renderer, this.scene, this.camera, this.sharpness, this.clouds);
+    const { sharpness, clouds } = this;
+    this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, rest: this.slow ? kRest : 0 });
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -125,7 +128,7 @@ export class Stage {
     this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
     this.slowPictures = interval > kSlow ? this.slowPictures + 1 : Math.max(0, this.slowPictures - 1);
     const least = this.software ? kLeastSharpness : 1;
-    if (this.slowPictures < kPatience || this.sharpness <= least) return;
+    if (this.slowPictures < (this.software ? kPatienceSoftware : kPatience) || this.sharpness <= least) return;
     this.slowPictures = 0;
     this.sharpness = Math.max(least, this.sharpness / 1.4);
     this.resize();
