@@ -33,7 +33,7 @@ import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
-const kCalm = 3000; // ms from the start, in which warnings are listed only
+const kCalm = 3000; // ms from the start, in which late frames are listed only
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -158,7 +158,7 @@ export class App {
         this.world.takeSources(message.sources);
         return this.sources.update(message.robot);
       case "notice":
-        return this.notices.add(message.level, message.text, message.share, performance.now() < this.calmUntil);
+        return this.notices.add(message.level, message.text, message.share, this.passes(message.text));
       case "record":
         return this.bar.recording(message.on, message.file);
       case "time":
@@ -173,6 +173,11 @@ export class App {
       case "pong":
         return this.bar.roundTrip(this.connection.roundTrip);
     }
+  }
+
+  /** A camera that is late while the page and the program start is not worth a card. */
+  private passes(text: string): boolean {
+    return performance.now() < this.calmUntil && text.includes(": no frame for ");
   }
 
   /** The program waits for a `release`, held or not: what this page said of its hand may still be on the way. */

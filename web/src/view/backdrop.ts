@@ -22,6 +22,7 @@ const kShade = /* glsl */ `
   uniform highp sampler2D depths;
   uniform vec2 range; // near and far, m
   uniform float reach; // pixels
+  uniform float grain; // size of a point's disk, m
   in vec2 at;
   out vec4 shown;
 
@@ -30,11 +31,10 @@ const kShade = /* glsl */ `
     return log2(2.0 * range.x * range.y / (range.y + range.x - z * (range.y - range.x)));
   }
 
-  const float kFlat = 0.0015; // between neighbours, of disks that lie in one surface (judgement)
-
   void main() {
     vec2 step = reach / vec2(textureSize(depths, 0));
-    float own = far(at) - kFlat;
+    float own = far(at);
+    own -= grain * exp2(-own) * 1.4427; // disks that lie in one surface overlap: that is no edge
     float behind = max(0.0, own - far(at + vec2(step.x, 0.0))) + max(0.0, own - far(at - vec2(step.x, 0.0))) +
       max(0.0, own - far(at + vec2(0.0, step.y))) + max(0.0, own - far(at - vec2(0.0, step.y)));
     shown = vec4(texture(colours, at).rgb * max(0.45, exp(-12.0 * behind)), 1.0);
@@ -66,6 +66,7 @@ function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mes
 export interface Wanted {
   sharpness: number; // pixels drawn for one of the style sheet
   clouds: string; // changes with what is seen of them
+  grain: number; // size of a point's disk, m
   rest: number; // ms
 }
 
@@ -86,7 +87,7 @@ export class Backdrop {
     const depthTexture = new DepthTexture(1, 1, UnsignedIntType);
     this.points = new WebGLRenderTarget(1, 1, { depthTexture, samples, minFilter: NearestFilter, magFilter: NearestFilter });
     const depths = { value: depthTexture };
-    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: { value: [0, 1] }, reach: { value: 1 } });
+    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: { value: [0, 1] }, reach: { value: 1 }, grain: { value: 0 } });
     this.shading.add(this.shade);
     this.screen = screen(kShow, { colours: { value: this.shaded.texture }, depths });
     this.screen.renderOrder = -1;
@@ -94,7 +95,7 @@ export class Backdrop {
 
   /** Draws the clouds of a scene, unless `clouds` and eye are as they were. While the eye stands still, clouds that
    * change wait until `rest` ms have passed. */
-  update(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, { sharpness, clouds, rest }: Wanted): void {
+  update(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, { sharpness, clouds, grain, rest }: Wanted): void {
     const { width, height } = renderer.domElement;
     camera.updateMatrixWorld();
     const eye = [width, height, ...camera.matrixWorld.elements, ...camera.projectionMatrix.elements].join();
@@ -110,6 +111,7 @@ export class Backdrop {
     renderer.render(scene, camera);
     camera.layers.set(0);
     this.shade.material.uniforms["range"]!.value = [camera.near, camera.far];
+    this.shade.material.uniforms["grain"]!.value = grain;
     this.shade.material.uniforms["reach"]!.value = kReach * sharpness;
     renderer.setRenderTarget(this.shaded);
     renderer.render(this.shading, this.flat);

@@ -26,6 +26,7 @@ export class Stage {
   width = 1;
   height = 1;
   clouds = ""; // changes with what is seen of them
+  grain = 0; // size of their points' disks, m
   private readonly backdrop: Backdrop;
   readonly software: boolean;
   private sharpness: number;
@@ -118,8 +119,8 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
-    const { sharpness, clouds } = this;
-    this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, rest: this.slow ? kRest : 0 });
+    const { sharpness, clouds, grain } = this;
+    this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, grain, rest: this.slow ? kRest : 0 });
     this.renderer.render(this.scene, this.camera);
   }
 

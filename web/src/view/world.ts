@@ -220,13 +220,15 @@ export class World {
     });
     // Whatever else is asked for, the eye and what clouds are made of decide what they look like.
     stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.pointSize, look.points, ...this.visible].join();
+    stage.grain = this.lift();
     this.frusta.forEach((frustum, i) => {
       frustum.lines.visible = look.cameras && this.visible[i] === true;
     });
-    for (const surface of this.surfaces) {
+    this.surfaces.forEach((surface, i) => {
       surface.shown = look.surface;
+      surface.press(this.tools[i]!);
       surface.update(stage.camera.position, this.lift());
-    }
+    });
     for (const tool of this.tools) {
       tool.showSupport = look.support;
       tool.trail.line.visible = look.trail;
