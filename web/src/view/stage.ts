@@ -92,9 +92,14 @@ export class Stage {
 
   /** What is seen, with a caption. */
   picture(words: string, bar: ScaleBar): Promise<Blob | null> {
+    const { sharpness } = this;
+    this.sharpness = Math.max(1, sharpness); // it may be looked at for longer
     this.wanted = true; // a canvas keeps its picture only until it is shown
-    this.draw(performance.now());
+    this.resize();
     const picture = captioned(this.canvas, this.canvas.width / this.width, words, bar);
+    this.sharpness = sharpness;
+    this.wanted = true;
+    this.resize();
     return new Promise((resolve) => picture.toBlob(resolve, "image/png"));
   }
 
