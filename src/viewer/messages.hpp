@@ -88,6 +88,7 @@ constexpr double kFarthestHand = 1e6;            ///< m from the origin
 struct Notice {
   Viewer::NoticeLevel level = Viewer::NoticeLevel::info;
   std::string text;
+  std::optional<double> share = {};  ///< of work that takes a while, 0-1: the notice stays until 1
 
   bool operator==(const Notice&) const = default;
 };

@@ -238,7 +238,9 @@ std::string sources_text(std::span<const SourceReport> sources, const std::strin
 }
 
 std::string notice_text(const Notice& notice) {
-  return text_of({{"type", "notice"}, {"level", name_of(notice.level)}, {"text", notice.text}});
+  json message{{"type", "notice"}, {"level", name_of(notice.level)}, {"text", notice.text}};
+  if (notice.share) message["share"] = *notice.share;
+  return text_of(message);
 }
 
 std::string record_text(bool on, std::string_view file) {

@@ -163,6 +163,7 @@ struct Viewer::Parts {
   std::vector<StateReporter> states;
   std::vector<double> radii;  // R around each tool, m
   FaultNotices notices;
+  std::optional<Notice> progress;  // of work under way
   Latest<Viewer::Counts> counts;
   SceneEncoder encoder;
   std::jthread network;
@@ -187,6 +188,7 @@ Welcome Viewer::Parts::welcome() {
   }
   check_faults(seen);
   welcome.notices = notices.present();
+  if (progress) welcome.notices.push_back(*progress);
   return welcome;
 }
 
@@ -269,8 +271,15 @@ void Viewer::restarts(std::string why) {
 
 void Viewer::notice(Viewer::NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
-  parts.server.post(
-      [&parts, notice = Notice{level, std::move(text)}] { parts.sessions.send(notice); });
+  parts.server.post([&parts, said = Notice{level, std::move(text)}] { parts.sessions.send(said); });
+}
+
+void Viewer::progress(std::string what, double share) {
+  Parts& parts = *parts_;
+  parts.server.post([&parts, notice = Notice{NoticeLevel::info, std::move(what), share}] {
+    parts.progress = *notice.share < 1 ? std::optional(notice) : std::nullopt;
+    parts.sessions.send(notice);
+  });
 }
 
 void Viewer::settings_changed() {

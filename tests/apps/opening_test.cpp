@@ -13,46 +13,66 @@ namespace {
 using Kind = Opening::News::Kind;
 
 // The news of what has come to its end.
-Opening::News end_of(Opening& opening, double now) {
+Opening::News end_of(Opening& opening) {
   std::optional<Opening::News> news;
-  while (!news || news->kind == Kind::prepares) news = opening.look(now);
+  while (!news || news->kind == Kind::prepares) news = opening.look();
   return *news;
 }
 
-TEST(Opening, TellsNowAndThenThatItGoesOnAndOnceThatItIsDone) {
+TEST(Opening, TellsHowFarItIsAndOnceThatItIsDone) {
+  std::promise<void> quarter;
   std::promise<void> go_on;
   std::string taken;
-  Opening opening([&](const std::string& name, const std::string& bytes) {
+  Opening opening([&](const std::string& name, const std::string& bytes, const auto& told) {
+    told(0.25);
+    quarter.set_value();
     go_on.get_future().wait();
     taken = name + bytes;
   });
-  EXPECT_FALSE(opening.look(0));
+  EXPECT_FALSE(opening.look());
   opening.begin("a.ply", "xyz");
-  EXPECT_FALSE(opening.look(10));
-  EXPECT_FALSE(opening.look(14.9));
-  const auto news = opening.look(15.1);
+  quarter.get_future().wait();
+  const auto news = opening.look();
   ASSERT_TRUE(news);
   EXPECT_EQ(news->kind, Kind::prepares);
-  EXPECT_NEAR(news->seconds, 5.1, 1e-9);
-  EXPECT_FALSE(opening.look(15.2));
+  EXPECT_EQ(news->share, 0.25);
   EXPECT_THROW(opening.begin("b.ply", ""), Error);
   go_on.set_value();
-  EXPECT_EQ(end_of(opening, 16).kind, Kind::prepared);
+  EXPECT_EQ(end_of(opening).kind, Kind::prepared);
   EXPECT_EQ(taken, "a.plyxyz");
-  EXPECT_FALSE(opening.look(30));
+  EXPECT_FALSE(opening.look());
   EXPECT_THROW(opening.begin("b.ply", ""), Error) << "another run comes";
 }
 
 TEST(Opening, WhatIsRefusedMakesRoom) {
-  Opening opening([](const std::string& name, const std::string&) {
+  Opening opening([](const std::string& name, const std::string&, const auto&) {
     if (name == "bad.ply") throw std::runtime_error("no cloud");
   });
   opening.begin("bad.ply", "");
-  const Opening::News news = end_of(opening, 0);
+  const Opening::News news = end_of(opening);
   EXPECT_EQ(news.kind, Kind::refused);
   EXPECT_EQ(news.problem, "no cloud");
   opening.begin("good.ply", "");
-  EXPECT_EQ(end_of(opening, 1).kind, Kind::prepared);
+  EXPECT_EQ(end_of(opening).kind, Kind::prepared);
+}
+
+TEST(Opening, WhatNobodyWaitsForIsReadNoFurther) {
+  std::promise<void> begun;
+  bool given_up = false;
+  {
+    Opening opening([&](const std::string&, const std::string&, const auto& told) {
+      begun.set_value();
+      try {
+        while (true) told(0.5);
+      } catch (const Error&) {
+        given_up = true;
+        throw;
+      }
+    });
+    opening.begin("endless.ply", "");
+    begun.get_future().wait();
+  }
+  EXPECT_TRUE(given_up);
 }
 
 }  // namespace

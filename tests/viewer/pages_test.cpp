@@ -107,5 +107,20 @@ TEST(Pages, OneThatDrawsNothingGetsNoCloudAndNoSurfaceUntilItDraws) {
   client->receive_until([](const Frame& frame) { return frame.binary(3); });
 }
 
+TEST(Viewer, WorkUnderWayIsToldToWhoComesLaterUntilItIsDone) {
+  ViewerRig rig;
+  rig.viewer->progress("reading table.ply", 0.25);
+  const auto first = rig.enter();
+  const auto notice = first->receive_json("notice");
+  EXPECT_EQ(notice["text"], "reading table.ply");
+  EXPECT_EQ(notice["share"], 0.25);
+  EXPECT_EQ(rig.enter()->receive_json("notice"), notice);
+  rig.viewer->progress("reading table.ply", 1);
+  EXPECT_EQ(first->receive_json("notice")["share"], 1);
+  const auto late = rig.enter();
+  rig.viewer->notice(Viewer::NoticeLevel::info, "the next");
+  EXPECT_EQ(late->receive_json("notice")["text"], "the next") << "nothing of what is done";
+}
+
 }  // namespace
 }  // namespace palpate

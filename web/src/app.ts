@@ -33,8 +33,7 @@ import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
-const kSettled = 10_000; // ms, from when on the speed of drawing counts
-const kSlow = 100; // ms a picture
+const kCalm = 3000; // ms from the start, in which late frames are listed only
 const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
@@ -64,7 +63,7 @@ export class App {
   private readonly connection: Connection;
   private readonly plotInterval: number;
   private plotted = 0;
-  private saidSlow = false;
+  private calmUntil = 0; // ms: a start has its own troubles, which pass
   private run: string | undefined;
 
   constructor(private readonly link: Link, graphics: Graphics) {
@@ -159,7 +158,7 @@ export class App {
         this.world.takeSources(message.sources);
         return this.sources.update(message.robot);
       case "notice":
-        return this.notices.add(message.level, message.text);
+        return this.notices.add(message.level, message.text, message.share, this.passes(message.text));
       case "record":
         return this.bar.recording(message.on, message.file);
       case "time":
@@ -174,6 +173,11 @@ export class App {
       case "pong":
         return this.bar.roundTrip(this.connection.roundTrip);
     }
+  }
+
+  /** A camera that is late while the page and the program start is not worth a card. */
+  private passes(text: string): boolean {
+    return performance.now() < this.calmUntil && text.includes(": no frame for ");
   }
 
   /** The program waits for a `release`, held or not: what this page said of its hand may still be on the way. */
@@ -191,6 +195,7 @@ export class App {
       this.notices.add("warning", `the program uses protocol version ${welcome.version}, this page ${kVersion}: reload the page`);
     }
     this.session.begin(welcome);
+    this.notices.begin();
     this.world.begin(welcome, again);
     this.settings.begin(welcome.settings, welcome.presets);
     this.sources.begin(this.session.sources, () => this.relook());
@@ -203,6 +208,7 @@ export class App {
     this.relook();
     if (again) this.tour.putBack();
     else this.tour.forget();
+    if (first) this.calmUntil = performance.now() + kCalm;
     if (!first) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
@@ -241,21 +247,11 @@ export class App {
     this.tags.update(this.session.device);
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
-    this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height);
+    this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height, Number(this.session.values.get("stiffness")));
     this.settings.watch(this.session.tool, now);
     this.bar.update();
     this.hold.update();
     this.plots.update(now, this.world.stage.slow);
-    this.watchSpeed(now);
-  }
-
-  /** Says once where drawing is too slow to work with, and what helps. */
-  private watchSpeed(now: number): void {
-    const { frameTime, software } = this.world.stage;
-    if (this.saidSlow || now < kSettled || !(frameTime > kSlow)) return;
-    this.saidSlow = true;
-    this.notices.add("info", `rendering is slow (${frameTime.toFixed(0)} ms per frame): show fewer points, freeze the plots (H)` +
-      (software ? ", or enable hardware acceleration in the browser" : ""));
   }
 
   private relook(): void {
@@ -271,9 +267,11 @@ export class App {
 
   private watchPage(): void {
     byId("freeze").addEventListener("click", () => this.freeze());
-    byId("tour-start").addEventListener("click", () => {
-      if (!this.tour.start(performance.now())) this.notices.add("warning", "no tour: the view shows nothing to touch, or the tool cannot be taken");
-    });
+    for (const id of ["tour-start", "tour-offer"]) {
+      byId(id).addEventListener("click", () => {
+        if (!this.tour.start(performance.now())) this.notices.add("warning", "no tour: the view shows nothing to touch, or the tool cannot be taken");
+      });
+    }
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.world.retint();
       this.plots.redraw();

@@ -4,7 +4,8 @@ import { Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
 import { readTranslation } from "../src/input/space_mouse";
 import { decimals, distrust, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
-import { boundsOf } from "../src/view/bounds";
+import { boundsOf, type Sample } from "../src/view/bounds";
+import { firstDirection } from "../src/view/first_view";
 import { rampTexture } from "../src/view/colours";
 import { lengthInWords, scaleBar } from "../src/view/scale_bar";
 
@@ -75,10 +76,36 @@ test("controllers and 3D mice mean the same directions", () => {
 });
 
 test("bounds leave outliers out", () => {
-  const places = Array.from({ length: 1000 }, (_, i) => new Vector3((i % 10) / 10, Math.floor(i / 100) / 10, 0));
-  places.push(new Vector3(1000, 0, 0));
-  const bounds = boundsOf(places, new Vector3(0, 0, 1));
+  const samples = sheet((u, v) => new Vector3(u, v, 0), new Vector3(0, 0, 1));
+  samples.push({ place: new Vector3(1000, 0, 0), normal: undefined });
+  const bounds = boundsOf(samples);
   assert.ok(bounds !== undefined && bounds.radius < 1);
-  assert.ok(bounds.places.every((place) => place.x < 2));
-  assert.equal(boundsOf([], new Vector3(0, 0, 1)), undefined);
+  assert.ok(bounds.samples.every(({ place }) => place.x < 2));
+  assert.equal(boundsOf([]), undefined);
+});
+
+/** 400 places over 0..1 x 0..1. */
+function sheet(at: (u: number, v: number) => Vector3, normal: Vector3): Sample[] {
+  return Array.from({ length: 400 }, (_, i) => ({ place: at((i % 20) / 19, Math.floor(i / 20) / 19), normal }));
+}
+
+test("a corner of a room is seen first from where its walls face, whatever the axes", () => {
+  const up = new Vector3(0, 0, 1);
+  for (const turn of [0, 1, 2.5, 4]) {
+    const turned = (x: number, y: number, z: number) => new Vector3(x, y, z).applyAxisAngle(up, turn);
+    const bounds = boundsOf([
+      ...sheet((u, v) => turned(u, v, 0), up),
+      ...sheet((u, v) => turned(u, 0, v), turned(0, 1, 0)),
+      ...sheet((u, v) => turned(0, u, v), turned(1, 0, 0)),
+    ])!;
+    const direction = firstDirection(up, [], bounds);
+    assert.ok(direction.dot(turned(0, 1, 0)) > 0 && direction.dot(turned(1, 0, 0)) > 0, `turned by ${turn}`);
+  }
+});
+
+test("what has no normals is seen from its cameras' side", () => {
+  const up = new Vector3(0, 0, 1);
+  const flat = sheet((u, v) => new Vector3(u, v, 0), up).map(({ place }) => ({ place, normal: undefined }));
+  const direction = firstDirection(up, [new Vector3(5, 0.5, 1)], boundsOf(flat)!);
+  assert.ok(direction.x > 0.5);
 });

@@ -13,8 +13,6 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kTellAgain = 5;  // s
-
 bool is_over(const std::future<void>& work) {
   return work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
@@ -23,30 +21,32 @@ bool is_over(const std::future<void>& work) {
 
 Opening::~Opening() {
   if (!work_.valid() || is_over(work_)) return;
-  fmt::print(stderr, "waiting until {} is read, which comes too late; Ctrl-C ends at once\n",
-             without_controls(name_));
+  given_up_ = true;
+  const Waiting waiting(
+      fmt::format("waiting until {} is prepared, which comes too late", without_controls(name_)));
+  work_.wait();
 }
 
 void Opening::begin(const std::string& name, std::string bytes) {
   const std::lock_guard lock(mutex_);
   if (!name_.empty()) throw Error(name_ + " is being read; try again after it");
+  share_ = 0;
   work_ = std::async(std::launch::async, [this, name, bytes = std::move(bytes)]() mutable {
-    prepare_(name, std::move(bytes));
+    prepare_(name, std::move(bytes), [this](double share) { tell(share); });
   });
   name_ = name;
-  began_.reset();
 }
 
-std::optional<Opening::News> Opening::look(double now) {
+void Opening::tell(double share) {
+  if (given_up_) throw Error("given up");
+  share_ = share;
+}
+
+std::optional<Opening::News> Opening::look() {
   const std::lock_guard lock(mutex_);
   if (!work_.valid()) return std::nullopt;
-  if (!began_) began_ = told_ = now;
-  News news{.name = name_, .seconds = now - *began_};
-  if (!is_over(work_)) {
-    if (now - told_ < kTellAgain) return std::nullopt;
-    told_ = now;
-    return news;
-  }
+  News news{.name = name_, .share = share_};
+  if (!is_over(work_)) return news;
   try {
     work_.get();
     news.kind = News::Kind::prepared;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <future>
 #include <mutex>
@@ -12,20 +13,24 @@ namespace palpate::app {
 /// A file that a page sent for the next run, prepared on a thread of its own.
 class Opening {
  public:
+  /// Says what share of the file is read, 0 to 1; throws where nobody waits for it any more.
+  using Told = std::function<void(double share)>;
+
   /// Throws what is wrong with the file.
-  using Prepare = std::function<void(const std::string& name, std::string bytes)>;
+  using Prepare = std::function<void(const std::string& name, std::string bytes, const Told& told)>;
 
   /// How it goes.
   struct News {
     enum class Kind { prepares, refused, prepared };
     Kind kind = Kind::prepares;
     std::string name;
-    double seconds = 0;        ///< since it began
+    double share = 0;          ///< that is read; 1: its surface is being prepared
     std::string problem = {};  ///< of what was refused
   };
 
   explicit Opening(Prepare prepare) : prepare_(std::move(prepare)) {}
-  /// Waits for what is under way, and says so on standard error.
+  /// Gives up what is being read. Waits for a surface that is being prepared, and says so on
+  /// standard error if that takes long.
   ~Opening();
   Opening(const Opening&) = delete;
   Opening& operator=(const Opening&) = delete;
@@ -33,16 +38,18 @@ class Opening {
   /// Any thread; returns at once. @throws Error while there is another one.
   void begin(const std::string& name, std::string bytes);
 
-  /// What is new at `now`, s on any clock: every 5 s while it lasts, and once at its end. After
-  /// `prepared` no other begins.
-  [[nodiscard]] std::optional<News> look(double now);
+  /// How the file under way goes, its end once; unset: there is none. After `prepared` no other
+  /// begins.
+  [[nodiscard]] std::optional<News> look();
 
  private:
+  void tell(double share);
+
   Prepare prepare_;
   std::mutex mutex_;
   std::string name_;  // empty: there is none
-  std::optional<double> began_;
-  double told_ = 0;
+  std::atomic<double> share_ = 0;
+  std::atomic<bool> given_up_ = false;
   std::future<void> work_;
 };
 

@@ -44,8 +44,13 @@ CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   tell_of_pipe(argument.path);
   ReadOptions shown = options;
   Progress progress(fmt::format("reading {}", argument.path));
-  shown.progress = [&](double done) { progress.update(done); };
-  return read_cloud_file(argument.path, shown);
+  shown.progress = [&](double done) {
+    progress.update(done);
+    if (options.progress) options.progress(done);
+  };
+  CloudFile file = read_cloud_file(argument.path, shown);
+  if (options.progress) options.progress(1);
+  return file;
 }
 
 // A camera whose frames say where they were taken in a frame of its own (a recording with poses):

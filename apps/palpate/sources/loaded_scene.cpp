@@ -101,6 +101,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
     return check_felt(scene.source(scene.size() - 1), result);
   }
   LoadedCloud loaded = load(plan.argument, plan.reading);
+  result.plan.reading.progress = {};  // nobody waits for it any more
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   check_voxel(loaded, plan.options.prepare);
   result.format = loaded.file.format;

@@ -23,6 +23,7 @@
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/palpate/run/view_settings.hpp"
+#include "apps/palpate/view/view.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/stream.hpp"
@@ -188,12 +189,14 @@ struct Start {
 
 // What comes after a run of `plan`: of a file that a page sent, which a person knows by its name.
 std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, std::string bytes,
-                              WaitingClock* clock) {
+                              WaitingClock* clock, const Opening::Told& told) {
   const TemporaryFolder folder;
   const std::string place = folder.file("");
   try {
     const std::string file = folder.write(name, std::exchange(bytes, {}));
-    auto start = std::make_unique<Start>(plan_of_file(plan, file), clock);
+    TouchPlan next = plan_of_file(plan, file);
+    for (SourcePlan& source : next.sources) source.reading.progress = told;
+    auto start = std::make_unique<Start>(std::move(next), clock);
     for (LoadedSource& source : start->loaded.sources) {
       source.plan.argument.path.erase(0, place.size());
     }
@@ -224,8 +227,8 @@ void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>
           plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
   std::unique_ptr<Start> prepared;
-  Opening opening([&](const std::string& name, std::string bytes) {
-    prepared = opened(plan, name, std::move(bytes), clock);
+  Opening opening([&](const std::string& name, std::string bytes, const Opening::Told& told) {
+    prepared = opened(plan, name, std::move(bytes), clock, told);
   });
   if (can_open_files(plan)) run.opening = &opening;
   LiveOutcome outcome = play(run, clock, interruption ? &*interruption : nullptr, outputs);
@@ -250,7 +253,9 @@ void touch(const TouchPlan& plan) {
   use_range(plan.ros.range);
   SteadyClock steady;
   WaitingClock* clock = plan.time.real_time ? &steady : nullptr;
-  auto start = std::make_unique<Start>(plan, clock);
+  WaitingPage page(plan);
+  auto start = std::make_unique<Start>(page.watching(plan), clock);
+  start->plan.page = page.end();
   std::optional<Interruption> interruption;  // of all runs
   if (clock != nullptr) interruption.emplace();
   bool failed = false;

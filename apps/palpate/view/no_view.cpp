@@ -16,4 +16,18 @@ std::optional<PagePlan> View::look() {
   return {};
 }
 
+struct WaitingPage::Parts {
+  PagePlan page;
+};
+
+WaitingPage::WaitingPage(const TouchPlan& plan, std::chrono::milliseconds /*patience*/)
+    : parts_(std::make_unique<Parts>(Parts{plan.page})) {}
+WaitingPage::~WaitingPage() = default;
+TouchPlan WaitingPage::watching(TouchPlan plan) {
+  return plan;
+}
+PagePlan WaitingPage::end() {
+  return parts_->page;
+}
+
 }  // namespace palpate::app

@@ -17,6 +17,7 @@
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
+#include "apps/palpate/view/told_progress.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
@@ -217,16 +218,25 @@ struct View::Parts {
     viewer.notice(Viewer::NoticeLevel::warning, why);
   }
 
+  // Around a store there is always something to come.
+  void tell_prepared() {
+    const auto paged = [](const LoadedSource& source) { return source.paged; };
+    if (std::ranges::any_of(run.loaded.sources, paged)) return;
+    surface.show(viewer, "preparing the surface, first where the tools are", feed.prepared());
+  }
+
   // Has what a page sent been prepared? Tells pages how that goes.
   bool has_opened() {
     if (run.opening == nullptr) return false;
-    const std::optional<Opening::News> news = run.opening->look(SteadyClock().now());
+    const std::optional<Opening::News> news = run.opening->look();
     if (!news) return false;
     if (news->kind == Opening::News::Kind::refused) {
+      opened.show(viewer, news->name, 1);
       viewer.notice(Viewer::NoticeLevel::warning, news->problem);
     } else if (news->kind == Opening::News::Kind::prepares) {
-      viewer.notice(Viewer::NoticeLevel::info,
-                    fmt::format("reading {}: {:.0f} s so far", news->name, news->seconds));
+      const bool reads = news->share < 1;
+      opened.show(viewer, (reads ? "reading " : "preparing ") + news->name,
+                  reads ? news->share : 0);
     } else {
       viewer.record_ended();
       viewer.restarts("the program opens " + news->name);
@@ -269,6 +279,8 @@ struct View::Parts {
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
   std::optional<Browser> browser;
+  ToldProgress opened;  // how far a file is that a page sent
+  ToldProgress surface;
   Viewer viewer;  // last: it uses all of the above
 };
 
@@ -288,6 +300,7 @@ std::optional<PagePlan> View::look() {
     if (hold.possible()) hold.keep();
   }
   parts_->tell_problems();
+  parts_->tell_prepared();
   if (!parts_->has_opened()) return {};
   return parts_->next_page();
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "apps/palpate/options/touch_plan.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/ros/bridge.hpp"
@@ -34,6 +36,28 @@ class View {
   /// Some tens of times a second: says of pages that have a tool that they still have. Where a page
   /// opened a file, and what comes next has been prepared: the page of that.
   [[nodiscard]] std::optional<PagePlan> look();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// The page of a run whose clouds are being read: it is there once that has taken a while, and
+/// says how far it is. The run's own page follows at the same place.
+class WaitingPage {
+ public:
+  /// `patience`: how long nobody needs to be told of the reading.
+  explicit WaitingPage(const TouchPlan& plan,
+                       std::chrono::milliseconds patience = std::chrono::milliseconds(500));
+  ~WaitingPage();
+  WaitingPage(const WaitingPage&) = delete;
+  WaitingPage& operator=(const WaitingPage&) = delete;
+
+  /// `plan` with sources that tell this page how far they are read. It outlives their reading.
+  [[nodiscard]] TouchPlan watching(TouchPlan plan);
+
+  /// Closes it. The page that is to follow.
+  [[nodiscard]] PagePlan end();
 
  private:
   struct Parts;

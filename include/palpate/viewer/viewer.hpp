@@ -200,6 +200,9 @@ class Viewer {
   void restarts(std::string why);
   /// Tells every page something that a person should know now. Any thread but a servo's.
   void notice(NoticeLevel level, std::string text);
+  /// Tells every page how far work is that takes a while, 0 to 1; 0: nobody knows. One such notice
+  /// stays on pages until it is 1. Any thread but a servo's.
+  void progress(std::string what, double share);
   /// The program itself changed a setting: tells every page. Any thread but a servo's.
   void settings_changed();
   /// There is another envelope or another past: tells every page. Any thread but a servo's.

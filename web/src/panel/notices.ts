@@ -15,6 +15,7 @@ interface Notice {
   card: HTMLElement;
   entry: HTMLElement;
   timer: number;
+  share: number | undefined; // of work under way, 0 to 1: it stays until that is done
 }
 
 /** The same but for its quantities: they differ where one thing happens again. Other numbers are names ("hand 2"). */
@@ -25,7 +26,27 @@ function kindOf(text: string): string {
 export class Notices {
   private shown: Notice[] = [];
 
-  add(level: NoticeLevel, text: string): void {
+  /** What work was under way is not the next run's. */
+  begin(): void {
+    for (const notice of this.shown) if (notice.share !== undefined) this.remove(notice);
+  }
+
+  /** share: of work that takes a while, 0 to 1. One such notice is shown, until that is 1. calm: warnings are listed only. */
+  add(level: NoticeLevel, text: string, share?: number, calm = false): void {
+    if (calm && level === "warning") return this.log(this.makeNotice(level, text).entry);
+    if (share === undefined) return this.put(level, text);
+    const work = this.shown.find((notice) => notice.share !== undefined);
+    if (share >= 1) {
+      if (work !== undefined) this.remove(work);
+    } else if (work === undefined || work.text !== text) {
+      this.begin();
+      this.put(level, text, share);
+    } else {
+      this.showShare(work, share);
+    }
+  }
+
+  private put(level: NoticeLevel, text: string, share?: number): void {
     const alike = kindOf(text);
     const same = this.shown.find((notice) => kindOf(notice.text) === alike && notice.level === level);
     if (same !== undefined) {
@@ -33,9 +54,10 @@ export class Notices {
       return;
     }
     const notice = this.makeNotice(level, text);
+    if (share !== undefined) this.showShare(notice, share);
     this.shown.push(notice);
     if (this.shown.length > kShown) {
-      this.remove(this.shown.find((one) => one.level !== "fault") ?? this.shown[0]!);
+      this.remove(this.shown.find((one) => one.level !== "fault" && one.share === undefined) ?? this.shown[0]!);
     }
     byId("notices").append(notice.card);
     this.log(notice.entry);
@@ -50,9 +72,16 @@ export class Notices {
     const time = new Date();
     const entry = make("li", { class: level },
       make("time", { datetime: time.toISOString() }, time.toLocaleTimeString()), " ", kWords[level] + text);
-    const notice: Notice = { level, text, times: 1, card, entry, timer: 0 };
+    const notice: Notice = { level, text, times: 1, card, entry, timer: 0, share: undefined };
     close.addEventListener("click", () => this.remove(notice));
     return notice;
+  }
+
+  private showShare(notice: Notice, share: number): void {
+    notice.share = share;
+    notice.card.style.setProperty("--share", String(share));
+    notice.card.classList.add("work");
+    say(notice.card.querySelector(".times")!, share > 0 ? `${Math.floor(100 * share)} %` : "…");
   }
 
   private repeat(notice: Notice, text: string): void {
@@ -66,7 +95,7 @@ export class Notices {
   private limit(notice: Notice): void {
     clearTimeout(notice.timer);
     const life = kLife[notice.level];
-    if (Number.isFinite(life)) notice.timer = window.setTimeout(() => this.remove(notice), life);
+    if (Number.isFinite(life) && notice.share === undefined) notice.timer = window.setTimeout(() => this.remove(notice), life);
   }
 
   private remove(notice: Notice): void {

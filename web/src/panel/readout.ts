@@ -1,7 +1,7 @@
 // The force as a number, and what the servo notes, in words.
 
 import type { DeviceHistory } from "../model/session";
-import { Flag } from "../protocol/decode";
+import { Flag, type StateMessage } from "../protocol/decode";
 import { byId, make, say } from "./dom";
 import { millimetres } from "./numbers";
 
@@ -19,7 +19,8 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: st
   notLoaded: ["info", "not loaded: nothing is felt here yet", "The cloud here is still read and prepared, or cannot be read"],
   thinned: ["warning", "points skipped: too many near the tool", "Some were skipped to keep the servo rate"],
 };
-const kLift = "lift the tool to feel full force again";
+const kLift = "lift the tool to feel full force again"; // where the tool is this page's
+const kFull = 0.95; // of the stiffness
 const kLinger = 700; // ms that a flag stays readable
 const kStale = 1000; // ms without a state
 
@@ -27,7 +28,8 @@ export class Readout {
   private readonly force = byId("force");
   private readonly touch = byId("touch");
   private readonly lift = byId("lift");
-  private weakUntil = 0; // in contact the force comes back no further than motion pays for it
+  private softUntil = 0; // in contact a device's force comes back no further than motion pays for it
+  private held = false;
   private height: number | undefined;
   private readonly parts = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
@@ -47,15 +49,17 @@ export class Readout {
   /** For every state, so that short flags are seen too. held: by this page. */
   note(tool: DeviceHistory, now: number, held: boolean): void {
     for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
-    if (held && tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.weakUntil = now + kLinger;
+    this.held = held;
+    if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.softUntil = now + kLinger;
   }
 
-  /** height: of a free hand above the surface, m. */
-  update(tool: DeviceHistory | undefined, now: number, height: number | undefined): void {
+  /** height: of a free hand above the surface, m; stiffness: of the surface, N/m. */
+  update(tool: DeviceHistory | undefined, now: number, height: number | undefined, stiffness: number): void {
     this.height = height;
     const state = tool?.latest;
     for (const { element, until } of this.flags.values()) element.hidden = until < now;
-    say(this.lift, now < this.weakUntil ? kLift : "");
+    const soft = now < this.softUntil && state !== undefined ? softness(state, stiffness) : "";
+    say(this.lift, soft === "" || !this.held ? soft : `${soft}; ${kLift}`);
     if (tool === undefined || state === undefined) {
       say(this.touch, "no tool yet");
       return;
@@ -79,9 +83,18 @@ export class Readout {
     if (status !== "ok") return reason === undefined ? status : `${status}: ${reason}`;
     if (tool.has("behind")) return "behind what the camera sees: nothing is felt";
     if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
-    const deep = Math.hypot(...state.proxy.map((p, i) => p - state.hip[i as 0 | 1 | 2]));
-    return `touching, ${millimetres(deep)} deep`;
+    return `touching, ${millimetres(depthOf(state))} deep`;
   }
+}
+
+function depthOf({ proxy, hip }: StateMessage): number {
+  return Math.hypot(...proxy.map((p, i) => p - hip[i as 0 | 1 | 2]));
+}
+
+/** What part of the surface's stiffness is felt; empty where all of it is. */
+function softness(state: StateMessage, stiffness: number): string {
+  const share = Math.hypot(...state.force) / (stiffness * depthOf(state));
+  return share < kFull ? `soft: ${Math.round(100 * share)} %` : "";
 }
 
 function signed(value: number): string {

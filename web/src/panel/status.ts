@@ -37,9 +37,10 @@ export class Status {
       this.ask("The program rejected this page",
         `Reason: ${link.reason}. Each start of the program has a new token: ` +
         "open the address that it printed last, or paste it here.");
+    } else if (link.restarts) {
+      this.words("starting again"); // what was seen stays until then
     } else {
-      this.wait(link.seconds, link.restarts ? "Starting again" : this.everOpen ? "Connection lost" : "The program does not answer",
-        link.reason);
+      this.wait(link.seconds, this.everOpen ? "Connection lost" : "The program does not answer", link.reason);
     }
   }
 

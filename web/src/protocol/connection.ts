@@ -20,6 +20,7 @@ export interface Listener {
 const kAbnormal = 1006;
 const kPolicyViolation = 1008;
 const kServiceRestart = 1012;
+const kFollows = 0.15; // s until another run listens
 const kPing = 2000; // ms
 const kSilence = 8000; // ms without a word, or until it opens, before the socket counts as dead
 
@@ -130,8 +131,9 @@ export class Connection {
       this.listener.link({ phase: "refused", reason: reason || "wrong token" });
       return;
     }
-    const seconds = this.backoff.next();
-    this.listener.link({ phase: "waiting", seconds, reason, restarts: code === kServiceRestart });
+    const restarts = code === kServiceRestart;
+    const seconds = restarts ? kFollows : this.backoff.next();
+    this.listener.link({ phase: "waiting", seconds, reason, restarts });
     this.retry = window.setTimeout(() => this.open(), seconds * 1000);
   }
 }

@@ -1,50 +1,71 @@
-// Where there is something to see, from a few points of each cloud; far outliers are left out.
+// Where there is something to see, from a few points of each cloud: the densest nine tenths of them.
 
 import { Vector2, Vector3 } from "three";
+import { decodeOctahedral } from "../protocol/octahedral";
 import type { CloudMessage } from "../protocol/decode";
 
-const kSamples = 400; // of one cloud
-const kTail = 0.02; // left out at each end
+const kSamples = 500; // of one cloud
+const kTail = 0.02; // of heights, left out at each end
+const kKept = 0.8; // of the points: what lies thin, such as a far floor or strays, is left out (judgement)
+const kNeighbours = 6; // that tell how densely points lie (judgement)
 
-export interface Bounds {
-  places: readonly Vector3[]; // of points, without outliers
-  centre: Vector3;
-  radius: number; // m
-  heights: Vector2; // along up, m
+export interface Sample {
+  place: Vector3;
+  normal: Vector3 | undefined;
 }
 
-export function samplePlaces(message: CloudMessage): Vector3[] {
+export interface Bounds {
+  samples: readonly Sample[];
+  centre: Vector3;
+  radius: number; // m
+}
+
+export function samplesOf(message: CloudMessage): Sample[] {
   const stride = Math.max(1, Math.floor(message.count / kSamples));
-  const places: Vector3[] = [];
+  const samples: Sample[] = [];
   for (let i = 0; i < message.count; i += stride) {
     const u = (axis: 0 | 1 | 2) =>
       message.lower[axis] + (message.extent[axis] * message.places[3 * i + axis]!) / 65535;
-    places.push(new Vector3(u(0), u(1), u(2)));
+    const bent = message.normals?.subarray(2 * i, 2 * i + 2);
+    const normal = bent && new Vector3(...decodeOctahedral(bent[0]!, bent[1]!));
+    samples.push({ place: new Vector3(u(0), u(1), u(2)), normal });
   }
-  return places;
+  return samples;
 }
 
-function range(values: number[]): [number, number] {
-  values.sort((a, b) => a - b);
-  const at = (q: number) => values[Math.round(q * (values.length - 1))] ?? 0;
-  return [at(kTail), at(1 - kTail)];
+/** Along up, low and high, without strays, m. */
+export function heightsOf(samples: readonly Sample[], up: Vector3): Vector2 {
+  const heights = samples.map(({ place }) => place.dot(up)).sort((a, b) => a - b);
+  const at = (q: number) => heights[Math.round(q * (heights.length - 1))] ?? 0;
+  return new Vector2(at(kTail), at(1 - kTail));
 }
 
-export function boundsOf(places: readonly Vector3[], up: Vector3): Bounds | undefined {
-  if (places.length < 2) return undefined;
-  const [x0, x1] = range(places.map((p) => p.x));
-  const [y0, y1] = range(places.map((p) => p.y));
-  const [z0, z1] = range(places.map((p) => p.z));
-  const lower = new Vector3(x0, y0, z0);
-  const upper = new Vector3(x1, y1, z1);
-  const inside = (v: number, low: number, high: number) => {
-    const slack = 0.1 * (high - low);
-    return v >= low - slack && v <= high + slack;
-  };
+/** Square of the distance to the last of the nearest others, m². */
+function thinness(sample: Sample, samples: readonly Sample[]): number {
+  const nearest: number[] = new Array<number>(kNeighbours + 1).fill(Infinity);
+  for (const { place } of samples) {
+    const square = place.distanceToSquared(sample.place);
+    if (square >= nearest[kNeighbours]!) continue;
+    let i = kNeighbours;
+    for (; i > 0 && nearest[i - 1]! > square; i -= 1) nearest[i] = nearest[i - 1]!;
+    nearest[i] = square;
+  }
+  return nearest[Math.min(kNeighbours, samples.length - 1)]!;
+}
+
+export function boundsOf(all: readonly Sample[]): Bounds | undefined {
+  if (all.length < 2) return undefined;
+  const byThinness = all.map((sample) => ({ sample, thin: thinness(sample, all) })).sort((a, b) => a.thin - b.thin);
+  const samples = byThinness.slice(0, Math.ceil(kKept * all.length)).map(({ sample }) => sample);
+  const lower = new Vector3(Infinity, Infinity, Infinity);
+  const upper = lower.clone().negate();
+  for (const { place } of samples) {
+    lower.min(place);
+    upper.max(place);
+  }
   return {
-    places: places.filter((p) => inside(p.x, x0, x1) && inside(p.y, y0, y1) && inside(p.z, z0, z1)),
+    samples,
     centre: lower.clone().add(upper).multiplyScalar(0.5),
     radius: Math.max(upper.distanceTo(lower) / 2, 1e-4),
-    heights: new Vector2(...range(places.map((p) => p.dot(up)))),
   };
 }

@@ -6,6 +6,7 @@ import {
   Vector3, ZeroFactor, type Texture,
 } from "three";
 import type { CloudMessage } from "../protocol/decode";
+import { kCloudLayer } from "./backdrop";
 import { kCloudFragment, kCloudVertex } from "./cloud_shader";
 import { screenColour, sourceColour } from "./colours";
 
@@ -57,6 +58,7 @@ export class Cloud {
   ) {
     this.points = new Points(new BufferGeometry(), makeMaterial(ramps));
     this.points.frustumCulled = false;
+    this.points.layers.set(kCloudLayer);
     this.retint();
   }
 

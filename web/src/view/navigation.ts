@@ -6,25 +6,12 @@ import type { Bounds } from "./bounds";
 
 const kTurn = 1.6; // radians a second by keys
 const kCloser = 1.2; // of the distance's logarithm a second
-const kAside = 0.55; // radians beside a camera's own direction
-const kRaise = 0.5; // of the distance, upward
-const kMargin = 0.82; // of the free picture that is used
+const kMargin = 0.88; // of the free picture that is used
 const kFoot = 90; // pixels at its lower edge, where a hint and a button stand
 const kLoose = 0.8; // of the radius, while no place is known
 const kRounds = 4;
+const kStep = 1.25; // of the distance: noise gives no other view at the next start
 const kLag = 0.25; // s
-
-/** From the middle to the eye: from the cameras' side, turned and raised a little. */
-export function firstDirection(up: Vector3, cameras: readonly Vector3[], centre: Vector3): Vector3 {
-  const from = cameras.reduce((sum, place) => sum.add(place.clone().sub(centre)), new Vector3());
-  from.addScaledVector(up, -from.dot(up));
-  if (from.lengthSq() < 1e-12) {
-    const x = new Vector3(1, 0, 0);
-    const y = new Vector3(0, 1, 0);
-    from.crossVectors(Math.abs(up.x) < 0.9 ? x : y, up);
-  }
-  return from.normalize().applyAxisAngle(up, kAside).addScaledVector(up, kRaise).normalize();
-}
 
 export class Navigation {
   controls: OrbitControls;
@@ -58,7 +45,9 @@ export class Navigation {
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.minDistance = 0.02 * bounds.radius;
     this.controls.maxDistance = 12 * bounds.radius;
+    const { touched } = this;
     this.controls.update();
+    this.touched = touched; // this was nobody's
     this.changed();
   }
 
@@ -72,9 +61,9 @@ export class Navigation {
     const tall = half * kMargin * (1 - foot);
     const target = bounds.centre.clone();
     let distance = (kLoose * bounds.radius) / Math.min(tall, wide);
-    for (let round = 0; round < kRounds && bounds.places.length > 0; round += 1) {
+    for (let round = 0; round < kRounds && bounds.samples.length > 0; round += 1) {
       let [left, most, low, high, needed] = [Infinity, -Infinity, Infinity, -Infinity, 0];
-      for (const place of bounds.places) {
+      for (const { place } of bounds.samples) {
         const from = place.clone().sub(target);
         const [x, y, near] = [from.dot(right), from.dot(upward), from.dot(direction)];
         needed = Math.max(needed, near + Math.max(Math.abs(x) / wide, Math.abs(y) / tall));
@@ -86,6 +75,7 @@ export class Navigation {
       target.addScaledVector(upward, ((low + high) / 2) * distance);
       distance = needed;
     }
+    distance = kStep ** Math.ceil(Math.log(distance) / Math.log(kStep));
     target.addScaledVector(upward, -foot * half * distance);
     return { target, distance };
   }
@@ -115,6 +105,7 @@ export class Navigation {
 
   /** Keys: right, up and closer, for how long each was held down, s. */
   turn(right: number, up: number, closer: number): void {
+    this.touched = true;
     const arm = this.camera.position.clone().sub(this.controls.target);
     const axis = this.camera.up;
     const side = new Vector3().crossVectors(axis, arm).normalize();
@@ -138,8 +129,13 @@ export class Navigation {
     controls.rotateSpeed = 0.8;
     controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;
-    controls.addEventListener("change", this.changed);
-    controls.addEventListener("start", () => (this.touched = true));
+    let held = false;
+    controls.addEventListener("start", () => (held = true));
+    controls.addEventListener("end", () => (held = false));
+    controls.addEventListener("change", () => {
+      this.touched ||= held; // a press alone moves nothing
+      this.changed();
+    });
     return controls;
   }
 }

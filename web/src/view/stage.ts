@@ -4,6 +4,7 @@
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
+import { Backdrop } from "./backdrop";
 import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
@@ -11,7 +12,11 @@ import type { ScaleBar } from "./scale_bar";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
-const kPatience = 40; // slow pictures before sharpness gives way
+const kPatience = 40; // slow pictures before sharpness gives way; where the processor draws:
+const kPatienceSoftware = 8;
+const kRest = 300; // ms between two pictures of clouds that change, where drawing is slow (judgement)
+const kLeastSharpness = 0.5; // pixels drawn for one of the style sheet, where the processor draws
+const kSamples = 4; // of a pixel, where a graphics card draws
 
 export class Stage {
   readonly scene = new Scene();
@@ -20,6 +25,9 @@ export class Stage {
   frameTime = NaN; // ms between pictures, smoothed
   width = 1;
   height = 1;
+  clouds = ""; // changes with what is seen of them
+  grain = 0; // size of their points' disks, m
+  private readonly backdrop: Backdrop;
   readonly software: boolean;
   private sharpness: number;
   private wanted = true;
@@ -34,6 +42,8 @@ export class Stage {
     this.renderer = new WebGLRenderer({
       canvas, antialias: !this.software, powerPreference: "high-performance",
     });
+    this.backdrop = new Backdrop(this.software ? 0 : kSamples);
+    this.scene.add(this.backdrop.screen);
     const lamp = new DirectionalLight(0xffffff, 2.0);
     lamp.position.set(0.35, 0.55, 0.75);
     this.camera.add(lamp);
@@ -82,9 +92,14 @@ export class Stage {
 
   /** What is seen, with a caption. */
   picture(words: string, bar: ScaleBar): Promise<Blob | null> {
+    const { sharpness } = this;
+    this.sharpness = Math.max(1, sharpness); // it may be looked at for longer
     this.wanted = true; // a canvas keeps its picture only until it is shown
-    this.draw(performance.now());
+    this.resize();
     const picture = captioned(this.canvas, this.canvas.width / this.width, words, bar);
+    this.sharpness = sharpness;
+    this.wanted = true;
+    this.resize();
     return new Promise((resolve) => picture.toBlob(resolve, "image/png"));
   }
 
@@ -109,6 +124,8 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
+    const { sharpness, clouds, grain } = this;
+    this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, grain, rest: this.slow ? kRest : 0 });
     this.renderer.render(this.scene, this.camera);
   }
 
@@ -116,9 +133,10 @@ export class Stage {
     if (!(interval > 0) || interval > 1000) return;
     this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
     this.slowPictures = interval > kSlow ? this.slowPictures + 1 : Math.max(0, this.slowPictures - 1);
-    if (this.slowPictures < kPatience || this.sharpness <= 1) return;
+    const least = this.software ? kLeastSharpness : 1;
+    if (this.slowPictures < (this.software ? kPatienceSoftware : kPatience) || this.sharpness <= least) return;
     this.slowPictures = 0;
-    this.sharpness = Math.max(1, this.sharpness / 1.4);
+    this.sharpness = Math.max(least, this.sharpness / 1.4);
     this.resize();
   }
 }

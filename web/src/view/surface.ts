@@ -7,10 +7,14 @@ import type { SurfaceMessage } from "../protocol/decode";
 import { screenColour } from "./colours";
 
 const kVertex = /* glsl */ `
+  uniform vec3 proxy; // of the tool, in the patch's units
+  uniform float wide;
   out vec3 seen;
   out vec3 local;
+  out float pressed; // 1 under the tool to 0
   void main() {
     local = position;
+    pressed = exp(-dot(position - proxy, position - proxy) / (wide * wide));
     vec4 at = modelViewMatrix * vec4(position, 1.0);
     seen = at.xyz;
     gl_Position = projectionMatrix * at;
@@ -19,22 +23,30 @@ const kVertex = /* glsl */ `
 
 const kFragment = /* glsl */ `
   uniform vec3 colour;
+  uniform vec3 hot;
+  uniform float force; // 0 to 1
   in vec3 seen;
   in vec3 local;
+  in float pressed;
   out vec4 shown;
   void main() {
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
     float light = 0.62 + 0.45 * abs(dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
     float fade = 1.0 - smoothstep(0.45, 1.0, length(local));
     float rings = smoothstep(0.42, 0.5, abs(fract(length(local) * 6.0) - 0.5));
-    shown = vec4(colour * light, fade * (0.42 + 0.22 * rings));
+    float heat = force * pressed;
+    shown = vec4(mix(colour, hot, heat) * light, fade * mix(0.42 + 0.22 * rings, 0.85, heat));
   }
 `;
+
+const kWide = 0.28; // of the patch, where a press shows (judgement)
+const kFirm = 2; // N, that colour it by 63 %
 
 export class Surface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   shown = true;
   private readonly place = new Vector3();
+  private readonly proxy = new Vector3(); // in the patch's units
   private some = false; // a surface without vertices says that nothing is near
 
   constructor() {
@@ -42,7 +54,10 @@ export class Surface {
       glslVersion: GLSL3,
       vertexShader: kVertex,
       fragmentShader: kFragment,
-      uniforms: { colour: { value: [0, 0, 0] } },
+      uniforms: {
+        colour: { value: [0, 0, 0] }, hot: { value: [0, 0, 0] }, force: { value: 0 },
+        proxy: { value: this.proxy }, wide: { value: kWide },
+      },
       side: DoubleSide,
       transparent: true,
       depthWrite: false,
@@ -55,6 +70,7 @@ export class Surface {
 
   retint(): void {
     this.mesh.material.uniforms["colour"]!.value = screenColour("--disk");
+    this.mesh.material.uniforms["hot"]!.value = screenColour("--force");
   }
 
   take(message: SurfaceMessage): void {
@@ -66,6 +82,12 @@ export class Surface {
     geometry.setIndex(new BufferAttribute(message.triangles, 1));
     this.place.set(...message.centre);
     this.mesh.scale.setScalar(Math.max(message.extent, 1e-9));
+  }
+
+  /** Colours it under the proxy by the force there. */
+  press(tool: { proxyPlace: Vector3; force: Vector3; touching: boolean }): void {
+    this.proxy.copy(tool.proxyPlace).sub(this.place).divideScalar(this.mesh.scale.x);
+    this.mesh.material.uniforms["force"]!.value = tool.touching ? 1 - Math.exp(-tool.force.length() / kFirm) : 0;
   }
 
   /** lift: towards the eye, above the points that lie in the surface, m. */

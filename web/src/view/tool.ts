@@ -19,6 +19,7 @@ const kHandPixels = 7.5;
 const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
+const kEndOn = 0.85; // cosine between the arrow and the way to the eye, from which on it is seen end on
 const kRing = 11; // pixels, the ring below a free hand
 
 function ball(material: Material, order: number): Mesh {
@@ -79,6 +80,7 @@ export class Tool {
   private readonly ringMaterial = new MeshBasicMaterial({
     side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, opacity: 0.8,
   });
+  private readonly endOnMaterial = new MeshBasicMaterial({ depthTest: false, depthWrite: false, transparent: true });
   private readonly haloMaterial = new HaloMaterial();
   private readonly hand = ball(this.handMaterial, 4);
   private readonly handGhost = ball(ghostOf(this.handMaterial, 0.7), 6);
@@ -93,6 +95,7 @@ export class Tool {
   private readonly ring = new Mesh(new RingGeometry(0.72, 1, 48), this.ringMaterial);
   private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.forceMaterial);
   private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
+  private readonly endOn = new Mesh(new RingGeometry(0.9, 1, 48), this.endOnMaterial);
   private readonly turn = new Quaternion();
   private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: not known
   private radius = 0;
@@ -102,7 +105,7 @@ export class Tool {
     this.rim.renderOrder = 2;
     this.spring.renderOrder = 4;
     this.group.add(
-      this.halo, this.disk, this.rim, this.spring, this.drop, this.ring, this.stylus, this.shaft, this.head,
+      this.halo, this.disk, this.rim, this.spring, this.drop, this.ring, this.stylus, this.shaft, this.head, this.endOn,
       this.hand, this.handGhost, this.proxy, this.proxyGhost, this.trail.line,
     );
     this.group.visible = false;
@@ -115,6 +118,7 @@ export class Tool {
     this.proxyMaterial.color.copy(colourOf("--proxy"));
     this.forceMaterial.color.copy(colourOf("--force"));
     this.forceMaterial.emissive.copy(colourOf("--force"));
+    this.endOnMaterial.color.copy(colourOf("--force"));
     this.diskMaterial.color.copy(colourOf("--disk"));
     this.rimMaterial.color.copy(colourOf("--disk"));
     this.springMaterial.color.copy(hand);
@@ -163,7 +167,7 @@ export class Tool {
     place(this.spring, this.hipPlace, this.proxyPlace, pixel, 2 * pixel);
     this.placeDrop(pixel);
     this.placeStylus(kStylus * pixel, pixel);
-    this.placeArrow(proxySize, pixel, perNewton);
+    this.placeArrow(proxySize, pixel, perNewton, towards.normalize());
   }
 
   private placeDisk(size: number, towards: Vector3): void {
@@ -207,11 +211,13 @@ export class Tool {
     this.stylus.scale.set(3.5 * pixel, length, 3.5 * pixel);
   }
 
-  private placeArrow(start: number, pixel: number, perNewton: number): void {
+  /** Where it points at the eye or away, a ring shows its length. */
+  private placeArrow(start: number, pixel: number, perNewton: number, towards: Vector3): void {
     const size = this.force.length();
     const shown = size > kLeastForce;
     this.shaft.visible = shown;
     this.head.visible = shown;
+    this.endOn.visible = false;
     if (!shown) return;
     const along = this.force.clone().divideScalar(size);
     const length = Math.min(Math.max(size * perNewton, 10 * pixel), kLongest * pixel);
@@ -222,6 +228,10 @@ export class Tool {
     this.shaft.scale.set(2.8 * pixel, shaftLength, 2.8 * pixel);
     this.head.position.copy(this.proxyPlace).addScaledVector(along, start + length - headLength / 2);
     this.head.quaternion.copy(this.shaft.quaternion);
+    this.endOn.visible = Math.abs(along.dot(towards)) > kEndOn;
+    this.endOn.position.copy(this.proxyPlace);
+    this.endOn.quaternion.setFromUnitVectors(kForward, towards);
+    this.endOn.scale.setScalar(start + 0.5 * length);
     this.head.scale.set(headLength * 0.45, headLength, headLength * 0.45);
   }
 }

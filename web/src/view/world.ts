@@ -1,17 +1,18 @@
 // Everything that is drawn, and what of it is shown.
 
 import {
-  Line, Mesh, Points, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
+  Line, Mesh, Points, Quaternion, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
 } from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
 import type { SourceReport, Welcome } from "../protocol/messages";
 import { recall, remember } from "../model/memory";
-import { boundsOf, samplePlaces, type Bounds } from "./bounds";
+import { boundsOf, heightsOf, samplesOf, type Sample } from "./bounds";
 import { Cloud, type Colouring } from "./cloud";
 import { rampTexture } from "./colours";
 import { Frustum } from "./frustum";
 import type { Graphics } from "./graphics";
-import { firstDirection, Navigation } from "./navigation";
+import { firstDirection } from "./first_view";
+import { Navigation } from "./navigation";
 import { nearestTo, surfaceAlong, type Seen } from "./pick";
 import { scaleBar, type ScaleBar } from "./scale_bar";
 import { Stage } from "./stage";
@@ -28,7 +29,6 @@ export interface Look {
   trail: boolean;
 }
 
-const kSettling = 3000; // ms
 const kClose = 12; // support radii
 const kDropInterval = 100; // ms between two searches for what a tool hovers above
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
@@ -47,23 +47,23 @@ export class World {
   look: Look = { ...kFirstLook };
   followed: number | undefined; // device
   private upKey = ""; // of what was chosen in place of what the program says
+  known = false; // is there anything to see, and a place to see it from?
   dragging = false; // a hand that is dragged against the picture: the eye stands still
   clouds: Cloud[] = [];
   tools: Tool[] = [];
   visible: boolean[] = [];
   private surfaces: Surface[] = [];
   private frusta: Frustum[] = [];
-  private places: Vector3[][] = [];
-  private cameras: Vector3[] = [];
+  private samples: Sample[][] = [];
+  private cameras: Vector3[] = []; // directions that lead back to them
   private eye: Vector3[] = []; // where it begins, if the program says so
-  private bounds: Bounds | undefined;
   private readonly ramps = rampTexture();
   readonly heights = new Vector2(0, 1); // along up, low and high, m
   private radius = 0.5;
   private time = NaN;
-  private framed = false;
+  private changes = 0; // of what clouds look like
+  private framedBy = -1; // what was known of the scene when it was framed; less than now: once more
   private heard = false; // of the sources: where cameras are
-  private begun = 0;
   private before = 0;
   private dropped = 0;
 
@@ -83,24 +83,27 @@ export class World {
   /** What was there before goes, unless it is the same scene come back. */
   begin(welcome: Welcome, again: boolean): void {
     this.clear();
+    this.changes += 1;
     this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
     const chosen = recall<unknown>(this.upKey, undefined);
     this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
     this.radius = welcome.radius;
-    this.bounds = undefined;
     this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
     this.navigation.setUp(this.up);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
     this.tools = welcome.devices.map((_, i) => new Tool(i));
     this.surfaces = welcome.devices.map(() => new Surface());
-    this.places = welcome.sources.map(() => []);
+    this.samples = welcome.sources.map(() => []);
     this.visible = welcome.sources.map(() => true);
-    this.stage.scene.add(...this.objects());
-    this.framed = again && this.framed;
+    for (const object of this.objects()) this.stage.scene.add(object); // add() takes no empty list
     this.heard = false;
-    this.begun = performance.now();
-    if (!this.framed) this.fit();
+    this.known = true;
+    if (!again) {
+      this.framedBy = -1;
+      this.navigation.touched = false;
+    }
+    if (this.framedBy < 0) this.fit();
     this.stage.request();
   }
 
@@ -114,9 +117,10 @@ export class World {
     const cloud = this.clouds[message.source];
     if (cloud === undefined) return;
     cloud.take(message);
-    this.places[message.source] = samplePlaces(message);
-    this.bounds = boundsOf(this.places.flat(), this.up);
-    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    this.changes += 1;
+    if (this.samples.flat().length === 0) this.navigation.touched = false; // by a press before there was something
+    this.samples[message.source] = samplesOf(message);
+    this.measureHeights();
     this.settle();
     this.stage.request();
   }
@@ -132,16 +136,16 @@ export class World {
       const cloud = this.clouds[i];
       if (cloud !== undefined) cloud.whole = report.points ?? 0;
     });
-    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(...pose.position)] : []));
+    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(0, 0, -1).applyQuaternion(new Quaternion(...pose.quaternion))] : []));
     this.heard = true;
     this.settle();
     this.stage.request();
   }
 
   fit(): void {
-    const nothing = { places: [], centre: new Vector3(), radius: this.radius, heights: this.heights };
-    const bounds = this.bounds ?? nothing;
-    this.navigation.frame(bounds, firstDirection(this.up, this.cameras.length > 0 ? this.cameras : this.eye, bounds.centre));
+    const bounds = boundsOf(this.samples.flat()) ?? { samples: [], centre: new Vector3(), radius: this.radius };
+    const towards = this.cameras.length > 0 ? this.cameras : this.eye.map((place) => place.clone().sub(bounds.centre));
+    this.navigation.frame(bounds, firstDirection(this.up, towards, bounds));
   }
 
   /** The next of the six axes is up, here and when this scene is seen again. */
@@ -150,8 +154,8 @@ export class World {
     this.up.copy(kAxes[(at + 1) % kAxes.length]!);
     remember(this.upKey, this.up.toArray());
     this.navigation.setUp(this.up);
-    this.bounds = boundsOf(this.places.flat(), this.up);
-    if (this.bounds !== undefined) this.heights.copy(this.bounds.heights);
+    this.changes += 1;
+    this.measureHeights();
     this.fit();
   }
 
@@ -165,6 +169,7 @@ export class World {
   }
 
   retint(): void {
+    this.changes += 1;
     this.stage.retint();
     for (const each of [...this.clouds, ...this.frusta, ...this.tools, ...this.surfaces]) each.retint();
   }
@@ -179,11 +184,6 @@ export class World {
     return scaleBar(this.stage.pixelAt(this.navigation.controls.target), this.stage.canvas.clientWidth);
   }
 
-  /** Is there anything to see, and a place to see it from? */
-  get known(): boolean {
-    return this.begun > 0;
-  }
-
   /** What is asked for; where no cloud knows it, what tells several sources apart, or height. */
   get colouring(): Colouring {
     const { colouring } = this.look;
@@ -191,12 +191,17 @@ export class World {
     return colouring === "own" && this.clouds.length > 1 ? "source" : "height";
   }
 
-  /** The first place of the eye: gets better until all is known or somebody takes it. */
+  /** The first place of the eye: gets better with each source that is known, until somebody takes it. */
   private settle(): void {
-    if (this.framed) return;
-    const known = this.heard && this.places.every((places) => places.length > 0);
-    this.framed = known || this.navigation.touched || performance.now() - this.begun > kSettling;
+    const known = this.samples.filter((samples) => samples.length > 0).length + (this.heard ? 1 : 0);
+    if (known <= this.framedBy) return;
+    this.framedBy = known;
     if (!this.navigation.touched) this.fit();
+  }
+
+  private measureHeights(): void {
+    const samples = this.samples.flat();
+    if (samples.length > 1) this.heights.copy(heightsOf(samples, this.up));
   }
 
   private update(now: number): void {
@@ -213,13 +218,17 @@ export class World {
       cloud.shade(colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
       cloud.scale(look.pointSize, stage.pixelScale);
     });
+    // Whatever else is asked for, the eye and what clouds are made of decide what they look like.
+    stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.pointSize, look.points, ...this.visible].join();
+    stage.grain = this.lift();
     this.frusta.forEach((frustum, i) => {
       frustum.lines.visible = look.cameras && this.visible[i] === true;
     });
-    for (const surface of this.surfaces) {
+    this.surfaces.forEach((surface, i) => {
       surface.shown = look.surface;
+      surface.press(this.tools[i]!);
       surface.update(stage.camera.position, this.lift());
-    }
+    });
     for (const tool of this.tools) {
       tool.showSupport = look.support;
       tool.trail.line.visible = look.trail;

@@ -200,17 +200,16 @@ test("two hands are told apart, and why one is silent is said", async () => {
   await server.close();
 });
 
-test("after the watchdog it is said beside the force that the tool has to be lifted", () =>
+test("after the watchdog it is said beside the force how soft it is, and that the tool has to be lifted", () =>
   withPage(kSmall, async (page, program) => {
     program.servo.exploring = () => [0.05, 0.1, -0.004];
     await until("in contact", () => program.servo.contact !== undefined);
     program.servo.starting = true;
-    await page.waitForTimeout(300);
-    assert.equal(await text(page, "#lift"), "", "nothing to who does not hold it");
+    await until("said", async () => /^soft: \d+ %$/.test(await text(page, "#lift")));
     await page.focus("#view");
     await page.keyboard.press("t");
-    await until("said", async () => (await text(page, "#lift")) === "lift the tool to feel full force again");
-    await page.keyboard.press("Escape");
+    await until("said", async () => /^soft: \d+ %; lift the tool to feel full force again$/.test(await text(page, "#lift")));
+    program.servo.starting = false;
     await until("gone", async () => (await text(page, "#lift")) === "");
   }));
 

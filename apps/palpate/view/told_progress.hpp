@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::app {
+
+/// Tells pages how far something is, once for each percent.
+class ToldProgress {
+ public:
+  /// `share`: as Viewer::progress() takes it.
+  void show(Viewer& viewer, const std::string& what, double share) {
+    // What is at its end is told as 100 % only then.
+    const double percent = std::floor(100 * share);
+    if (percent == percent_ && (what == what_ || percent == 100)) return;
+    percent_ = percent;
+    what_ = what;
+    viewer.progress(what, percent / 100);
+  }
+
+ private:
+  std::string what_;
+  double percent_ = 100;
+};
+
+}  // namespace palpate::app

@@ -1,0 +1,80 @@
+// Serves a page that says how far the clouds of a run are read.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/palpate/cli/process.hpp"
+#include "apps/palpate/view/address.hpp"
+#include "apps/palpate/view/told_progress.hpp"
+#include "apps/palpate/view/view.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::app {
+namespace {
+
+std::string name_of(const TouchPlan& plan) {
+  return plan.sources.empty() ? "" : plan.sources.front().argument.name;
+}
+
+}  // namespace
+
+struct WaitingPage::Parts {
+  Parts(const TouchPlan& run, std::chrono::milliseconds patience)
+      : page(run.page),
+        scene_name(name_of(run)),
+        opens_at(std::chrono::steady_clock::now() + patience) {}
+
+  void open() {
+    ViewerOptions options;
+    if (!page.address.empty()) options.address = page.address;
+    options.port = page.port;
+    options.scene = scene_name;
+    viewer.emplace(scene, std::vector<Servo*>{}, options);
+    const std::string url = viewer->url();
+    tell_page(url, page.address);
+    if (page.open_browser) browser.emplace(url);
+    page.open_browser = false;
+    page.port = viewer->port();
+    page.token = url.substr(url.find('#') + 1);
+  }
+
+  void tell(const std::string& name, double share) {
+    if (!page.served || std::chrono::steady_clock::now() < opens_at) return;
+    if (!viewer) open();
+    told.show(*viewer, share < 1 ? "reading " + name : "preparing " + name, share < 1 ? share : 0);
+  }
+
+  PagePlan page;
+  std::string scene_name;
+  std::chrono::steady_clock::time_point opens_at;
+  Scene scene;  // without a source yet
+  ToldProgress told;
+  std::optional<Browser> browser;
+  std::optional<Viewer> viewer;  // last: it uses the scene
+};
+
+WaitingPage::WaitingPage(const TouchPlan& plan, std::chrono::milliseconds patience)
+    : parts_(std::make_unique<Parts>(plan, patience)) {}
+
+WaitingPage::~WaitingPage() = default;
+
+TouchPlan WaitingPage::watching(TouchPlan plan) {
+  for (SourcePlan& source : plan.sources) {
+    source.reading.progress = [parts = parts_.get(), name = source.argument.name](double share) {
+      parts->tell(name, share);
+    };
+  }
+  return plan;
+}
+
+PagePlan WaitingPage::end() {
+  if (parts_->viewer) parts_->viewer->restarts("the run begins");
+  parts_->viewer.reset();
+  return parts_->page;
+}
+
+}  // namespace palpate::app

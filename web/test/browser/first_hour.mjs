@@ -1,0 +1,69 @@
+// What a person meets in the first hour.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { serve } from "../fake_server.mjs";
+import { openPage, until } from "./browser.mjs";
+import { browser, kSmall, ready, text, withPage } from "./with_page.mjs";
+
+test("work under way has one notice that stays, with a percentage, until it is done", () =>
+  withPage(kSmall, async (page, program) => {
+    const tell = (words, share) => program.tell({ type: "notice", level: "info", text: words, share });
+    tell("reading survey.laz", 0);
+    await until("no share yet", async () => /reading survey.laz\s*…/.test(await text(page, "#notices")));
+    tell("reading survey.laz", 0.42);
+    await until("a share", async () => /reading survey.laz\s*42 %/.test(await text(page, "#notices")));
+    for (const words of ["one", "two", "three"]) program.tell({ type: "notice", level: "info", text: words });
+    await until("three others", async () => /three/.test(await text(page, "#notices")));
+    assert.match(await text(page, "#notices"), /reading survey/, "others do not push it out");
+    tell("preparing survey.laz", 0.1);
+    await until("another", async () => /preparing survey.laz\s*10 %/.test(await text(page, "#notices")));
+    assert.doesNotMatch(await text(page, "#notices"), /reading/, "one at a time");
+    tell("preparing survey.laz", 1);
+    await until("gone", async () => !/preparing/.test(await text(page, "#notices")));
+  }));
+
+test("while nothing of a cloud changes, its points are drawn once", async () => {
+  const server = await serve({ points: 4000, still: true });
+  const page = await openPage(browser, server.address, kSmall, () => {
+    window.pointsDrawn = 0;
+    window.drawn = 0;
+    const draw = window.WebGL2RenderingContext.prototype.drawArrays;
+    window.WebGL2RenderingContext.prototype.drawArrays = function (mode, ...rest) {
+      if (mode === this.POINTS) window.pointsDrawn += 1;
+      return draw.call(this, mode, ...rest);
+    };
+    const elements = window.WebGL2RenderingContext.prototype.drawElements;
+    window.WebGL2RenderingContext.prototype.drawElements = function (...rest) {
+      window.drawn += 1;
+      return elements.apply(this, rest);
+    };
+  });
+  await ready(page);
+  const counts = () => page.evaluate(() => ({ points: window.pointsDrawn, others: window.drawn }));
+  let settled = await counts();
+  await until("the picture is settled", async () => {
+    const before = settled;
+    await page.waitForTimeout(1000);
+    settled = await counts();
+    return settled.points > 0 && settled.points === before.points;
+  });
+  await until("the tool is drawn on", async () => (await counts()).others > settled.others + 100);
+  const { points } = await counts();
+  assert.ok(points <= settled.points + 2, `points were drawn ${points - settled.points} times more`);
+  await page.context().close();
+  await server.close();
+});
+
+test("a first visit says that the tool explores by itself, and offers to show how, until the tool is taken", () =>
+  withPage(kSmall, async (page, program) => {
+    assert.ok(await page.locator("#by-itself").isVisible());
+    assert.ok(await page.locator("#tour-offer").isVisible());
+    await page.focus("#view");
+    await page.keyboard.press("t");
+    await until("taken", () => program.servo.taken);
+    await until("no more", async () => !(await page.locator("#by-itself").isVisible()) && !(await page.locator("#tour-offer").isVisible()));
+    await page.keyboard.press("Escape");
+    await until("by itself again", () => page.locator("#by-itself").isVisible());
+    assert.ok(!(await page.locator("#tour-offer").isVisible()), "offered once");
+  }));
