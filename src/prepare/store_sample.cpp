@@ -21,8 +21,7 @@ using Layout = PointStore::Layout;
 using Key = detail::NodeKey;
 
 constexpr std::size_t kOfStore = 1 << 17;  // points, enough for a page; judgement
-// Of an airborne survey 64 places give an R of 1 % less than 256 do, 32 one of 12 % less
-// (measured).
+// Measured on an airborne survey: R is 1 % less than with 256 places, with 32 places 12 % less.
 constexpr std::size_t kStorePlaces = 64;
 constexpr std::size_t kAtPlace = 4096;  // points at a place: windows of 20 s fit in; judgement
 

@@ -87,6 +87,20 @@ Box moved(const Eigen::Isometry3d& pose, const Box& box) {
   return {center - half, center + half};
 }
 
+std::size_t points_of(std::span<const CloudBlock> blocks) {
+  std::size_t points = 0;
+  for (const CloudBlock& block : blocks) points += block.piece.positions.size();
+  return points;
+}
+
+/// Takes out cubes without points that no tool may need soon.
+void drop_empty(std::span<const Range> ranges, std::vector<CloudBlock>& blocks) {
+  std::erase_if(blocks, [&](const CloudBlock& block) {
+    return block.key.level == 0 && block.piece.positions.empty() &&
+           std::ranges::none_of(ranges, [&](const Range& range) { return range.has(block.key); });
+  });
+}
+
 class StoreBlocks final : public BlockSupply {
  public:
   StoreBlocks(const std::shared_ptr<const PointStore>& store, const PrepareOptions& options,
@@ -202,20 +216,6 @@ class StoreBlocks final : public BlockSupply {
       range.last[k] = static_cast<std::int32_t>(std::floor(at + reach));
     }
     return range;
-  }
-
-  static std::size_t points_of(std::span<const CloudBlock> blocks) {
-    std::size_t points = 0;
-    for (const CloudBlock& block : blocks) points += block.piece.positions.size();
-    return points;
-  }
-
-  /// Takes out cubes without points that no tool may need soon.
-  static void drop_empty(std::span<const Range> ranges, std::vector<CloudBlock>& blocks) {
-    std::erase_if(blocks, [&](const CloudBlock& block) {
-      return block.key.level == 0 && block.piece.positions.empty() &&
-             std::ranges::none_of(ranges, [&](const Range& range) { return range.has(block.key); });
-    });
   }
 
   /// Takes out the farthest blocks that are not near. A tool high above the points of its cube

@@ -206,7 +206,7 @@ Vector3d Guard::Inside::start(const Guard::Input& input, const Vector3d& force) 
 double Guard::Inside::affordable_gain(const Guard::Input& input) const noexcept {
   if (options_.soft_start == 0) return 1;
   const double risen = gain_ + input.dt / options_.soft_start;
-  if (input.normal.isZero(0) || !options_.soft_start_paid) return risen;
+  if (input.normal.isZero(0)) return risen;
   const double whole = stored(input.force, input.stiffness);
   const double put_in = -passivity_.energy();
   return put_in < risen * whole ? put_in / whole : risen;

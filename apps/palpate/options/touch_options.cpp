@@ -98,8 +98,7 @@ void add_trajectory_options(OptionTable& table, MotionPlan& motion) {
       .only_for({&RunFacts::trajectory, "needs --trajectory"});
   table
       .add_flag("--compare", motion.reading.forces,
-                "compare forces with those that the trajectory holds in columns fx,fy,fz (N, on "
-                "the hand)")
+                "compare forces with the trajectory's columns fx,fy,fz (N, on the hand)")
       .only_for(
           {&RunFacts::played, "needs --trajectory, played by --device scripted in simulated time"});
 }

@@ -62,10 +62,10 @@ void members(auto f, GuardOptions::Passivity& o) {
   f({"on", "mass", "memory", "forget", "delay"}, on, mass, memory, forget, delay);
 }
 void members(auto f, GuardOptions& o) {
-  auto& [on, force, slew, damping, silence, start, paid, share, passivity] = o;
-  f({"on", "maximum_force", "slew", "damping", "silence", "soft_start", "soft_start_paid",
-     "stiffness_share", "passivity"},
-    on, force, slew, damping, silence, start, paid, share, passivity);
+  auto& [on, force, slew, damping, silence, start, share, passivity] = o;
+  f({"on", "maximum_force", "slew", "damping", "silence", "soft_start", "stiffness_share",
+     "passivity"},
+    on, force, slew, damping, silence, start, share, passivity);
 }
 void members(auto f, Workspace& o) {
   auto& [pose, scale] = o;

@@ -178,7 +178,8 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   const bool usual = !run.time.own_watchdog;
   if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
   if (usual && hand.guide) options.guard.silence = std::numeric_limits<double>::infinity();
-  options.guard.soft_start_paid = !hand.guide;
+  // Nobody can be thrown by a page, and a hand that rests in contact would pay for no more force.
+  if (hand.guide) options.guard.soft_start = 0;
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

@@ -46,9 +46,6 @@ struct GuardOptions {
   double damping = 1;       ///< B of a damper between surface and hand, in contact, N s/m; 0: none
   double silence = 5e-3;    ///< steps further apart than this trip the watchdog, s; infinite: none
   double soft_start = 0.5;  ///< s in which forces come up after a start; 0: at once
-  /// In contact forces come up no further than the hand pays for. False for a hand that is only
-  /// simulated, as a mouse's is: nobody can be thrown, and a hand at rest would stay soft.
-  bool soft_start_paid = true;
   double stiffness_share = 0.8;  ///< most stiffness, as a share of the passive one; infinite: any
   Passivity passivity = {};
 };
@@ -64,7 +61,7 @@ struct GuardOptions {
 ///     bowl, where the proxy's path is shorter than the hand's, by that share). It never makes the
 ///     surface attract.
 ///  4. Soft start: the force comes up from zero while nothing is touched; in contact only as far as
-///     the hand has paid for (soft_start_paid), since a spring that grows stiffer while stretched gives energy.
+///     the hand has paid for, since a spring that grows stiffer while stretched gives energy.
 ///  5. Slew of unexplained changes: |F - F_before| <= K |h - h_before| + B |v - v_before| + S dt.
 ///     What the hand does itself is never delayed; pops of a new cloud, edges, switching on are.
 ///     What fades in the air goes with the hand, K |h - h_before|, once it gives more than was

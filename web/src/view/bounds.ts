@@ -1,4 +1,4 @@
-// Where there is something to see, from a few points of each cloud: the densest nine tenths of them.
+// Where there is something to see, from a few points of each cloud: the densest eight tenths of them.
 
 import { Vector2, Vector3 } from "three";
 import { decodeOctahedral } from "../protocol/octahedral";
