@@ -92,18 +92,6 @@ TEST(Guard, ComesUpSoftlyWhileNothingIsTouched) {
   EXPECT_FALSE(has(guard.state().notes, GuardNote::starting));
 }
 
-TEST(Guard, ASimulatedHandThatRestsInContactFeelsTheWholeForceAfterTheSoftStart) {
-  GuardOptions options = plain();
-  options.soft_start = 0.5;
-  options.soft_start_paid = false;
-  Guard guard(options);
-  Vector3d force;
-  for (int i = 0; i < 250; ++i) force = guard.pass(touching({0, 0, 2}, {0, 0, 0}));
-  EXPECT_NEAR(force.z(), 1, 0.01);
-  for (int i = 0; i < 251; ++i) force = guard.pass(touching({0, 0, 2}, {0, 0, 0}));
-  EXPECT_EQ(force.z(), 2);
-}
-
 TEST(Guard, StartsSoftlyAgainAfterWhatWasNotFelt) {
   GuardOptions options = plain();
   options.soft_start = 0.1;
