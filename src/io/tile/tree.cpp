@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <ranges>
 
 namespace palpate::io::tile {
 namespace {
@@ -52,10 +51,16 @@ Branch Tree::grow(const Cell& cell, std::span<const std::byte> records, Settled&
   std::vector<Branch> children;
   std::size_t begin = 0;
   for (unsigned i = 0; i < 8; ++i) {
-    const std::size_t end =
-        *std::ranges::partition_point(std::views::iota(begin, count), [&](std::size_t k) {
-          return child_at(numbers_of(records.data() + k * size), cell.level, bits) <= i;
-        });
+    std::size_t end = begin;  // of the child's records, by halving what is left
+    for (std::size_t beyond = count; end < beyond;) {
+      const std::size_t middle = end + (beyond - end) / 2;
+      const std::byte* const record = records.data() + middle * size;
+      if (child_at(numbers_of(record), cell.level, bits) <= i) {
+        end = middle + 1;
+      } else {
+        beyond = middle;
+      }
+    }
     if (end > begin) {
       children.push_back(
           grow(cell.child(i), records.subspan(begin * size, (end - begin) * size), settled));
