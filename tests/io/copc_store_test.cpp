@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "io/copc_bytes.hpp"
+#include "io/in_cubes.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 #include "support/folder.hpp"
@@ -68,14 +69,7 @@ TEST(CopcStore, OfARealSurveyLiesInItsCubes) {
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA names no folder with the real data";
   const std::string path = (std::filesystem::path(data) / "pdal_small/lone-star.copc.laz").string();
   expect_whole(path, 1);
-  const auto store = open_store(path);
-  for (std::size_t k = 0; k < store->layout().nodes.size(); ++k) {
-    Box box = store->layout().box(k);
-    box.lower.array() -= 1e-3;  // coordinates are rounded
-    box.upper.array() += 1e-3;
-    const PointCloud node = store->read(k);
-    for (std::size_t i = 0; i < node.size(); ++i) ASSERT_TRUE(box.contains(node.point(i)));
-  }
+  test::expect_in_cubes(*open_store(path));
 }
 
 TEST(CopcStore, WhoseRootHasNoPointsHasColumnsAllTheSame) {

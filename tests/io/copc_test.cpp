@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "io/copc_bytes.hpp"
+#include "io/in_cubes.hpp"
 
 namespace palpate {
 namespace {
@@ -155,14 +156,7 @@ TEST(Copc, PointsOfARealFileLieInTheCubesOfTheirNodes) {
   ASSERT_TRUE(copc);
   EXPECT_GT(copc->nodes.size(), 1u);
   expect_all_points(bytes, *copc);
-  const auto store = open_store(path.string(), 1);
-  for (std::size_t k = 0; k < store->layout().nodes.size(); ++k) {
-    Box box = store->layout().box(k);
-    box.lower.array() -= 1e-3;  // coordinates are rounded
-    box.upper.array() += 1e-3;
-    const PointCloud node = store->read(k);
-    for (std::size_t i = 0; i < node.size(); ++i) ASSERT_TRUE(box.contains(node.point(i)));
-  }
+  test::expect_in_cubes(*open_store(path.string(), 1));
 }
 
 }  // namespace

@@ -26,27 +26,25 @@ PointCloud in_file(PointCloud cloud, const Eigen::Isometry3d& T_world_file) {
   return cloud;
 }
 
-void tell(const Source& source, const std::exception_ptr& problem) {
-  try {
-    std::rethrow_exception(problem);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", without_controls(missing_part(source, error)));
-  }
+void tell(const std::string& problem) {
+  fmt::print(stderr, "{}\n", without_controls(problem));
 }
 
 const Source& first_surface(Scene& scene, LoadedSource& result) {
   Source& source = scene.add(result.plan.argument.name, result.plan.options);
   const auto is_empty = [&] { return !source.points() || source.points()->size() == 0; };
-  std::vector<std::exception_ptr> problems;
+  std::exception_ptr first;
+  std::vector<std::string> problems;
   for (bool more = true; more && is_empty();) {
     try {
       more = result.on_demand->advance(source, 0);
-    } catch (const std::exception&) {
-      problems.push_back(std::current_exception());
+    } catch (const std::exception& error) {
+      if (!first) first = std::current_exception();
+      problems.push_back(missing_part(source, error));
     }
   }
-  if (is_empty() && !problems.empty()) std::rethrow_exception(problems.front());
-  for (const std::exception_ptr& problem : problems) tell(source, problem);
+  if (is_empty() && first) std::rethrow_exception(first);
+  for (const std::string& problem : problems) tell(problem);
   return source;
 }
 
@@ -77,8 +75,8 @@ std::string missing_part(const Source& source, const std::exception& error) {
 bool advance(OnDemand& cloud, Source& source, double now) {
   try {
     return cloud.advance(source, now, false);
-  } catch (const std::exception&) {
-    tell(source, std::current_exception());
+  } catch (const std::exception& error) {
+    tell(missing_part(source, error));
     return true;
   }
 }

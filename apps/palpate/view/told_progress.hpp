@@ -1,3 +1,4 @@
+// Tells pages how far reading and preparing are.
 #pragma once
 
 #include <cmath>
@@ -18,6 +19,12 @@ class ToldProgress {
     percent_ = percent;
     what_ = what;
     viewer.progress(what, percent / 100);
+  }
+
+  /// The same of a cloud that is read up to `share`, and prepared from 1 on.
+  void show_cloud(Viewer& viewer, const std::string& name, double share) {
+    const bool reads = share < 1;
+    show(viewer, (reads ? "reading " : "preparing ") + name, reads ? share : 0);
   }
 
  private:

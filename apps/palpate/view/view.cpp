@@ -201,9 +201,7 @@ struct View::Parts {
       opened.show(viewer, news->name, 1);
       viewer.notice(Viewer::NoticeLevel::warning, news->problem);
     } else if (news->kind == Opening::News::Kind::prepares) {
-      const bool reads = news->share < 1;
-      opened.show(viewer, (reads ? "reading " : "preparing ") + news->name,
-                  reads ? news->share : 0);
+      opened.show_cloud(viewer, news->name, news->share);
     } else {
       viewer.record_ended();
       viewer.restarts("the program opens " + news->name);
@@ -212,12 +210,11 @@ struct View::Parts {
   }
 
   [[nodiscard]] PagePlan next_page() const {
-    const std::string url = viewer.url();
     PagePlan page = run.page;
     page.wanted = true;
     page.open_browser = false;
     page.port = viewer.port();
-    page.token = url.substr(url.find('#') + 1);
+    page.token = token_of(viewer.url());
     page.paused = servos.front()->state().paused;
     return page;
   }

@@ -39,13 +39,13 @@ struct WaitingPage::Parts {
     if (page.open_browser) browser.emplace(url);
     page.open_browser = false;
     page.port = viewer->port();
-    page.token = url.substr(url.find('#') + 1);
+    page.token = token_of(url);
   }
 
   void tell(const std::string& name, double share) {
     if (!page.served || std::chrono::steady_clock::now() < opens_at) return;
     if (!viewer) open();
-    told.show(*viewer, share < 1 ? "reading " + name : "preparing " + name, share < 1 ? share : 0);
+    told.show_cloud(*viewer, name, share);
   }
 
   PagePlan page;

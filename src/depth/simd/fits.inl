@@ -54,8 +54,8 @@ inline bool same_size(const Chunk& c, int k, const int four[kLanes]) {
   return differ == 0;
 }
 
-// Grows windows around four blocks for as long as one surface explains them. Nothing is known of a
-// window with few rows that no plane explains: growing goes on over it, but does not take it.
+// Grows windows around four blocks for as long as one surface explains them. A torn window that no
+// plane explains tells nothing: growing goes on over it, but does not take it.
 inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk& c) {
   Mask growing = ~Mask{};
   Mask good{};    // is the last size taken?
