@@ -81,8 +81,10 @@ std::string metadata_of(const Plan& plan, std::size_t hierarchy, int depth,
                         const std::string& name) {
   const Frame& frame = plan.frame;
   const Eigen::Vector3d lower = frame.place({});
-  Json attributes{
-      attribute("position", "int32", 4, list_of(lower), list_of(frame.place(plan.highest)))};
+  // Braces around one value are a list to GCC and the value itself to Clang.
+  Json attributes = Json::array();
+  attributes.push_back(
+      attribute("position", "int32", 4, list_of(lower), list_of(frame.place(plan.highest))));
   if (plan.layout.intensities) {
     attributes.push_back(attribute("intensity", "uint16", 2, Json::array({plan.intensity.low}),
                                    Json::array({plan.intensity.high})));
