@@ -50,7 +50,7 @@ void Facing::follow(const Facing& other) noexcept {
   touched_ = other.touched_;
   was_behind_ = other.was_behind_;
   if (other.now_.part_count == 0) return;
-  now_ = other.now_;
+  now_.copy(other.now_);
   remembered_ = other.remembered_;  // within what was reserved
   remembered_from_ = other.remembered_from_;
 }
@@ -76,6 +76,14 @@ void Facing::Table::clear_sheets() noexcept {
 void Facing::Table::clear() noexcept {
   part_count = 0;
   clear_sheets();
+}
+
+void Facing::Table::copy(const Table& other) noexcept {
+  std::copy_n(other.parts.begin(), other.part_count, parts.begin());
+  std::copy_n(other.sheets.begin(), other.sheet_count, sheets.begin());
+  part_count = other.part_count;
+  sheet_count = other.sheet_count;
+  slots = other.slots;
 }
 
 std::uint8_t* Facing::Table::find(const Key& key) noexcept {
@@ -138,7 +146,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
 }
 
 void Facing::list(const Points& points, const Stance& stance) noexcept {
-  std::swap(before_, now_);
+  before_.copy(now_);
   now_.clear();
   points_.clear();
   sheet_of_place_.clear();

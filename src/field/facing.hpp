@@ -126,6 +126,8 @@ class Facing {
 
     void clear_sheets() noexcept;
     void clear() noexcept;
+    /// Copies what is in use of 10 KB.
+    void copy(const Table& other) noexcept;
     /// Where the sheet is in `slots`, or would be.
     [[nodiscard]] std::uint8_t* find(const Key& key) noexcept;
   };

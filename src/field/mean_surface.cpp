@@ -55,37 +55,62 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts the children on the stack, the nearest on top: it is where a surface shows soonest.
-void push_nearest_first(CellStack& stack, const CellTest& test, std::span<const CellGrid::Cell> all,
-                        const CellGrid::Cell& cell) noexcept {
-  std::array<std::pair<float, std::uint32_t>, 8> children;
-  for (std::uint32_t k = 0; k < cell.children; ++k) {
-    const std::pair child{test.squared_distance(all[cell.first_child + k]), cell.first_child + k};
-    std::uint32_t at = k;
-    for (; at > 0 && children[at - 1] < child; --at) children[at] = children[at - 1];
-    children[at] = child;
+/// Walks the cells of a layer that come near a ball, the nearest child first: it is where a surface
+/// shows soonest.
+class NearCells {
+ public:
+  NearCells(const ActiveLayer& layer, const Ball& ball, double radius) noexcept
+      : points_(*layer.points),
+        test_(ball.center - points_.origin),
+        stack_(points_),
+        radius_(radius),
+        extra_(layer.least_radius + ball.radius) {}
+
+  [[nodiscard]] bool empty() const noexcept { return stack_.empty(); }
+  [[nodiscard]] const CellGrid::Cell& pop() noexcept { return cells()[stack_.pop()]; }
+
+  void push_children(const CellGrid::Cell& cell) noexcept {
+    std::array<std::pair<float, std::uint32_t>, 8> near;
+    std::uint32_t count = 0;
+    for (std::uint32_t i = cell.first_child; i < cell.first_child + cell.children; ++i) {
+      const std::pair child{test_.squared_distance(cells()[i]), i};
+      if (child.first > test_.squared_limit(reach(i))) continue;
+      std::uint32_t at = count++;
+      for (; at > 0 && near[at - 1] < child; --at) near[at] = near[at - 1];
+      near[at] = child;
+    }
+    for (std::uint32_t k = 0; k < count; ++k) stack_.push(near[k].second);
   }
-  for (std::uint32_t k = 0; k < cell.children; ++k) stack.push(children[k].second);
-}
+
+ private:
+  [[nodiscard]] std::span<const CellGrid::Cell> cells() const noexcept {
+    return points_.grid.cells();
+  }
+  [[nodiscard]] double reach(std::uint32_t cell) const noexcept {
+    return std::max<double>(points_.cell_reach[cell], radius_) + extra_;
+  }
+
+  const SurfacePoints& points_;
+  CellTest test_;
+  CellStack stack_;
+  double radius_;  // R of all points, m; 0: each has its own
+  double extra_;   // m
+};
 
 /// The most that points of a layer can add to the weight sum anywhere in the ball. Stops at
 /// `enough` or when `visits` has run out.
 double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, const Ball& ball,
                       double radius, double enough, int& visits) noexcept {
   const SurfacePoints& points = *layer.points;
-  const CellTest test(ball.center - points.origin);
   const PointTest point_test(points, ball.center - points.origin);
   const auto ball_radius = static_cast<float>(ball.radius);
   double total = 0;
-  CellStack stack(points);
-  while (!stack.empty() && visits > 0 && total < enough) {
-    --visits;
-    const std::uint32_t index = stack.pop();
-    const CellGrid::Cell& cell = points.grid.cells()[index];
-    const double reach = std::max<double>(points.cell_reach[index], radius);
-    if (!test.near(cell, reach + layer.least_radius + ball.radius)) continue;
+  NearCells near(layer, ball, radius);
+  while (!near.empty() && visits > 0 && total < enough) {
+    const CellGrid::Cell& cell = near.pop();
     if (cell.children > 0) {
-      push_nearest_first(stack, test, points.grid.cells(), cell);
+      visits = std::max(0, visits - static_cast<int>(cell.children));
+      near.push_children(cell);
       continue;
     }
     for (std::uint32_t i = cell.begin; i < cell.end && total < enough; ++i) {

@@ -119,8 +119,13 @@ class CellTest {
 
   /// False only when the cell's box is certainly further away than `reach`, m.
   [[nodiscard]] bool near(const CellGrid::Cell& cell, double reach) const noexcept {
+    return squared_distance(cell) <= squared_limit(reach);
+  }
+
+  /// A box whose squared_distance() is above this is certainly further away than `reach`, m^2.
+  [[nodiscard]] float squared_limit(double reach) const noexcept {
     const float limit = static_cast<float>(reach) * (1 + 1e-6f) + slack_;
-    return squared_distance(cell) <= limit * limit;
+    return limit * limit;
   }
 
   /// To the cell's box, rounded, m^2.
@@ -153,10 +158,14 @@ class PointTest {
 
   /// True only when the i-th point is certainly further away than `reach`, m, at any time.
   [[nodiscard]] bool far(std::uint32_t i, float reach) const noexcept {
-    const Eigen::Vector3f from = starts_[i] - x_;
-    const Eigen::Vector3f way = ends_[i] - starts_[i];
-    const float limit = (reach + 0.5f * std::sqrt(way.squaredNorm())) * (1 + 1e-5f) + slack_;
-    return (from + 0.5f * way).squaredNorm() > limit * limit;
+    Eigen::Vector3f from = starts_[i] - x_;
+    if (ends_ != starts_) {
+      const Eigen::Vector3f way = ends_[i] - starts_[i];
+      from += 0.5f * way;
+      reach += 0.5f * std::sqrt(way.squaredNorm());
+    }
+    const float limit = reach * (1 + 1e-5f) + slack_;
+    return from.squaredNorm() > limit * limit;
   }
 
  private:
