@@ -183,13 +183,16 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
 std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                         Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
-  std::optional<SurfacePoint> at;
+  std::optional<SurfacePoint> at = project(probe, position_, here);
   const bool changed = probe.traits().revision != revision_;
   if (!cut_short_ && surface_moved(probe, here, normal_, changed)) {
-    at = reanchor(probe, position_, normal_);
-    if (at) contact.notes |= ContactNote::reanchored;
+    const std::optional<SurfacePoint> moved =
+        at && is_same_place(*at, position_, normal_) ? at : reanchor(probe, position_, normal_);
+    if (moved) {
+      at = moved;
+      contact.notes |= ContactNote::reanchored;
+    }
   }
-  if (!at) at = project(probe, position_, here);
   if (!at) at = recover(probe, position_, normal_);
   cut_short_ = false;
   if (at || !(here.value > 0)) return at;

@@ -225,6 +225,12 @@ bool surface_moved(const Probe& probe, const Sample& here, const Eigen::Vector3d
   return changed && *distance > kSunk * radius;
 }
 
+bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
+                   const Eigen::Vector3d& normal) noexcept {
+  return found.normal.dot(normal) > kSameWay &&
+         (found.position - position).norm() <= kStep * found.radius;
+}
+
 std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
                                      const Eigen::Vector3d& normal) noexcept {
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * probe.step_length());

@@ -45,6 +45,11 @@ struct Slide {
 [[nodiscard]] bool surface_moved(const Probe& probe, const Sample& here,
                                  const Eigen::Vector3d& normal, bool changed) noexcept;
 
+/// Is a place that Newton found the one that the proxy touched, on a surface that has moved a
+/// little (R / 4), or does it need a look from above?
+[[nodiscard]] bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
+                                 const Eigen::Vector3d& normal) noexcept;
+
 /// Looks for the surface from above, along the last normal, within the field's re-anchor reach (at
 /// least R / 2). Empty when there is none that faces the same way.
 [[nodiscard]] std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
