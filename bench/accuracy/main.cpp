@@ -110,7 +110,9 @@ int run(Arguments& arguments) {
   if (contenders.empty()) throw palpate::Error("no column matches --field; try balanced or paper");
   if (!arguments.recorded.folder.empty()) {
     arguments.recorded.seed = arguments.bench.first_seed;
-    fmt::print("{}", recorded_report(arguments.recorded, contenders));
+    std::vector<Feeler> feelers;
+    for (const Contender& contender : contenders) feelers.push_back(feeler_of(contender));
+    fmt::print("{}", recorded_report(arguments.recorded, feelers));
     return 0;
   }
   std::string scores = csv_header();

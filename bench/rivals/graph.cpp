@@ -39,6 +39,7 @@ class Graph final : public Rival {
     age_ = 0;
     T_world_sensor_ = *shown.frame->T_world_sensor;
     around_.reserve(8);
+    if (touching_) keep_edge();
     // The surface may have come over a hand in free air.
     const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
     if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
@@ -62,6 +63,14 @@ class Graph final : public Rival {
   }
 
  private:
+  // A diagonal that the new frame divides no square by becomes the nearer of its ends.
+  void keep_edge() {
+    mesh_.triangles_at(place_.begin, around_);
+    if (std::ranges::any_of(around_, [&](const auto& t) { return has(t); })) return;
+    if (place_.share > 0.5) place_.begin = place_.end;
+    place_.end = -1;
+  }
+
   // The same share of the same edge, wherever its pixels are now.
   void keep_pixel() {
     touching_ = mesh_.measured(place_.begin) && (place_.end < 0 || mesh_.measured(place_.end));
