@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "accuracy/drawn_scene.hpp"
+#include "common/wanted.hpp"
 #include "palpate/base/clock.hpp"
 #include "rivals/view.hpp"
 
@@ -31,7 +32,7 @@ Ground draw_ground(const accuracy::BenchOptions& options, std::uint64_t layout) 
   ground.layout = layout;
   ground.truth = accuracy::draw_truth_scene(layout);
   for (Row& row : accuracy::draw_rows(ground.truth, layout)) {
-    if (!accuracy::is_wanted(row.name, options.rows)) continue;
+    if (!bench::is_wanted(row.name, options.rows)) continue;
     ground.ideal.emplace_back();
     for (const Path& path : row.paths) {
       ground.ideal.back().push_back(accuracy::ideal_trace(ground.truth, path));

@@ -7,7 +7,7 @@
 namespace palpate::rivals {
 namespace {
 
-events::Felt felt(const std::vector<Step>& steps) {
+events::Felt felt_of(const std::vector<Step>& steps) {
   events::Felt felt;
   for (const Step& step : steps) {
     felt.force.push_back(step.force);
@@ -27,7 +27,7 @@ void print_events(const bench::SeedOptions& options, const std::vector<Method>& 
     const Played played = play_stream(
         {.scene = event.scene, .camera = event.camera, .hip = event.hip, .fault = event.fault},
         methods);
-    for (const auto& steps : played.steps) scores.push_back(events::score(event, felt(steps)));
+    for (const auto& steps : played.steps) scores.push_back(events::score(event, felt_of(steps)));
     return scores;
   };
   bench::print_rows(

@@ -31,18 +31,15 @@ class Graph final : public Rival {
   Graph(bool video, double scale) : video_(video), jump_(kJump * scale) {}
 
   void show(const Shown& shown) override {
-    const bool was_seen =
-        mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * last_hip_);
-    FrameMesh next(*shown.frame, jump_);
-    if (video_) next.come_from(mesh_);
-    mesh_ = std::move(next);
-    age_ = 0;
-    T_world_sensor_ = *shown.frame->T_world_sensor;
     around_.reserve(8);
+    change([&] {
+      FrameMesh next(*shown.frame, jump_);
+      if (video_) next.come_from(mesh_);
+      mesh_ = std::move(next);
+      age_ = 0;
+      T_world_sensor_ = *shown.frame->T_world_sensor;
+    });
     if (touching_) keep_edge();
-    // The surface may have come over a hand in free air.
-    const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
-    if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
   }
 
   void reset(const Vector3d& hip) override {
@@ -52,7 +49,7 @@ class Graph final : public Rival {
 
   Step step(const Vector3d& hip) override {
     age_ += kTick;
-    if (video_) mesh_.go_on(std::min(age_ / kFrame, 1.0));
+    if (video_) change([&] { mesh_.go_on(std::min(age_ / kFrame, 1.0)); });
     if (touching_) keep_pixel();
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
     const Vector3d hand = T_sensor_world * hip;
@@ -63,6 +60,16 @@ class Graph final : public Rival {
   }
 
  private:
+  // Changes the surface, which may come over a hand in free air.
+  template <class Change>
+  void change(const Change& make) {
+    const bool was_seen =
+        mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * last_hip_);
+    make();
+    const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
+    if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
+  }
+
   // A diagonal that the new frame divides no square by becomes the nearer of its ends.
   void keep_edge() {
     mesh_.triangles_at(place_.begin, around_);

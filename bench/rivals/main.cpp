@@ -13,7 +13,6 @@
 namespace {
 
 using namespace palpate::rivals;
-using palpate::NoiseKind;
 
 struct Arguments {
   CompareOptions compare;
@@ -68,12 +67,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_modes(app, arguments);
 }
 
-NoiseKind kind_of(const std::string& letter) {
-  if (letter == "none") return NoiseKind::none;
-  if (letter == "b") return NoiseKind::blurred;
-  return letter == "c" ? NoiseKind::quantised : NoiseKind::independent;
-}
-
 // All by default; where there is one frame, the graph of a video is the graph.
 std::vector<Method> chosen(const Arguments& arguments) {
   std::vector<Method> some;
@@ -111,7 +104,7 @@ int tune(Arguments& arguments) {
     CompareOptions options = arguments.compare;
     for (Method& method : options.methods) method.scale = kFactors[k];
     for (const std::string& noise : arguments.noises) {
-      options.bench.noise = kind_of(noise);
+      options.bench.noise = palpate::accuracy::noise_kind(noise);
       const Compared found = compare(options);
       for (std::size_t i = 0; i < errors.size(); ++i) {
         errors[i][k] += mean_force_error(found.scores, options.methods[i].name) /
@@ -143,7 +136,7 @@ int run(Arguments& arguments) {
   std::string times;
   fmt::print("{}\n", markdown_methods(methods));
   for (const std::string& noise : arguments.noises) {
-    arguments.compare.bench.noise = kind_of(noise);
+    arguments.compare.bench.noise = palpate::accuracy::noise_kind(noise);
     const Compared found = compare(arguments.compare);
     fmt::print("## Noise {}\n\n{}", noise, markdown_scores(found.scores, methods));
     if (ours) {

@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 
+#include "accuracy/path.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "rivals/view.hpp"
 
 namespace palpate::rivals {
 namespace {
 
-constexpr double kTick = 1e-3;   // s: the servo at 1 kHz
 constexpr double kLead = 0.002;  // s, from publishing to the start of a surface; as table B has it
 
 // The newest frame, and when it is to be felt.
@@ -36,7 +36,7 @@ Played play_stream(const Streamed& streamed, const std::vector<Method>& methods)
                          {.latency = streamed.latency, .lead = kLead});
   double spacing = 0;
   for (std::size_t i = 0; i < streamed.hip.size(); ++i) {
-    const double now = static_cast<double>(i) * kTick;
+    const double now = static_cast<double>(i) * accuracy::kTick;
     const Eigen::Vector3d& hip = streamed.hip[i];
     stream.advance(now);
     if (waiting && waiting->start <= now + 1e-9) {
