@@ -45,7 +45,7 @@ struct BenchResults {
   std::vector<Preparation> preparations;
 };
 
-/// By the letters of the benches' options: a independent, b blurred, c quantised; else none.
+/// The noise that benches call by a letter: a independent, b blurred, c quantised, else none.
 [[nodiscard]] NoiseKind noise_kind(const std::string& letter);
 
 /// The noise added to the exact depths of a frame. Each drawn layout has noise of its own.

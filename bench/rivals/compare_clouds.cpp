@@ -1,6 +1,7 @@
 // Plays methods on clouds that surfaces are hard to tell of.
 #include "any_cloud/rows.hpp"
 #include "any_cloud/score.hpp"
+#include "palpate/base/error.hpp"
 #include "rivals/method_table.hpp"
 #include "rivals/modes.hpp"
 #include "rivals/view.hpp"
@@ -57,6 +58,7 @@ void print_clouds(const bench::SeedOptions& options, const std::vector<Method>& 
     names.emplace_back(method.name);
     ways.emplace_back([&](const HostileScene& scene) { return touch(scene, method); });
   }
+  if (ways.empty()) throw Error("--methods: all of these need depth frames; name others");
   const Score refused{.lost = 100};
   for (const any_cloud::Row& row : any_cloud::all_rows()) {
     if (!bench::is_wanted(row.name, options.names)) continue;
