@@ -62,7 +62,8 @@ EOF
 ## Streams
 
 Experiments of streams_bench ([what they are](README.md#streams-what-the-definitions-leave-open-and-how-it-was-settled-here)): 30 Hz,
-640x480, in simulated time. A frame is felt 10 ms after its stamp; for methods of others it replaces the one before.
+640x480, in simulated time. A frame is felt 10 ms after its stamp; for methods of others it replaces the one before. \`video\`
+is the graph on vertices that go in straight lines from frame to frame (Cha et al. 2006-09): one frame alone has no row of it.
 
 EOF
   cat "$scratch/streams.md"
