@@ -26,6 +26,7 @@ struct Feeler {
   std::function<std::function<Trace(const Path&)>(const DepthFrame&)> shown;
 };
 
+/// Each frame in a scene of its own.
 [[nodiscard]] Feeler feeler_of(const Contender& contender);
 
 /// Flat parts of a real recording, touched in each of its frames, against planes of the frames'

@@ -59,7 +59,7 @@ void print_clouds(const bench::SeedOptions& options, const std::vector<Method>& 
     ways.emplace_back([&](const HostileScene& scene) { return touch(scene, method); });
   }
   if (ways.empty()) throw Error("--methods: all of these need depth frames; name others");
-  const Score refused{.lost = 100};
+  const Score refused{.lost = 100};  // a cloud that a method refuses is felt nowhere
   for (const any_cloud::Row& row : any_cloud::all_rows()) {
     if (!bench::is_wanted(row.name, options.names)) continue;
     std::vector<std::vector<Score>> seeds;
