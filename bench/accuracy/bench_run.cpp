@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "accuracy/drawn_scene.hpp"
+#include "common/wanted.hpp"
 
 namespace palpate::accuracy {
 namespace {
@@ -33,7 +34,7 @@ Ground ground_of(const BenchOptions& options, int i) {
     rows = make_rows(ground.truth);
   }
   for (Row& row : rows) {
-    if (!is_wanted(row.name, options.rows)) continue;
+    if (!bench::is_wanted(row.name, options.rows)) continue;
     IdealRow ideal{std::move(row), {}};
     for (const Path& path : ideal.row.paths) {
       ideal.ideal.push_back(ideal_trace(ground.truth, path));
@@ -82,10 +83,10 @@ void run_layout(const BenchOptions& options, const Ground& ground,
 
 }  // namespace
 
-bool is_wanted(const std::string& row, const std::vector<std::string>& parts) {
-  return parts.empty() || std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
-           return row.find(part) != std::string::npos;
-         });
+NoiseKind noise_kind(const std::string& letter) {
+  if (letter == "a") return NoiseKind::independent;
+  if (letter == "b") return NoiseKind::blurred;
+  return letter == "c" ? NoiseKind::quantised : NoiseKind::none;
 }
 
 SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,

@@ -45,8 +45,8 @@ struct BenchResults {
   std::vector<Preparation> preparations;
 };
 
-/// Does the row's name hold one of these parts, or are there none?
-[[nodiscard]] bool is_wanted(const std::string& row, const std::vector<std::string>& parts);
+/// The noise that benches call by a letter: a independent, b blurred, c quantised, else none.
+[[nodiscard]] NoiseKind noise_kind(const std::string& letter);
 
 /// The noise added to the exact depths of a frame. Each drawn layout has noise of its own.
 [[nodiscard]] SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,

@@ -60,12 +60,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--normal-error", arguments.prepare.normal_error, "Wanted normal error, rad");
 }
 
-palpate::NoiseKind kind_of(const std::string& letter) {
-  if (letter == "none") return palpate::NoiseKind::none;
-  if (letter == "b") return palpate::NoiseKind::blurred;
-  return letter == "c" ? palpate::NoiseKind::quantised : palpate::NoiseKind::independent;
-}
-
 std::vector<Contender> chosen(const Arguments& arguments) {
   std::vector<Contender> all = all_contenders(arguments.prepare);
   if (arguments.fields.empty()) return all;
@@ -110,12 +104,14 @@ int run(Arguments& arguments) {
   if (contenders.empty()) throw palpate::Error("no column matches --field; try balanced or paper");
   if (!arguments.recorded.folder.empty()) {
     arguments.recorded.seed = arguments.bench.first_seed;
-    fmt::print("{}", recorded_report(arguments.recorded, contenders));
+    std::vector<Feeler> feelers;
+    for (const Contender& contender : contenders) feelers.push_back(feeler_of(contender));
+    fmt::print("{}", recorded_report(arguments.recorded, feelers));
     return 0;
   }
   std::string scores = csv_header();
   for (const std::string& noise : arguments.noises) {
-    arguments.bench.noise = kind_of(noise);
+    arguments.bench.noise = noise_kind(noise);
     const BenchResults results = arguments.sweep ? run_sweep(arguments.bench, contenders)
                                                  : run_bench(arguments.bench, contenders);
     fmt::print("{}{}", heading(arguments, noise), report(arguments, results, contenders));

@@ -86,13 +86,14 @@ struct Touched {
   std::vector<double> normal, height, ripple, lost;
 };
 
-void touch(Scene& scene, const Contender& contender, const Patch& patch, double turn,
-           Touched& touched) {
+using Felt = std::function<Trace(const Path&)>;
+
+void touch(const Felt& felt, const Patch& patch, double turn, Touched& touched) {
   TruthScene truth = make_empty_scene();
   truth.solids[0] = half_space(patch.center, patch.normal, patch.normal.unitOrthogonal());
   const Path path = slide_over(truth.solids[0], turn, kLength, kDepth);
   Scorer scorer;
-  scorer.add(path, ideal_trace(truth, path), rendered_trace(scene, contender, path), truth);
+  scorer.add(path, ideal_trace(truth, path), felt(path), truth);
   const Score score = scorer.score();
   touched.normal.push_back(score.normal);
   touched.height.push_back(score.height);
@@ -146,8 +147,7 @@ struct Ways {
   int felt = 0;
 };
 
-Ways go_ways(Scene& scene, const Contender& contender, const CellGrid& grid, int ways,
-             Random& random) {
+Ways go_ways(const Felt& felt, const CellGrid& grid, int ways, Random& random) {
   std::vector<CellGrid::Neighbor> nearest;
   const auto is_free = [&](const Vector3d& x) {
     grid.nearest(x.cast<float>(), 1, nearest);
@@ -169,9 +169,8 @@ Ways go_ways(Scene& scene, const Contender& contender, const CellGrid& grid, int
       path.hip.push_back(x);
     }
     ++all.gone;
-    const Trace trace = rendered_trace(scene, contender, path);
-    const auto felt = [](const Vector3d& force) { return force.norm() > 1e-3; };
-    all.felt += std::ranges::any_of(trace.force, felt) ? 1 : 0;
+    const auto pushes = [](const Vector3d& force) { return force.norm() > 1e-3; };
+    all.felt += std::ranges::any_of(felt(path).force, pushes) ? 1 : 0;
   }
   return all;
 }
@@ -205,31 +204,36 @@ std::string plane_row(const Recording& recording) {
   return row("a plane through its pixels", touched, "");
 }
 
-// Each frame in a scene of its own.
-std::string contender_row(const Recording& recording, const RecordedOptions& options,
-                          const Contender& contender, Source::State& told) {
-  TruthScene camera;
-  camera.camera.model = recording.mean.camera;
+// Each frame by itself.
+std::string feeler_row(const Recording& recording, const RecordedOptions& options,
+                       const Feeler& feeler) {
   Touched touched;
   Random random(options.seed + 1);
   Ways all;
   for (const DepthFrame& frame : recording.frames) {
-    const auto scene = make_scene(frame, camera, contender);
+    const Felt felt = feeler.shown(frame);
     for (const Patch& patch : recording.patches) {
       if (patch_at(frame, patch.u, patch.v, patch.center.z()).pixels.empty()) continue;
-      touch(*scene, contender, patch, between(random, 0, 2 * std::numbers::pi), touched);
+      touch(felt, patch, between(random, 0, 2 * std::numbers::pi), touched);
     }
     const CellGrid grid(back_project(frame).positions);
     const int share = options.ways / static_cast<int>(recording.frames.size());
-    const Ways ways = go_ways(*scene, contender, grid, share, random);
+    const Ways ways = go_ways(felt, grid, share, random);
     all.gone += ways.gone;
     all.felt += ways.felt;
-    if (contender.organised) told = scene->source(0).state();
   }
-  return row(contender.name, touched, fmt::format("{} of {}", all.felt, all.gone));
+  return row(feeler.name, touched, fmt::format("{} of {}", all.felt, all.gone));
 }
 
-std::string noise_line(const Recording& recording, const Source::State& told) {
+std::unique_ptr<Scene> scene_of(const DepthFrame& frame, const Contender& contender) {
+  TruthScene seen;
+  seen.camera.model = frame.camera;
+  return make_scene(frame, seen, contender);
+}
+
+std::string noise_line(const Recording& recording) {
+  const auto scene = scene_of(recording.frames.back(), all_contenders().front());
+  const Source::State told = scene->source(0).state();
   if (recording.frames.size() < 2 || !(told.noise > 0)) return "";
   Noise noise;
   for (const Patch& patch : recording.patches) {
@@ -241,25 +245,28 @@ std::string noise_line(const Recording& recording, const Source::State& told) {
 
 }  // namespace
 
-std::string recorded_report(const RecordedOptions& options,
-                            const std::vector<Contender>& contenders) {
+Feeler feeler_of(const Contender& contender) {
+  return {contender.name, [contender](const DepthFrame& frame) {
+            const std::shared_ptr<Scene> scene = scene_of(frame, contender);
+            return [=](const Path& path) { return rendered_trace(*scene, contender, path); };
+          }};
+}
+
+std::string recorded_report(const RecordedOptions& options, const std::vector<Feeler>& feelers) {
   Recording recording{frames_of(options), {}, {}};
   recording.mean = average(recording.frames);
   recording.patches = flat_patches(recording.mean, options);
   std::vector<double> distances;
   for (const Patch& patch : recording.patches) distances.push_back(patch.center.z());
-  Source::State told;
   std::string rows = recording.frames.size() > 1 ? plane_row(recording) : "";
-  for (const Contender& contender : contenders) {
-    rows += contender_row(recording, options, contender, told);
-  }
+  for (const Feeler& feeler : feelers) rows += feeler_row(recording, options, feeler);
   return fmt::format(
       "{}, {} frames from {}, {} flat parts at {:.2f} m (median), seed {}. Median (worst).\n\n"
       "| | normal, degrees | height, mm | ripple, N | lost, % | ways that felt something |\n"
       "|---|---|---|---|---|---|\n{}\n{}",
       options.folder.filename().string(), recording.frames.size(), options.first,
       recording.patches.size(), spread(distances).median, options.seed, rows,
-      noise_line(recording, told));
+      noise_line(recording));
 }
 
 }  // namespace palpate::accuracy

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,20 @@ struct RecordedOptions {
   std::uint64_t seed = 1;
 };
 
+/// One way to feel a frame, whose camera is the world: gives what is felt along paths.
+struct Feeler {
+  std::string name;
+  std::function<std::function<Trace(const Path&)>(const DepthFrame&)> shown;
+};
+
+/// Each frame in a scene of its own.
+[[nodiscard]] Feeler feeler_of(const Contender& contender);
+
 /// Flat parts of a real recording, touched in each of its frames, against planes of the frames'
 /// averages; what noise is measured there and what the filter is told; and straight ways through
 /// air that is farther from all that a frame shows than 20 mm and than noise takes it. As Markdown.
 /// @throws palpate::Error when the recording has no such frames, or nothing flat.
 [[nodiscard]] std::string recorded_report(const RecordedOptions& options,
-                                          const std::vector<Contender>& contenders);
+                                          const std::vector<Feeler>& feelers);
 
 }  // namespace palpate::accuracy

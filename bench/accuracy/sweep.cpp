@@ -10,6 +10,7 @@
 
 #include "accuracy/strokes.hpp"
 #include "common/stage.hpp"
+#include "common/wanted.hpp"
 
 namespace palpate::accuracy {
 namespace {
@@ -104,7 +105,7 @@ BenchResults run_sweep(const BenchOptions& options, const std::vector<Contender>
   BenchResults out;
   const std::vector<Bin> bins = all_bins();
   for (std::size_t b = 0; b < bins.size(); ++b) {
-    if (!is_wanted(bin_name(bins[b]), options.rows)) continue;
+    if (!bench::is_wanted(bin_name(bins[b]), options.rows)) continue;
     for (int i = 0; i < options.seeds; ++i) {
       const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
       Random random(seed * 1000 + b);

@@ -243,14 +243,23 @@ Score score(const HostileScene& scene, const Rendered& rendered, const Trace& id
   return score;
 }
 
-Result run_row(const Row& row, std::uint64_t seed, const FieldOptions& field) {
+std::vector<Result> run_row(const Row& row, std::uint64_t seed, const std::vector<Touch>& ways) {
   const HostileScene scene = make_scene(row, seed);
   const Trace ideal = scene.truth ? touch_truth(scene) : Trace{};
-  try {
-    return {row.name, seed, score(scene, touch(scene, field), ideal), {}};
-  } catch (const Error& error) {
-    return {row.name, seed, std::nullopt, error.what()};
+  std::vector<Result> results;
+  for (const Touch& way : ways) {
+    try {
+      results.push_back({row.name, seed, score(scene, way(scene), ideal), {}});
+    } catch (const Error& error) {
+      results.push_back({row.name, seed, std::nullopt, error.what()});
+    }
   }
+  return results;
+}
+
+Result run_row(const Row& row, std::uint64_t seed, const FieldOptions& field) {
+  const Touch way = [&](const HostileScene& scene) { return touch(scene, field); };
+  return run_row(row, seed, std::vector{way}).front();
 }
 
 }  // namespace palpate::any_cloud

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "any_cloud/bench_run.hpp"
 
@@ -45,7 +47,12 @@ struct Result {
   std::string refusal;
 };
 
-/// Makes the scene, touches it and its truth, and compares.
+/// A way to touch a scene. @throws Error when it refuses the cloud.
+using Touch = std::function<Rendered(const HostileScene&)>;
+
+/// Makes the scene, touches it in each of these ways and its truth, and compares.
+[[nodiscard]] std::vector<Result> run_row(const Row& row, std::uint64_t seed,
+                                          const std::vector<Touch>& ways);
 [[nodiscard]] Result run_row(const Row& row, std::uint64_t seed, const FieldOptions& field = {});
 
 }  // namespace palpate::any_cloud

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "common/wanted.hpp"
 #include "palpate/base/error.hpp"
 
 /// The common part of benches' main programs: options, errors and files.
@@ -28,14 +28,6 @@ inline void add_options(CLI::App& app, SeedOptions& options) {
   app.add_option("--seeds", options.seeds, "Runs of a row")->check(CLI::Range(1, 10000));
   app.add_option("--first-seed", options.first_seed, "Seed of the first run");
   app.add_flag("--each", options.each, "A line for each seed, too");
-}
-
-/// Does the name hold one of these parts, or are there none?
-[[nodiscard]] inline bool is_wanted(const std::string& name,
-                                    const std::vector<std::string>& parts) {
-  return parts.empty() || std::ranges::any_of(parts, [&](const std::string& part) {
-           return name.find(part) != std::string::npos;
-         });
 }
 
 /// @throws Error when the file cannot be written.

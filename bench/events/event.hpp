@@ -69,6 +69,8 @@ using Row = bench::Row<Event>;
 [[nodiscard]] std::vector<Row> hostile_rows();
 /// A sensor is at fault where a hand presses.
 [[nodiscard]] std::vector<Row> fault_rows();
+/// These, one after the other.
+[[nodiscard]] std::vector<Row> all_rows();
 
 /// Forces on a hand and positions of its proxy, tick by tick.
 struct Felt {

@@ -8,14 +8,9 @@ int main(int argc, char** argv) {
   bench::SeedOptions options;
   bench::add_options(app, options);
   return bench::run_main(app, argc, argv, [&] {
-    std::vector<events::Row> rows;
-    for (const auto& some : {events::plain_rows(), events::sensor_rows(), events::hostile_rows(),
-                             events::fault_rows()}) {
-      rows.insert(rows.end(), some.begin(), some.end());
-    }
     fmt::print("{}", bench::table_head("event | runs", events::columns()));
     bench::print_rows(
-        rows, options,
+        events::all_rows(), options,
         [](const events::Event& event) { return events::score(event, events::play(event)); },
         [](const std::string& name, const std::vector<events::Score>& scores) {
           return bench::table_line(fmt::format("{} | {}", name, scores.size()), scores,

@@ -7,6 +7,10 @@ std::unique_ptr<PclCloud> make_pcl_cloud(std::span<const Eigen::Vector3f>) {
   return nullptr;
 }
 
+std::vector<Eigen::Vector3f> pcl_mls(std::span<const Eigen::Vector3f>, double) {
+  return {};
+}
+
 std::size_t pcl_pipeline(const DepthFrame&, float) {
   return 0;
 }

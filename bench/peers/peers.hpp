@@ -37,6 +37,11 @@ class PclCloud {
 /// Null in builds without PCL.
 [[nodiscard]] std::unique_ptr<PclCloud> make_pcl_cloud(std::span<const Eigen::Vector3f> points);
 
+/// The points on their own surface by MovingLeastSquares of order 2, in the input's order. Weights
+/// fall to 1/e at the radius (m), where they end. Empty in builds without PCL.
+[[nodiscard]] std::vector<Eigen::Vector3f> pcl_mls(std::span<const Eigen::Vector3f> points,
+                                                   double radius);
+
 /// The peers' pipelines that make a depth frame touchable: points, normals and an index over them,
 /// and the mean distance to the three nearest others, on one thread. Returns the number of points,
 /// 0 in builds without PCL.

@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "accuracy/drawn_scene.hpp"
+#include "common/wanted.hpp"
 #include "palpate/base/clock.hpp"
-#include "palpate/depth/depth_filter.hpp"
-#include "palpate/geometry/spacing.hpp"
+#include "rivals/view.hpp"
 
 namespace palpate::rivals {
 namespace {
@@ -32,7 +32,7 @@ Ground draw_ground(const accuracy::BenchOptions& options, std::uint64_t layout) 
   ground.layout = layout;
   ground.truth = accuracy::draw_truth_scene(layout);
   for (Row& row : accuracy::draw_rows(ground.truth, layout)) {
-    if (!accuracy::is_wanted(row.name, options.rows)) continue;
+    if (!bench::is_wanted(row.name, options.rows)) continue;
     ground.ideal.emplace_back();
     for (const Path& path : row.paths) {
       ground.ideal.back().push_back(accuracy::ideal_trace(ground.truth, path));
@@ -99,46 +99,9 @@ Compared play_layout(const CompareOptions& options, std::uint64_t layout) {
 
 }  // namespace
 
-View::View(const accuracy::TruthScene& truth, const DepthFrame& exact,
-           const SimulatedNoiseOptions& noise)
-    : frame(accuracy::noisy_frame(exact, noise)) {
-  frame.T_world_sensor = truth.camera.T_world_camera;
-  filtered = filtered_frame(frame);
-  cloud = world_cloud(frame);
-  spacing = spacing_of(cloud);
-}
-
 Trace felt(Rival& rival, const Path& path) {
   std::vector<double> ignored;
   return timed(rival, path, ignored);
-}
-
-DepthFrame filtered_frame(const DepthFrame& frame) {
-  DepthFilter filter;
-  const FilteredDepth& found = filter.filter(frame, *frame.T_world_sensor);
-  DepthFrame out;
-  out.stamp = frame.stamp;
-  out.T_world_sensor = frame.T_world_sensor;
-  const Pinhole& p = frame.camera.pinhole;
-  out.camera = {
-      found.columns, found.rows, {p.fx / 2, p.fy / 2, (p.cx - 0.5) / 2, (p.cy - 0.5) / 2}, {}};
-  out.depth.resize(found.size(), 0);
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found.states[i] != FilteredDepth::State::empty) out.depth[i] = found.positions[i].z();
-  }
-  return out;
-}
-
-PointCloud world_cloud(const DepthFrame& frame) {
-  PointCloud cloud = accuracy::back_project(frame);
-  const Eigen::Isometry3f pose = frame.T_world_sensor->cast<float>();
-  for (Eigen::Vector3f& p : cloud.positions) p = pose * p;
-  cloud.viewpoint = frame.T_world_sensor->translation();
-  return cloud;
-}
-
-double spacing_of(const PointCloud& cloud) {
-  return median(local_spacings(CellGrid(cloud.positions)));
 }
 
 Compared compare(const CompareOptions& options) {

@@ -30,30 +30,6 @@ struct Compared {
 
 [[nodiscard]] Compared compare(const CompareOptions& options);
 
-/// What methods are given of one noisy frame.
-struct View {
-  View(const accuracy::TruthScene& truth, const DepthFrame& exact,
-       const SimulatedNoiseOptions& noise);
-
-  [[nodiscard]] Shown shown(const Method& method) const {
-    return {method.filtered ? &filtered : &frame, &cloud, spacing};
-  }
-
-  DepthFrame frame;
-  DepthFrame filtered;
-  PointCloud cloud;
-  double spacing = 0;
-};
-
-/// The frame after palpate's depth filter, one pixel a block of 2x2.
-[[nodiscard]] DepthFrame filtered_frame(const DepthFrame& frame);
-
-/// The measured pixels as points of the world.
-[[nodiscard]] PointCloud world_cloud(const DepthFrame& frame);
-
-/// Median over the points of the side of the square that one has to itself, m.
-[[nodiscard]] double spacing_of(const PointCloud& cloud);
-
 /// The method's forces along a path.
 [[nodiscard]] accuracy::Trace felt(Rival& rival, const accuracy::Path& path);
 

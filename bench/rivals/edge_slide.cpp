@@ -5,6 +5,7 @@
 
 #include "accuracy/drawn_scene.hpp"
 #include "palpate/base/error.hpp"
+#include "rivals/view.hpp"
 
 namespace palpate::rivals {
 namespace {

@@ -31,17 +31,15 @@ class Graph final : public Rival {
   Graph(bool video, double scale) : video_(video), jump_(kJump * scale) {}
 
   void show(const Shown& shown) override {
-    const bool was_seen =
-        mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * last_hip_);
-    FrameMesh next(*shown.frame, jump_);
-    if (video_) next.come_from(mesh_);
-    mesh_ = std::move(next);
-    age_ = 0;
-    T_world_sensor_ = *shown.frame->T_world_sensor;
     around_.reserve(8);
-    // The surface may have come over a hand in free air.
-    const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
-    if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
+    change([&] {
+      FrameMesh next(*shown.frame, jump_);
+      if (video_) next.come_from(mesh_);
+      mesh_ = std::move(next);
+      age_ = 0;
+      T_world_sensor_ = *shown.frame->T_world_sensor;
+    });
+    if (touching_) keep_edge();
   }
 
   void reset(const Vector3d& hip) override {
@@ -51,7 +49,7 @@ class Graph final : public Rival {
 
   Step step(const Vector3d& hip) override {
     age_ += kTick;
-    if (video_) mesh_.go_on(std::min(age_ / kFrame, 1.0));
+    if (video_) change([&] { mesh_.go_on(std::min(age_ / kFrame, 1.0)); });
     if (touching_) keep_pixel();
     const Eigen::Isometry3d T_sensor_world = T_world_sensor_.inverse();
     const Vector3d hand = T_sensor_world * hip;
@@ -62,6 +60,24 @@ class Graph final : public Rival {
   }
 
  private:
+  // Changes the surface, which may come over a hand in free air.
+  template <class Change>
+  void change(const Change& make) {
+    const bool was_seen =
+        mesh_.vertices() > 0 && !mesh_.before(T_world_sensor_.inverse() * last_hip_);
+    make();
+    const Vector3d hand = T_world_sensor_.inverse() * last_hip_;
+    if (!touching_ && was_seen) begin(mesh_.before(hand), hand);
+  }
+
+  // A diagonal that the new frame divides no square by becomes the nearer of its ends.
+  void keep_edge() {
+    mesh_.triangles_at(place_.begin, around_);
+    if (std::ranges::any_of(around_, [&](const auto& t) { return has(t); })) return;
+    if (place_.share > 0.5) place_.begin = place_.end;
+    place_.end = -1;
+  }
+
   // The same share of the same edge, wherever its pixels are now.
   void keep_pixel() {
     touching_ = mesh_.measured(place_.begin) && (place_.end < 0 || mesh_.measured(place_.end));

@@ -6,14 +6,13 @@
 #include <filesystem>
 
 #include "accuracy/table.hpp"
-#include "rivals/compare_streams.hpp"
 #include "rivals/compare_table.hpp"
 #include "rivals/edge_slide.hpp"
+#include "rivals/modes.hpp"
 
 namespace {
 
 using namespace palpate::rivals;
-using palpate::NoiseKind;
 
 struct Arguments {
   CompareOptions compare;
@@ -23,8 +22,26 @@ struct Arguments {
   bool tune = false;
   bool times = false;
   bool streams = false;
-  palpate::streams::Options stream;
+  bool events = false;
+  bool clouds = false;
+  palpate::accuracy::RecordedOptions recording;
 };
+
+// What is played of a bench; one of them at a time.
+void add_modes(CLI::App& app, Arguments& arguments) {
+  auto* modes = app.add_option_group("Others' scenes instead of the drawn ones");
+  modes->require_option(0, 1);
+  modes->add_flag("--streams", arguments.streams, "Depth streams of streams_bench");
+  modes->add_flag("--events", arguments.events, "Events of events_bench");
+  modes->add_flag("--any-cloud", arguments.clouds, "Clouds of any_cloud_bench");
+  auto& recording = arguments.recording;
+  auto* folder =
+      modes->add_option("--recording", recording.folder, "Flat parts of a real recording");
+  app.add_option("--first-frame", recording.first, "Number of its first frame, from 0")
+      ->needs(folder);
+  app.add_option("--frames", recording.count, "Frames through which nothing moves")->needs(folder);
+  app.add_option("--ways", recording.ways, "Straight ways through its free air")->needs(folder);
+}
 
 void add_options(CLI::App& app, Arguments& arguments) {
   auto& bench = arguments.compare.bench;
@@ -34,9 +51,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--methods", arguments.names, "Only these")->delimiter(',');
   app.add_option("--layouts", bench.layouts, "Drawn scenes")->check(CLI::Range(1, 100000));
   app.add_option("--first-layout", bench.first_layout, "Number (seed) of the first");
-  app.add_option("--seeds", bench.seeds, "Frames of each")->check(CLI::Range(1, 1000));
-  app.add_option("--first-seed", bench.first_seed, "Seed of the first frame");
-  app.add_option("--rows", bench.rows, "Only rows whose names hold one of these")->delimiter(',');
+  app.add_option("--seeds", bench.seeds, "Frames of each, or runs of a row")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--first-seed", bench.first_seed, "Seed of the first of them");
+  app.add_option("--only", bench.rows, "Only rows whose names hold one of these")->delimiter(',');
   app.add_option("--noise", arguments.noises, "a independent, b blurred, c quantised, none")
       ->delimiter(',')
       ->check(CLI::IsMember({"a", "b", "c", "none"}));
@@ -44,29 +62,36 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 256));
   app.add_option("--out", arguments.out,
                  "Folder for scores.csv and edge.csv, which picture.py draws");
-  app.add_flag("--streams", arguments.streams, "Depth streams of table B instead");
-  app.add_option("--only", arguments.stream.names, "Of these, those whose names hold one of these")
-      ->delimiter(',');
   app.add_flag("--times", arguments.times, "Computing times, too; they differ from run to run");
   app.add_flag("--tune", arguments.tune, "Each method's length at 1/2, 1 and 2 times what it is");
-}
-
-NoiseKind kind_of(const std::string& letter) {
-  if (letter == "none") return NoiseKind::none;
-  if (letter == "b") return NoiseKind::blurred;
-  return letter == "c" ? NoiseKind::quantised : NoiseKind::independent;
+  add_modes(app, arguments);
 }
 
 // All by default; where there is one frame, the graph of a video is the graph.
-std::vector<Method> chosen(const std::vector<std::string>& names, bool streams) {
+std::vector<Method> chosen(const Arguments& arguments) {
   std::vector<Method> some;
-  if (names.empty()) {
+  if (arguments.names.empty()) {
     some = methods();
-    std::erase_if(some,
-                  [&](const Method& m) { return !streams && m.name == std::string_view("video"); });
+    const bool one_frame = !arguments.streams && !arguments.events;
+    std::erase_if(
+        some, [&](const Method& m) { return one_frame && m.name == std::string_view("video"); });
   }
-  for (const std::string& name : names) some.push_back(method_named(name));
+  for (const std::string& name : arguments.names) some.push_back(method_named(name));
   return some;
+}
+
+// Plays what another bench plays. @return false where none is named.
+bool play_others(const Arguments& arguments, std::vector<Method> methods) {
+  const auto& bench = arguments.compare.bench;
+  const palpate::bench::SeedOptions seeds{bench.rows, bench.first_seed, bench.seeds};
+  const bool recording = !arguments.recording.folder.empty();
+  if (arguments.clouds) print_clouds(seeds, methods);
+  if (recording) fmt::print("{}", markdown_recording(arguments.recording, methods));
+  // In time palpate goes the ways that these benches have.
+  std::erase_if(methods, [](const Method& m) { return *m.length == 0; });
+  if (arguments.streams) fmt::print("{}", markdown_streams(seeds, methods));
+  if (arguments.events) print_events(seeds, methods);
+  return arguments.clouds || recording || arguments.streams || arguments.events;
 }
 
 // Mean force error by factors of the length, for those that have one.
@@ -79,7 +104,7 @@ int tune(Arguments& arguments) {
     CompareOptions options = arguments.compare;
     for (Method& method : options.methods) method.scale = kFactors[k];
     for (const std::string& noise : arguments.noises) {
-      options.bench.noise = kind_of(noise);
+      options.bench.noise = palpate::accuracy::noise_kind(noise);
       const Compared found = compare(options);
       for (std::size_t i = 0; i < errors.size(); ++i) {
         errors[i][k] += mean_force_error(found.scores, options.methods[i].name) /
@@ -101,20 +126,17 @@ void write_results(const Arguments& arguments, const std::string& scores) {
 }
 
 int run(Arguments& arguments) {
-  arguments.compare.methods = chosen(arguments.names, arguments.streams);
-  if (arguments.tune) return tune(arguments);
-  if (arguments.streams) {
-    fmt::print("{}", markdown_streams(arguments.stream, arguments.compare.methods));
-    return 0;
-  }
+  arguments.compare.methods = chosen(arguments);
   const std::vector<Method>& methods = arguments.compare.methods;
+  if (arguments.tune) return tune(arguments);
+  if (play_others(arguments, methods)) return 0;
   const bool ours = std::ranges::any_of(
       methods, [](const Method& m) { return std::string_view(m.name) == "ours"; });
   std::string scores = palpate::accuracy::csv_header();
   std::string times;
   fmt::print("{}\n", markdown_methods(methods));
   for (const std::string& noise : arguments.noises) {
-    arguments.compare.bench.noise = kind_of(noise);
+    arguments.compare.bench.noise = palpate::accuracy::noise_kind(noise);
     const Compared found = compare(arguments.compare);
     fmt::print("## Noise {}\n\n{}", noise, markdown_scores(found.scores, methods));
     if (ours) {

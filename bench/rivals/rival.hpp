@@ -40,14 +40,21 @@ class Rival {
   virtual Step step(const Eigen::Vector3d& hip) = 0;
 };
 
+/// The least that a method can be given. All are shown the frame where there is one.
+enum class Needs {
+  points,
+  frame,
+  filtered_frame,  ///< the frame after palpate's depth filter
+};
+
 /// A method by its name, and what a table says of it.
 struct Method {
   const char* name;
-  const char* after;      ///< whose it is
-  const char* rule;       ///< in a few words
-  const char* length;     ///< its one free length; empty: palpate's own choice
-  double scale = 1;       ///< of that length: the best of 1/2, 1 and 2 (compare_bench --tune)
-  bool filtered = false;  ///< is given the frame after palpate's depth filter
+  const char* after;   ///< whose it is
+  const char* rule;    ///< in a few words
+  const char* length;  ///< its one free length; empty: palpate's own choice
+  double scale = 1;    ///< of that length: the best of 1/2, 1 and 2 (compare_bench --tune)
+  Needs needs = Needs::points;
   std::unique_ptr<Rival> (*make)(double scale) = nullptr;
 };
 

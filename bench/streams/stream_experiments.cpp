@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "accuracy/score.hpp"
+#include "common/wanted.hpp"
 
 namespace palpate::streams {
 namespace {
@@ -39,13 +40,7 @@ class Maker {
   template <class Make>
   void add(const std::string& name, const Frames& frames, std::vector<Contender> others,
            const Make& make) {
-    const auto named = [&](const std::string& part) {
-      return name.find(part) != std::string::npos;
-    };
-    if (!options_.names.empty() &&
-        std::none_of(options_.names.begin(), options_.names.end(), named)) {
-      return;
-    }
+    if (!bench::is_wanted(name, options_.names)) return;
     Experiment experiment{name, {}, {default_way()}};
     if (!options_.ours_alone) {
       experiment.contenders.insert(experiment.contenders.end(), others.begin(), others.end());

@@ -115,11 +115,11 @@ std::string markdown_experiment(const std::vector<Result>& results) {
       "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Result& result : results) {
     const Measures& m = result.measures;
-    text +=
-        fmt::format("| {} | {} | {:.1f} | {} ({}) | {} | {} | {} | {} +- {} | {:.1f} | {} |\n",
-                    result.contender, result.tool, m.radius, number(m.jump), number(m.jump_high),
-                    number(m.vibration), m.force > 0 ? number(m.force) : "", number(m.normal_sd),
-                    number(m.lag), number(m.lag_sd), 100 * m.contact, number(m.step));
+    text += fmt::format(
+        "| {} | {} | {} | {} ({}) | {} | {} | {} | {} +- {} | {:.1f} | {} |\n", result.contender,
+        result.tool, m.radius > 0 ? fmt::format("{:.1f}", m.radius) : "", number(m.jump),
+        number(m.jump_high), number(m.vibration), m.force > 0 ? number(m.force) : "",
+        number(m.normal_sd), number(m.lag), number(m.lag_sd), 100 * m.contact, number(m.step));
   }
   return text;
 }

@@ -165,6 +165,27 @@ TEST(Rivals, GraphEndsItsContactAboveTheSurface) {
   EXPECT_FALSE(rival->step({0.0101, 0.0103, 0.001}).touching);
 }
 
+TEST(Rivals, OnTrianglesKeepTheirContactFromFrameToFrame) {
+  Random random(11);
+  std::vector<DepthFrame> frames;
+  for (int i = 0; i < 10; ++i) {
+    frames.push_back(frame_of([&](int, int) { return 2e-5 * random.normal(); }));
+  }
+  for (const char* name : {"terrain", "shaded", "graph", "video"}) {
+    const std::unique_ptr<Rival> rival = shown(name, frames[0]);
+    for (int place = 0; place < 10; ++place) {
+      const Vector3d hand(0.05 * random.uniform(), 0.05 * random.uniform(), -0.003);
+      rival->reset({hand.x(), hand.y(), 0.01});
+      for (const DepthFrame& frame : frames) {
+        for (int tick = 0; tick < 33; ++tick) {
+          ASSERT_NEAR(rival->step(hand).force.z(), 0.003 * kStiffness, 0.1) << name << place;
+        }
+        rival->show({&frame, nullptr, kSide});
+      }
+    }
+  }
+}
+
 TEST(Rivals, AreNamedInTheErrorWhereOneIsNotKnown) {
   try {
     (void)method_named("graf");

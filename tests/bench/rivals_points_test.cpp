@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "base/numbers.hpp"
+#include "peers/peers.hpp"
 #include "rivals/mls.hpp"
 #include "rivals/rival.hpp"
 
@@ -75,6 +77,33 @@ TEST(Rivals, MlsOfAPlaneIsThePlane) {
     EXPECT_NEAR((foot->place - Vector3d(x.x(), x.y(), 0)).norm(), 0, 1e-9);
     EXPECT_NEAR((foot->normal - Vector3d::UnitZ()).norm(), 0, 1e-9);
   }
+}
+
+// PCL's weights end at 1/e. A disc of 1.5 widths spreads as far as ours do (root mean square).
+TEST(Rivals, MlsProjectsAsPclDoes) {
+  Random random(5);
+  PointCloud cloud;
+  cloud.viewpoint = Vector3d(0, 0, 1);
+  add_grid(cloud, 0);
+  for (Eigen::Vector3f& p : cloud.positions) {
+    p.z() = static_cast<float>(0.005 * std::sin(20 * p.x()) * std::cos(25 * p.y()) +
+                               0.01 * kSide * random.normal());
+  }
+  const double width = 2 * kSide;
+  const std::vector<Eigen::Vector3f> theirs = bench::pcl_mls(cloud.positions, 1.5 * width);
+  if (theirs.empty()) GTEST_SKIP() << "PCL is absent (Debian: libpcl-dev)";
+  ASSERT_EQ(theirs.size(), cloud.size());
+  const NearPoints points(cloud);
+  double worst = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vector3d x = cloud.point(i);
+    if (x.head<2>().cwiseAbs().maxCoeff() > kSide * (kHalf - 6)) continue;  // no rim in reach
+    const std::optional<MlsFoot> foot = project_mls(points, width, x);
+    ASSERT_TRUE(foot);
+    worst = std::max(worst, (foot->place - theirs[i].cast<double>()).norm());
+  }
+  EXPECT_GT(worst, 0);
+  EXPECT_LT(worst, 0.02 * kSide);
 }
 
 TEST(Rivals, MlsPopsThroughAPlateAtHalfItsThickness) {

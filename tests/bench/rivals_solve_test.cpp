@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 #include "base/numbers.hpp"
 #include "rivals/frame_mesh.hpp"
 #include "rivals/half_spaces.hpp"
 #include "support/folder.hpp"
+#include "support/peer_test.hpp"
 
 namespace palpate::rivals {
 namespace {
@@ -110,6 +113,14 @@ std::optional<double> met_at(const FrameMesh& mesh, const FrameMesh::Triangle& t
   return inside ? std::optional(x.z()) : std::nullopt;
 }
 
+// Neither end is nearer to the sensor than anything can be seen.
+std::pair<Vector3d, Vector3d> some_way(Random& random) {
+  const Vector3d from(0.3 * random.normal(), 0.2 * random.normal(), 0.45 + 0.2 * random.uniform());
+  Vector3d to = from + 0.2 * normal_vector(random);
+  to.z() = std::max(to.z(), 0.02);
+  return {from, to};
+}
+
 TEST(Rivals, FirstTriangleOnAWayIsThatOfAllTriangles) {
   Random random(9);
   const FrameMesh mesh(rough_frame(random), 5);
@@ -117,10 +128,7 @@ TEST(Rivals, FirstTriangleOnAWayIsThatOfAllTriangles) {
   ASSERT_GT(all.size(), 1000u);
   int met = 0;
   for (int i = 0; i < 10000; ++i) {
-    const Vector3d from(0.3 * random.normal(), 0.2 * random.normal(),
-                        0.45 + 0.2 * random.uniform());
-    const Vector3d to = from + 0.2 * normal_vector(random);
-    if (to.z() < 0.02) continue;  // nothing is seen there
+    const auto [from, to] = some_way(random);
     double first = 2;
     for (const FrameMesh::Triangle& t : all)
       first = std::min(first, met_at(mesh, t, from, to).value_or(2));
@@ -129,6 +137,42 @@ TEST(Rivals, FirstTriangleOnAWayIsThatOfAllTriangles) {
     if (!found) continue;
     ++met;
     ASSERT_NEAR((found->crossing - (from + first * (to - from))).norm(), 0, 1e-9) << i;
+  }
+  EXPECT_GT(met, 500);
+}
+
+class RivalsPeer : public test::PeerTest {
+ protected:
+  RivalsPeer() : PeerTest("three-mesh-bvh") {}
+};
+
+TEST_F(RivalsPeer, FirstTriangleOnAWayIsThatOfThreeMeshBvh) {
+  Random random(10);
+  const FrameMesh mesh(rough_frame(random), 5);
+  const std::vector<FrameMesh::Triangle> all = all_triangles(mesh);
+  std::vector<Vector3d> vertices;
+  std::vector<std::pair<Vector3d, Vector3d>> ways;
+  for (int i = 0; i < mesh.vertices(); ++i) vertices.push_back(mesh.at(i));
+  for (int i = 0; i < 10000; ++i) ways.push_back(some_way(random));
+  const auto flat = [](const Vector3d& x) { return fmt::format("{},{},{}", x.x(), x.y(), x.z()); };
+  std::vector<std::string> places, ends;
+  for (const Vector3d& x : vertices) places.push_back(flat(x));
+  for (const auto& [from, to] : ways) ends.push_back(fmt::format("[{},{}]", flat(from), flat(to)));
+  std::vector<std::string> corners;
+  for (const auto& t : all) corners.push_back(fmt::format("{},{},{}", t[0], t[1], t[2]));
+  folder_.write("scene.json",
+                fmt::format(R"({{"vertices":[{}],"triangles":[{}],"ways":[{}]}})",
+                            fmt::join(places, ","), fmt::join(corners, ","), fmt::join(ends, ",")));
+  std::istringstream theirs(run("first_met.mjs", folder_ / "scene.json"));
+  int met = 0;
+  for (const auto& [from, to] : ways) {
+    int number = 0;
+    ASSERT_TRUE(theirs >> number);
+    const auto found = mesh.first_met(from, to, {});
+    ASSERT_EQ(found.has_value(), number >= 0);
+    if (!found) continue;
+    ++met;
+    ASSERT_EQ(found->part, all[static_cast<std::size_t>(number)]);
   }
   EXPECT_GT(met, 500);
 }
