@@ -23,7 +23,6 @@ const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the
 // nobody moves has to be lifted for that
 const kPatience = 400;
 const kEnough = 0.7; // of the force that is wanted; to be lifted is felt more than what is missing then
-const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
 
@@ -119,7 +118,7 @@ export class Stroke {
     const was = this.there;
     if (felt) this.there = true;
     else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
-    else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    else if (tool.hipPlace.distanceTo(above) < reach) this.there = true;
     if (!tool.touching || !tool.weak || this.content) this.strong = now;
     if (now - this.strong > kPatience) {
       this.there = false;
