@@ -236,7 +236,7 @@ export class World {
       tool.update({
         pixel,
         perNewton: Math.min(kArrow * this.radius, kArrowPixels * pixel),
-        eye: stage.camera.position,
+        camera: stage.camera,
         lift: this.lift(),
       });
     }

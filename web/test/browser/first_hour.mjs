@@ -67,3 +67,22 @@ test("a first visit says that the tool explores by itself, and offers to show ho
     await until("by itself again", () => page.locator("#by-itself").isVisible());
     assert.ok(!(await page.locator("#tour-offer").isVisible()), "offered once");
   }));
+
+test("where a cloud is seen but nothing is felt, the page says so, until something is", () =>
+  withPage(kSmall, async (page, program) => {
+    program.servo.hole = true;
+    await until("a surface is under the pointer", async () => {
+      await page.mouse.move(301, 240);
+      await page.mouse.move(300, 240);
+      return page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
+    });
+    assert.doesNotMatch(await text(page, "#touch"), /no surface/);
+    await page.mouse.down();
+    await until("said", async () => (await text(page, "#touch")) === "no surface here");
+    program.servo.hole = false;
+    await until("felt", async () => /touching/.test(await text(page, "#touch")));
+    program.servo.hole = true;
+    await until("said again", async () => (await text(page, "#touch")) === "no surface here");
+    await page.mouse.up();
+    await until("no longer, without a press", async () => /free/.test(await text(page, "#touch")));
+  }));
