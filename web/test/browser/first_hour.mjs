@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
-import { browser, kSmall, ready, text, withPage } from "./with_page.mjs";
+import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
 test("work under way has one notice that stays, with a percentage, until it is done", () =>
   withPage(kSmall, async (page, program) => {
@@ -85,4 +85,32 @@ test("where a cloud is seen but nothing is felt, the page says so, until somethi
     await until("said again", async () => (await text(page, "#touch")) === "no surface here");
     await page.mouse.up();
     await until("no longer, without a press", async () => /free/.test(await text(page, "#touch")));
+  }));
+
+test("on a narrow phone nothing covers anything else, with letters twice as large, too", async () => {
+  for (const standard of [16, 32]) {
+    await withPage({ ...kPhone, viewport: { width: 360, height: 740 } }, async (page) => {
+      await page.evaluate(() => localStorage.clear());
+      await (await page.context().newCDPSession(page)).send("Page.setFontSizes", { fontSizes: { standard } });
+      await until("letters have that size", async () => parseFloat(await page.evaluate(() => window.getComputedStyle(document.documentElement).fontSize)) > 0.9 * standard);
+      const names = [".actions", ".readout", ".grips", ".eye", ".measures .scale", ".tabs"];
+      const boxes = await Promise.all(names.map((name) => page.locator(name).boundingBox()));
+      boxes.forEach((a, i) => {
+        assert.ok(a.x >= 0 && a.x + a.width <= 360.5, `${names[i]} is ${a.width} wide`);
+        boxes.slice(0, i).forEach((b, k) => {
+          const apart = a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height;
+          assert.ok(apart, `${standard}: ${names[i]} covers ${names[k]}`);
+        });
+      });
+    });
+  }
+});
+
+test("where the system forces its colours, switches and sources are still told apart", () =>
+  withPage({ ...kSmall, forcedColors: "active" }, async (page) => {
+    const ground = (selector) => page.locator(selector).first().evaluate((element) => window.getComputedStyle(element).backgroundColor);
+    const switches = ["#panel-settings", "#panel-look"].map((panel) => ground(`${panel} input[role="switch"]`));
+    assert.notEqual(...(await Promise.all(switches)));
+    await until("sources", () => page.locator(".swatch").first().isVisible());
+    assert.notEqual(await ground(".swatch"), await page.evaluate(() => window.getComputedStyle(document.body).backgroundColor));
   }));
