@@ -8,6 +8,7 @@ import {
 } from "three";
 import type { StateMessage } from "../protocol/decode";
 import { Flag } from "../protocol/decode";
+import type { Caster } from "./backdrop";
 import { colourOf, handColour } from "./colours";
 import { HaloMaterial } from "./halo";
 import { Trail } from "./trail";
@@ -20,6 +21,7 @@ const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
 const kEndOn = 0.85; // cosine between the arrow and the way to the eye, from which on it is seen end on
+const kShadow = 1.6; // of its ball, where its shadow is half as dark (judgement)
 const kEdge = 0.94; // of the half picture, where an arrow ends (judgement)
 const kSides = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(([x, y]) => new Vector4(x, y, 0, kEdge)); // inner products are above 0 inside
 const kRing = 11; // pixels, the ring below a free hand
@@ -193,6 +195,12 @@ export class Tool {
       mesh.quaternion.setFromUnitVectors(kForward, this.normal);
       mesh.scale.setScalar(size);
     }
+  }
+
+  /** The ball that is seen of it: the proxy in contact, else the hand. */
+  get caster(): Caster {
+    const ball = this.touching ? this.proxy : this.hand;
+    return { place: this.touching ? this.proxyPlace : this.hipPlace, radius: kShadow * ball.scale.x };
   }
 
   /** How far it is to the surface, m; undefined where it is no farther than points are apart. */

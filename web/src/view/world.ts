@@ -240,6 +240,8 @@ export class World {
         lift: this.lift(),
       });
     }
+    stage.up.copy(this.up);
+    stage.casters = this.tools.filter((tool) => tool.group.visible).map((tool) => tool.caster);
   }
 
   /** How far points stand out towards the eye: what lies in the surface is lifted above them. */

@@ -4,6 +4,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
+import { picture } from "./picture.mjs";
+import { shaded } from "./pixels.mjs";
 import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
 test("work under way has one notice that stays, with a percentage, until it is done", () =>
@@ -114,3 +116,21 @@ test("where the system forces its colours, switches and sources are still told a
     await until("sources", () => page.locator(".swatch").first().isVisible());
     assert.notEqual(await ground(".swatch"), await page.evaluate(() => window.getComputedStyle(document.body).backgroundColor));
   }));
+
+test("a tool in the air throws a shadow on the cloud below it", async () => {
+  const server = await serve({ points: 30000, still: true });
+  const page = await openPage(browser, server.address, kSmall);
+  await ready(page);
+  const seenAt = async (place) => {
+    server.program.servo.exploring = () => place;
+    await page.waitForTimeout(2000); // and its trail has faded
+    return page.locator("#view").screenshot({ timeout: 120_000 });
+  };
+  const away = await seenAt([-0.25, 0.2, 0.4]);
+  const above = await seenAt([0.15, -0.1, 0.04]);
+  await picture(page, "shadow");
+  const pixels = await shaded(page, above, away, [300, 100, 340, 170]); // no words there
+  assert.ok(pixels > 100, `${pixels} pixels are darker`);
+  await page.context().close();
+  await server.close();
+});
