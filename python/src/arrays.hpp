@@ -29,7 +29,8 @@ inline constexpr NumberType kUint16{'u', 2, "uint16"};
 inline constexpr NumberType kUint8{'u', 1, "uint8"};
 
 /// An array of this shape (-1: any length) as one of `types`, row by row in memory: `given` itself
-/// if it is that, else a copy of its numbers. `what` names it in messages. Its data stay alive with the result.
+/// if it is that, else a copy of its numbers. `what` names it in messages. Its data stay alive with
+/// the result.
 /// @throws py::type_error that names the cast or the shape.
 [[nodiscard]] py::array readable(const py::object& given, const std::string& what,
                                  std::initializer_list<NumberType> types,
