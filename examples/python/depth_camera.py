@@ -21,7 +21,7 @@ if seen is None or len(seen) == 0:
 
 middle = seen.points[len(seen) // 2]
 above = np.linspace(0.05, -0.005, 1000)[:, None] * np.array([0, 0, 1.0])  # of the hand, m
-with palpate.Servo(scene, hand=np.ascontiguousarray(middle + np.concatenate([above, above[::-1]])), maximum_force=3) as servo:
+with palpate.Servo(scene, hand=middle + np.concatenate([above, above[::-1]]), maximum_force=3) as servo:
     end = time.monotonic() + seconds
     while time.monotonic() < end:  # Python feeds the surface; the servo's thread touches it at 1 kHz
         frame = next(frames)

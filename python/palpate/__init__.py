@@ -7,5 +7,9 @@ from ._palpate import (
 )
 from .plot import plot
 from .program import Replay, demo, program, replay
+from .tables import table as _table
+
+for _type in (Contact, Frame, PointCloud, PrepareReport, Rollout, SourceState, SurfacePoints):
+    _type._repr_html_ = _table  # what notebooks ask for
 
 __version__ = "@PROJECT_VERSION@"

@@ -12,13 +12,13 @@ from .program import Replay as Replay, demo as demo, program as program, replay 
 __version__: str
 
 _Floats = NDArray[np.float64]
-_Vectors = Union[NDArray[np.float64], NDArray[np.float32]]
-"""(n, 3), C-contiguous, this machine's byte order; read where it is."""
+_Reals = Union[NDArray[np.floating[Any]], NDArray[np.integer[Any]]]
+"""Points are (n, 3)."""
 _Three = Union[Sequence[float], NDArray[Any]]
 _Matrix = Union[NDArray[Any], Sequence[Sequence[float]]]
 """(4, 4): a rigid motion."""
 _Path = Union[str, os.PathLike[str]]
-_Cloud = Union["PointCloud", _Path, _Vectors]
+_Cloud = Union["PointCloud", _Path, _Reals]
 _Policy = Literal["replace", "average", "crossfade", "morph"]
 _Kind = Literal["balanced", "pointset", "metaball"]
 _Kernel = Literal["wyvill", "wendland"]
@@ -29,8 +29,8 @@ _Orientation = Literal["automatic", "viewpoint", "outward", "given"]
 class Error(ValueError): ...
 
 class PointCloud:
-    def __init__(self, points: _Vectors, *, normals: _Vectors | None = ..., colors: NDArray[np.uint8] | None = ...,
-                 intensities: NDArray[np.float32] | None = ..., viewpoint: _Three | None = ...) -> None: ...
+    def __init__(self, points: _Reals, *, normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
+                 intensities: _Reals | None = ..., viewpoint: _Three | None = ...) -> None: ...
     def __len__(self) -> int: ...
     @property
     def points(self) -> _Floats: ...
@@ -129,18 +129,18 @@ class Source:
 
 class CloudStream(Source):
     def push(self, points: _Cloud, stamp: float | None = ..., *, latency: float = ..., pose: _Matrix | None = ...,
-             normals: _Vectors | None = ..., colors: NDArray[np.uint8] | None = ...,
-             intensities: NDArray[np.float32] | None = ...) -> bool: ...
+             normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
+             intensities: _Reals | None = ...) -> bool: ...
 
 class Camera(Source):
-    def push(self, depth: NDArray[np.uint16] | NDArray[np.float32], stamp: float | None = ..., *, latency: float = ...,
+    def push(self, depth: NDArray[np.unsignedinteger[Any]] | NDArray[np.floating[Any]], stamp: float | None = ..., *, latency: float = ...,
              pose: _Matrix | None = ...) -> bool: ...
 
 class Scene:
     def __init__(self) -> None: ...
     def __len__(self) -> int: ...
-    def add(self, name: str, cloud: _Cloud, pose: _Matrix = ..., *, normals: _Vectors | None = ...,
-            colors: NDArray[np.uint8] | None = ..., intensities: NDArray[np.float32] | None = ..., voxel: float | None = ...,
+    def add(self, name: str, cloud: _Cloud, pose: _Matrix = ..., *, normals: _Reals | None = ...,
+            colors: NDArray[np.uint8] | None = ..., intensities: _Reals | None = ..., voxel: float | None = ...,
             radius: float | None = ..., radius_multiple: float | None = ..., minimum_radius: float = ..., normal_error: float = ...,
             viewpoint: _Three | None = ..., orientation: _Orientation = ..., clip: tuple[_Three, _Three] | None = ...,
             remove_speckle: bool = ..., estimate_normals: bool = ..., material_from_intensity: bool = ..., paper: bool = ...,
@@ -159,8 +159,8 @@ class Scene:
     def state(self, index: int) -> SourceState: ...
 
 class AnyField:
-    def value(self, x: _Vectors, seen_from: _Three | None = ..., time: float = ...) -> _Floats: ...
-    def gradient(self, x: _Vectors, seen_from: _Three | None = ..., time: float = ...) -> _Floats: ...
+    def value(self, x: _Reals, seen_from: _Three | None = ..., time: float = ...) -> _Floats: ...
+    def gradient(self, x: _Reals, seen_from: _Three | None = ..., time: float = ...) -> _Floats: ...
 
 class Field(AnyField):
     def __init__(self, scene: Scene, *, kind: _Kind = ..., paper: bool = ..., kernel: _Kernel = ..., gradient: _Gradient = ...,
@@ -264,7 +264,7 @@ class DepthCamera:
     def rate(self) -> float: ...
 
 class Servo:
-    def __init__(self, scene: Scene, device: str = ..., *, hand: _Vectors | None = ..., dt: float = ..., pose: _Matrix = ...,
+    def __init__(self, scene: Scene, device: str = ..., *, hand: _Reals | None = ..., dt: float = ..., pose: _Matrix = ...,
                  scale: float = ..., kind: _Kind = ..., paper: bool = ..., kernel: _Kernel = ..., gradient: _Gradient = ...,
                  threshold: float = ..., minimum_support: float = ..., tool_radius: float = ..., capped: bool = ...,
                  sharp_edges: bool = ..., stiffness: float = ..., friction_static: float = ..., friction_dynamic: float = ...,
@@ -299,16 +299,16 @@ class Servo:
     def realtime(self) -> str: ...
 
 def read_cloud(path: _Path, *, scale: float = ..., length: float | None = ..., K: Sequence[float] | None = ..., unit: float = ..., mesh_spacing: float = ...) -> PointCloud: ...
-def write_cloud(path: _Path, cloud: _Cloud, *, ascii: bool = ..., normals: _Vectors | None = ...,
-                colors: NDArray[np.uint8] | None = ..., intensities: NDArray[np.float32] | None = ...) -> None: ...
-def prepare(cloud: _Cloud, pose: _Matrix = ..., *, normals: _Vectors | None = ..., colors: NDArray[np.uint8] | None = ...,
-            intensities: NDArray[np.float32] | None = ..., voxel: float | None = ..., radius: float | None = ...,
+def write_cloud(path: _Path, cloud: _Cloud, *, ascii: bool = ..., normals: _Reals | None = ...,
+                colors: NDArray[np.uint8] | None = ..., intensities: _Reals | None = ...) -> None: ...
+def prepare(cloud: _Cloud, pose: _Matrix = ..., *, normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
+            intensities: _Reals | None = ..., voxel: float | None = ..., radius: float | None = ...,
             radius_multiple: float | None = ..., minimum_radius: float = ..., normal_error: float = ...,
             viewpoint: _Three | None = ..., orientation: _Orientation = ..., clip: tuple[_Three, _Three] | None = ...,
             remove_speckle: bool = ..., estimate_normals: bool = ..., material_from_intensity: bool = ..., paper: bool = ...,
             kernel: _Kernel = ...) -> Prepared: ...
 def synthetic_cloud(name: str, *, spacing: float = ..., noise: float = ..., seed: int = ...) -> PointCloud: ...
-def rollout(field: AnyField, proxy: Proxy, hand: _Vectors, dt: float = ..., *, time: _Floats | None = ...) -> Rollout: ...
+def rollout(field: AnyField, proxy: Proxy, hand: _Reals, dt: float = ..., *, time: _Reals | None = ...) -> Rollout: ...
 def note_names(notes: int) -> list[str]: ...
 def open_camera(name: str, *, loop: bool = ...) -> DepthCamera: ...
 def list_cameras() -> list[dict[str, Any]]: ...

@@ -1,4 +1,4 @@
-// Checks and reads numpy arrays without copying.
+// Checks numpy arrays and reads them, where they are if they fit.
 #include "arrays.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +10,6 @@
 
 namespace palpate::python {
 namespace {
-
-constexpr int kAligned = py::detail::npy_api::NPY_ARRAY_ALIGNED_;
 
 [[noreturn]] void refuse(const std::string& what, const std::string& is, const std::string& cast) {
   throw py::type_error(fmt::format("{} {}; give {}", what, is, cast));
@@ -35,6 +33,32 @@ std::string in_words(const std::vector<py::ssize_t>& shape) {
   return sizes;
 }
 
+// Real numbers of another size are taken as real ones. Whole ones are, too, where no type is whole:
+// elsewhere they count units, and only what holds all of them will do.
+const NumberType* type_for(const py::dtype& given, std::initializer_list<NumberType> types) {
+  const auto same = [&](const NumberType& each) {
+    return each.kind == given.kind() && each.bytes == given.itemsize();
+  };
+  const auto holds = [&](const NumberType& each) {
+    if (each.kind != 'f') return each.kind == given.kind() && each.bytes >= given.itemsize();
+    const bool whole = given.kind() == 'i' || given.kind() == 'u';
+    return given.kind() == 'f' || (whole && types.begin()->kind == 'f');
+  };
+  const auto* found = std::ranges::find_if(types, same);
+  if (found == types.end()) found = std::ranges::find_if(types, holds);
+  return found == types.end() ? nullptr : found;
+}
+
+// An example of how `array` gets the shape that is wanted.
+std::string reshaped(const std::string& what, const py::array& array,
+                     const std::vector<py::ssize_t>& shape) {
+  if (shape.size() == 2 && array.ndim() == 2) {
+    if (array.shape(0) == shape[1]) return what + ".T";
+    if (shape[0] < 0 && array.shape(1) > shape[1]) return fmt::format("{}[:, :{}]", what, shape[1]);
+  }
+  return fmt::format("{}.reshape({})", what, fmt::join(shape, ", "));
+}
+
 }  // namespace
 
 py::array readable(const py::object& given, const std::string& what,
@@ -44,28 +68,18 @@ py::array readable(const py::object& given, const std::string& what,
     refuse(what, fmt::format("is a {}", words(py::type::of(given).attr("__name__"))),
            fmt::format("np.asarray({}, dtype=np.{})", what, first));
   }
-  auto array = py::reinterpret_borrow<py::array>(given);
-  const py::dtype type = array.dtype();
-  const auto* const found = std::ranges::find_if(types, [&](const NumberType& each) {
-    return each.kind == type.kind() && each.bytes == type.itemsize();
-  });
-  const bool native = type.attr("isnative").cast<bool>();
-  if (found == types.end() || !native) {
-    const std::string name = found == types.end() ? first : found->name;
-    refuse(what, fmt::format("holds {}", native ? words(type) : "another byte order"),
-           fmt::format("{}.astype(np.{})", what, name));
+  const auto array = py::reinterpret_borrow<py::array>(given);
+  const NumberType* const type = type_for(array.dtype(), types);
+  if (type == nullptr) {
+    refuse(what, fmt::format("holds {}", words(array.dtype())),
+           fmt::format("{}.astype(np.{})", what, first));
   }
   if (!fits(array, shape)) {
-    const bool turned = shape.size() == 2 && array.ndim() == 2 && array.shape(0) == shape[1];
-    const std::string remedy =
-        turned ? what + ".T.copy()" : fmt::format("{}.reshape({})", what, fmt::join(shape, ", "));
     refuse(what, fmt::format("has shape {}", words(array.attr("shape"))),
-           fmt::format("shape {}, such as {}", in_words(shape), remedy));
+           fmt::format("shape {}, such as {}", in_words(shape), reshaped(what, array, shape)));
   }
-  if ((array.flags() & py::array::c_style) == 0 || (array.flags() & kAligned) == 0) {
-    refuse(what, "does not lie row by row in memory", what + ".copy()");
-  }
-  return array;
+  return py::module_::import("numpy").attr("require")(array, type->name,
+                                                      py::make_tuple("C", "ALIGNED"));
 }
 
 Vectors::Vectors(const py::object& given, const std::string& what)

@@ -28,15 +28,15 @@ inline constexpr NumberType kFloat32{'f', 4, "float32"};
 inline constexpr NumberType kUint16{'u', 2, "uint16"};
 inline constexpr NumberType kUint8{'u', 1, "uint8"};
 
-/// `given`, if it can be read where it is: an array of one of `types` in this machine's byte order,
-/// contiguous, of this shape (-1: any length). `what` names it in messages. Its data stay alive
-/// with the result.
-/// @throws py::type_error that names the cast.
+/// An array of this shape (-1: any length) as one of `types`, row by row in memory: `given` itself
+/// if it is that, else a copy of its numbers. `what` names it in messages. Its data stay alive with
+/// the result.
+/// @throws py::type_error that names the cast or the shape.
 [[nodiscard]] py::array readable(const py::object& given, const std::string& what,
                                  std::initializer_list<NumberType> types,
                                  const std::vector<py::ssize_t>& shape);
 
-/// (n, 3) coordinates, read where they are. Reading needs no GIL.
+/// (n, 3) coordinates, read where they are if they fit. Reading needs no GIL.
 class Vectors {
  public:
   /// @throws py::type_error as readable() does.

@@ -133,8 +133,7 @@ py::array_t<double> absolute(std::span<const Eigen::Vector3f> positions,
 
 constexpr const char* kCloud = R"(Points of one file or sensor, m, in its own frame.
 
-Made of an (n, 3) array, float64 or float32, and keywords: normals (n, 3), colors (n, 3) uint8, intensities (n,)
-float32, viewpoint (3,). What is given is copied once. Arrays are views that cannot be written to.)";
+Made of an (n, 3) array and keywords: normals (n, 3), colors (n, 3) uint8, intensities (n,), viewpoint (3,). What is given is copied once. Arrays are views that cannot be written to.)";
 
 constexpr const char* kPoints =
     R"(Indexed points with all that a field needs, world frame, in the index's order.

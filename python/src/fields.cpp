@@ -114,7 +114,7 @@ void define_formula(py::module_& module, const char* name, const char* words,
 
 void define_fields(py::module_& module) {
   constexpr const char* kAsked =
-      "x: (n, 3) float64 or float32, m, read where it is. seen_from: (3,), where the tool is that "
+      "x: (n, 3), m. seen_from: (3,), where the tool is that "
       "looks at surfaces with "
       "two sides, which are free on its side; None: at x itself. time: s";
   py::class_<AnyField, std::shared_ptr<AnyField>>(

@@ -119,8 +119,8 @@ finite is a fault: zero force until reset().)";
 
 constexpr const char* kRollout = R"(All ticks of a hand, without the GIL.
 
-hand: (n, 3) float64 or float32, m, world, read where it is. dt: s between ticks. time: (n,) float64, s, of each
-tick; None: from proxy.time on. The proxy goes on from where it is.)";
+hand: (n, 3), m, world; float64 or float32 row by row is read where it is. dt: s between ticks. time: (n,), s, of
+each tick; None: from proxy.time on. The proxy goes on from where it is.)";
 
 std::string words(const TimedProxy& proxy) {
   return fmt::format("<palpate.Proxy: {} N/m>", proxy.proxy.options().stiffness);

@@ -91,7 +91,7 @@ Source::StartTime start_of(const std::optional<double>& stamp, double latency) {
   return [start = *stamp + latency] { return start; };
 }
 
-// Reads the image where it is, into memory of the last one.
+// Reads the image into memory of the last one.
 void take_image(const py::array& image, Camera& camera) {
   const auto count = static_cast<std::size_t>(image.size());
   camera.frame.camera = camera.model;

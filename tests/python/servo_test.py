@@ -86,7 +86,7 @@ class Running(unittest.TestCase):
             with self.assertRaisesRegex(pp.Error, words):
                 pp.Servo(ball(), device, **options)
         with self.assertRaisesRegex(TypeError, "hand.astype"):
-            pp.Servo(ball(), hand=stroke().astype(np.float16))
+            pp.Servo(ball(), hand=stroke().astype(complex))
 
 
 START = "import sys, palpate as pp; s = pp.Scene(); s.add('ball', pp.synthetic_cloud('sphere')); v = pp.Servo(s)\n"

@@ -116,8 +116,9 @@ class Together(unittest.TestCase):
         before = sys.getrefcount(hand), sys.getrefcount(field)
         for _ in range(100):
             pp.rollout(field, proxy, hand)
+            pp.rollout(field, proxy, hand[::2])
             with self.assertRaises(TypeError):
-                pp.rollout(field, proxy, hand[::2])
+                pp.rollout(field, proxy, hand[:, :2])
         self.assertEqual((sys.getrefcount(hand), sys.getrefcount(field)), before)
 
 

@@ -233,7 +233,7 @@ export class App {
       this.world.takeState(message);
       if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
-      this.readout.note(tool, now, this.hand.held && !this.stroke.content);
+      this.readout.note(tool, now, this.hand.held && !this.stroke.content, this.stroke.nothing);
       this.sound.hear(message);
       if (this.hand.held) this.rumble.feel(message, now);
     }

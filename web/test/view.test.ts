@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Vector3 } from "three";
+import { PerspectiveCamera, Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
 import { readTranslation } from "../src/input/space_mouse";
 import { decimals, distrust, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
@@ -8,6 +8,7 @@ import { boundsOf, type Sample } from "../src/view/bounds";
 import { firstDirection } from "../src/view/first_view";
 import { rampTexture } from "../src/view/colours";
 import { lengthInWords, scaleBar } from "../src/view/scale_bar";
+import { shareInPicture } from "../src/view/tool";
 
 test("a scale bar is a round length between 60 and 150 pixels", () => {
   for (let power = -6; power < 2; power += 0.07) {
@@ -15,6 +16,24 @@ test("a scale bar is a round length between 60 and 150 pixels", () => {
     const { pixels, label } = scaleBar(metresPerPixel, 1000);
     assert.ok(pixels >= 59.9 && pixels <= 150.1, `${pixels} pixels for ${label}`);
     assert.match(label, /^[125]0*(\.0+)? (µm|mm|m)$|^0\.[125] /);
+  }
+});
+
+test("an arrow that would leave the picture ends before its edge, whichever way it points", () => {
+  const camera = new PerspectiveCamera(40, 1.5, 0.01, 10);
+  camera.position.set(0, 0, 1);
+  camera.updateMatrixWorld();
+  const from = new Vector3(0.1, 0.2, 0);
+  assert.equal(shareInPicture(camera, from, new Vector3(0.15, 0.25, 0.1)), 1);
+  for (let angle = 0; angle < 6.28; angle += 0.1) {
+    for (const deep of [-0.3, 0, 0.3]) {
+      const to = from.clone().add(new Vector3(Math.cos(angle), Math.sin(angle), deep).setLength(0.8));
+      const share = shareInPicture(camera, from, to);
+      const tip = from.clone().lerp(to, share).project(camera);
+      const farthest = Math.max(Math.abs(tip.x), Math.abs(tip.y));
+      assert.ok(farthest < 0.95 && share > 0, `${angle}, ${deep}: ends at ${farthest}`);
+      assert.ok(share === 1 || farthest > 0.93, `${angle}, ${deep}: is too short, at ${farthest}`);
+    }
   }
 });
 

@@ -1,7 +1,9 @@
 // Makes and removes a temporary folder.
 #include "apps/palpate/cli/temporary_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -32,6 +34,7 @@ TemporaryFolder::TemporaryFolder() {
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  if (lent_ >= 0) ::close(lent_);
 }
 
 std::string TemporaryFolder::write(const std::string& name, std::string_view bytes) const {
@@ -39,6 +42,15 @@ std::string TemporaryFolder::write(const std::string& name, std::string_view byt
   OutputFile out(path);
   out.write(bytes);
   out.close();
+  return path;
+}
+
+std::string TemporaryFolder::lend(const std::string& name, std::string_view bytes) {
+  std::string path = write(name, bytes);
+  lent_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (lent_ < 0) return path;  // too many files are open: it keeps its name
+  std::filesystem::remove(path);
+  std::filesystem::create_symlink(fmt::format("/proc/self/fd/{}", lent_), path);
   return path;
 }
 

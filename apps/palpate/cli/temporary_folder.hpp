@@ -21,8 +21,13 @@ class TemporaryFolder {
   /// Writes such a file; its path. @throws Error when it cannot be written.
   std::string write(const std::string& name, std::string_view bytes) const;
 
+  /// Writes it so that its bytes vanish with this process, even one that is killed: the path leads
+  /// to the open file, which has no other name. One for each folder.
+  std::string lend(const std::string& name, std::string_view bytes);
+
  private:
   std::filesystem::path path_;
+  int lent_ = -1;  // descriptor
 };
 
 }  // namespace palpate::app

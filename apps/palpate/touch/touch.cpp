@@ -190,10 +190,10 @@ struct Start {
 // What comes after a run of `plan`: of a file that a page sent, which a person knows by its name.
 std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, std::string bytes,
                               WaitingClock* clock, const Opening::Told& told) {
-  const TemporaryFolder folder;
+  TemporaryFolder folder;
   const std::string place = folder.file("");
   try {
-    const std::string file = folder.write(name, std::exchange(bytes, {}));
+    const std::string file = folder.lend(name, std::exchange(bytes, {}));
     TouchPlan next = plan_of_file(plan, file);
     for (SourcePlan& source : next.sources) source.reading.progress = told;
     auto start = std::make_unique<Start>(std::move(next), clock);

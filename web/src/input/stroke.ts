@@ -23,7 +23,6 @@ const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the
 // nobody moves has to be lifted for that
 const kPatience = 400;
 const kEnough = 0.7; // of the force that is wanted; to be lifted is felt more than what is missing then
-const kSoftStart = 750; // ms, after which all of a force is felt again (GuardOptions::soft_start, and the way there)
 const kPointer = 6; // pixels around a mouse in which a surface counts
 const kFinger = 14;
 
@@ -35,6 +34,7 @@ export class Stroke {
   private pressing = false;
   content = false; // presses, and feels about the force that is wanted
   led = false; // by a tour, not by a pointer
+  private misses = 0; // of a press, which went through what is seen
   private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
@@ -45,6 +45,11 @@ export class Stroke {
 
   /** free: puts the proxy to the hand. */
   constructor(private readonly world: World, private readonly hand: Hand, private readonly free: () => void) {}
+
+  /** Is nothing felt where it presses on what is seen? Once may be a surface that it came to from below. */
+  get nothing(): boolean {
+    return this.misses > 1;
+  }
 
   aim(at: Vector2, finger: boolean): void {
     this.at = at;
@@ -68,6 +73,7 @@ export class Stroke {
     this.at = undefined;
     this.pressing = this.content = this.led = false;
     this.there = false;
+    this.misses = 0;
     this.force = kFirst;
   }
 
@@ -82,6 +88,7 @@ export class Stroke {
     const { place, normal, reach } = this.last;
     const above = place.clone().addScaledVector(normal, kAbove * reach);
     this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
+    if (!this.pressing || tool.touching) this.misses = 0;
     this.judge(tool, above, felt, now);
     const height = tool.hipPlace.clone().sub(place).dot(normal);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
@@ -111,15 +118,14 @@ export class Stroke {
 
   /** Is the tool on the surface or above it? It has to go there if it is far off in depth, or has missed it. */
   private judge(tool: Tool, above: Vector3, felt: boolean, now: number): void {
-    const { place, normal, reach } = this.last!;
+    const { place, reach } = this.last!;
     const way = place.clone().sub(tool.hipPlace);
     const deep = Math.abs(way.dot(this.caster.ray.direction));
     const aside = Math.sqrt(Math.max(0, way.lengthSq() - deep * deep));
-    const missed = way.dot(normal) > 0.9 * kBelow * reach;
     const was = this.there;
     if (felt) this.there = true;
-    else if (missed || deep > aside + 2 * kAbove * reach) this.there = false;
-    else if (now - this.freed > kSoftStart && tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;
+    else if (tool.hipPlace.distanceTo(above) < reach) this.there = true;
     if (!tool.touching || !tool.weak || this.content) this.strong = now;
     if (now - this.strong > kPatience) {
       this.there = false;
@@ -127,7 +133,20 @@ export class Stroke {
     }
     if (felt || !tool.touching) this.good = now;
     else if (!this.there || now - this.good > kPatience) this.putToHand(now, tool.faulty);
-    if (was && !this.there) this.left = now;
+    if (!was || this.there) return;
+    this.left = now;
+    if (this.missed(tool) && this.aside(tool) < reach) this.misses += 1;
+  }
+
+  /** Is the tool below the surface as deep as a press goes where nothing stops it? */
+  private missed(tool: Tool): boolean {
+    const { place, normal, reach } = this.last!;
+    return place.clone().sub(tool.hipPlace).dot(normal) > 0.9 * kBelow * reach;
+  }
+
+  /** How far it has not gone straight through the surface, m. */
+  private aside(tool: Tool): number {
+    return tool.hipPlace.clone().sub(this.last!.place).projectOnPlane(this.last!.normal).length();
   }
 
   private putToHand(now: number, faulty: boolean): void {

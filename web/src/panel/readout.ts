@@ -30,6 +30,7 @@ export class Readout {
   private readonly lift = byId("lift");
   private softUntil = 0; // in contact a device's force comes back no further than motion pays for it
   private held = false;
+  private nothing = false;
   private height: number | undefined;
   private readonly parts = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
@@ -46,10 +47,11 @@ export class Readout {
     byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
   }
 
-  /** For every state, so that short flags are seen too. held: by this page. */
-  note(tool: DeviceHistory, now: number, held: boolean): void {
+  /** For every state, so that short flags are seen too. held: by this page; nothing: is felt where it presses. */
+  note(tool: DeviceHistory, now: number, held: boolean, nothing: boolean): void {
     for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
     this.held = held;
+    this.nothing = nothing;
     if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.softUntil = now + kLinger;
   }
 
@@ -82,6 +84,7 @@ export class Readout {
     const { status, reason } = tool.report;
     if (status !== "ok") return reason === undefined ? status : `${status}: ${reason}`;
     if (tool.has("behind")) return "behind what the camera sees: nothing is felt";
+    if (this.nothing && !tool.has("notLoaded")) return "no surface here";
     if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
     return `touching, ${millimetres(depthOf(state))} deep`;
   }

@@ -3,7 +3,7 @@
 
 import {
   DepthTexture, GLSL3, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, UnsignedIntType,
-  WebGLRenderTarget, type IUniform, type PerspectiveCamera, type WebGLRenderer,
+  Vector3, Vector4, WebGLRenderTarget, type IUniform, type PerspectiveCamera, type WebGLRenderer,
 } from "three";
 
 export const kCloudLayer = 1; // of what is drawn into the backdrop
@@ -41,16 +41,33 @@ const kShade = /* glsl */ `
   }
 `;
 
+/** With soft shadows below the tools, as a lamp straight above casts them. */
 const kShow = /* glsl */ `
   uniform sampler2D colours;
   uniform highp sampler2D depths;
+  uniform vec2 range; // near and far, m
+  uniform vec2 slopes; // of the picture's edges
+  uniform vec3 up;
+  uniform vec4 casters[4]; // place, as the eye has it, and radius, m
+  uniform int count; // of them
   in vec2 at;
   out vec4 shown;
   void main() {
     float depth = texture(depths, at).r;
     if (depth >= 1.0) discard; // nothing there: the canvas keeps its ground
     gl_FragDepth = depth;
-    shown = texture(colours, at);
+    float far = 2.0 * range.x * range.y / (range.y + range.x - (2.0 * depth - 1.0) * (range.y - range.x));
+    vec3 seen = far * vec3((2.0 * at - 1.0) * slopes, -1.0);
+    float light = 1.0;
+    for (int i = 0; i < count; i += 1) {
+      float radius = casters[i].w;
+      vec3 way = casters[i].xyz - seen;
+      float above = dot(way, up);
+      float wide = radius + 0.2 * max(above, 0.0); // softer from higher up (judgement)
+      float aside = dot(way, way) - above * above;
+      light -= 0.5 * smoothstep(-radius, 0.0, above) * (radius / wide) * exp(-aside / (wide * wide));
+    }
+    shown = vec4(texture(colours, at).rgb * max(light, 0.4), 1.0);
   }
 `;
 
@@ -61,6 +78,12 @@ function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mes
   const mesh = new Mesh(new PlaneGeometry(1, 1), material);
   mesh.frustumCulled = false;
   return mesh;
+}
+
+/** What throws a shadow. */
+export interface Caster {
+  place: Vector3;
+  radius: number; // m
 }
 
 export interface Wanted {
@@ -76,6 +99,8 @@ export class Backdrop {
   private readonly shade: Mesh<PlaneGeometry, ShaderMaterial>;
   private readonly shading = new Scene();
   private readonly flat = new OrthographicCamera();
+  private readonly range = { value: [0, 1] };
+  private readonly casters = [0, 1, 2, 3].map(() => new Vector4());
   private eye = "";
   private clouds = "";
   private drawn = -Infinity; // ms
@@ -87,9 +112,12 @@ export class Backdrop {
     const depthTexture = new DepthTexture(1, 1, UnsignedIntType);
     this.points = new WebGLRenderTarget(1, 1, { depthTexture, samples, minFilter: NearestFilter, magFilter: NearestFilter });
     const depths = { value: depthTexture };
-    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: { value: [0, 1] }, reach: { value: 1 }, grain: { value: 0 } });
+    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: this.range, reach: { value: 1 }, grain: { value: 0 } });
     this.shading.add(this.shade);
-    this.screen = screen(kShow, { colours: { value: this.shaded.texture }, depths });
+    this.screen = screen(kShow, {
+      colours: { value: this.shaded.texture }, depths, range: this.range, slopes: { value: [1, 1] }, up: { value: new Vector3() },
+      casters: { value: this.casters }, count: { value: 0 },
+    });
     this.screen.renderOrder = -1;
   }
 
@@ -110,11 +138,23 @@ export class Backdrop {
     renderer.setRenderTarget(this.points);
     renderer.render(scene, camera);
     camera.layers.set(0);
-    this.shade.material.uniforms["range"]!.value = [camera.near, camera.far];
+    this.range.value = [camera.near, camera.far];
     this.shade.material.uniforms["grain"]!.value = grain;
     this.shade.material.uniforms["reach"]!.value = kReach * sharpness;
     renderer.setRenderTarget(this.shaded);
     renderer.render(this.shading, this.flat);
     renderer.setRenderTarget(null);
+  }
+
+  /** Shadows of these, before the next picture. */
+  cast(camera: PerspectiveCamera, up: Vector3, casters: readonly Caster[]): void {
+    const { uniforms } = this.screen.material;
+    const projection = camera.projectionMatrix.elements;
+    uniforms["slopes"]!.value = [1 / projection[0], 1 / projection[5]];
+    (uniforms["up"]!.value as Vector3).copy(up).transformDirection(camera.matrixWorldInverse);
+    uniforms["count"]!.value = Math.min(casters.length, this.casters.length);
+    casters.slice(0, this.casters.length).forEach(({ place, radius }, i) => {
+      this.casters[i]!.set(...place.clone().applyMatrix4(camera.matrixWorldInverse).toArray(), radius);
+    });
   }
 }

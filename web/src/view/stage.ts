@@ -4,7 +4,7 @@
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
-import { Backdrop } from "./backdrop";
+import { Backdrop, type Caster } from "./backdrop";
 import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
@@ -27,6 +27,8 @@ export class Stage {
   height = 1;
   clouds = ""; // changes with what is seen of them
   grain = 0; // size of their points' disks, m
+  readonly up = new Vector3(0, 0, 1);
+  casters: Caster[] = []; // throw shadows down on clouds
   private readonly backdrop: Backdrop;
   readonly software: boolean;
   private sharpness: number;
@@ -126,6 +128,7 @@ export class Stage {
     this.wanted = false;
     const { sharpness, clouds, grain } = this;
     this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, grain, rest: this.slow ? kRest : 0 });
+    this.backdrop.cast(this.camera, this.up, this.casters);
     this.renderer.render(this.scene, this.camera);
   }
 

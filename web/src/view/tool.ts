@@ -4,10 +4,11 @@
 
 import {
   CircleGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
-  MeshLambertMaterial, Quaternion, RingGeometry, SphereGeometry, Vector3, type Material,
+  MeshLambertMaterial, Quaternion, RingGeometry, SphereGeometry, Vector3, Vector4, type Camera, type Material,
 } from "three";
 import type { StateMessage } from "../protocol/decode";
 import { Flag } from "../protocol/decode";
+import type { Caster } from "./backdrop";
 import { colourOf, handColour } from "./colours";
 import { HaloMaterial } from "./halo";
 import { Trail } from "./trail";
@@ -20,6 +21,9 @@ const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
 const kEndOn = 0.85; // cosine between the arrow and the way to the eye, from which on it is seen end on
+const kShadow = 1.6; // of its ball, where its shadow is half as dark (judgement)
+const kEdge = 0.94; // of the half picture, where an arrow ends (judgement)
+const kSides = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(([x, y]) => new Vector4(x, y, 0, kEdge)); // inner products are above 0 inside
 const kRing = 11; // pixels, the ring below a free hand
 
 function ball(material: Material, order: number): Mesh {
@@ -47,10 +51,21 @@ function place(rod: Mesh, from: Vector3, to: Vector3, thickness: number, least: 
   rod.scale.set(thickness, length, thickness);
 }
 
+/** How much of the way from a place in the picture to another stays in it, 0 to 1. */
+export function shareInPicture(camera: Camera, from: Vector3, to: Vector3): number {
+  const [a, b] = [from, to].map(({ x, y, z }) =>
+    new Vector4(x, y, z).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix)) as [Vector4, Vector4];
+  const shares = kSides.map((side) => {
+    const [near, far] = [a.dot(side), b.dot(side)];
+    return far < 0 ? Math.max(0, near / (near - far)) : 1;
+  });
+  return Math.min(...shares);
+}
+
 export interface Sizes {
   pixel: number; // the length of one at the tool, m
   perNewton: number; // the arrow's length, m
-  eye: Vector3;
+  camera: Camera;
   lift: number; // of disk and proxy towards the eye, above the points, m
 }
 
@@ -147,11 +162,11 @@ export class Tool {
     this.trail.take(this.proxyPlace, state.time);
   }
 
-  update({ pixel, perNewton, eye, lift }: Sizes): void {
+  update({ pixel, perNewton, camera, lift }: Sizes): void {
     const proxySize = Math.max(0.16 * this.radius, kProxyPixels * pixel);
     this.proxy.visible = this.touching; // elsewhere it is where the hand is
     this.proxyGhost.visible = this.touching;
-    const towards = eye.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
+    const towards = camera.position.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
     this.proxy.position.copy(this.proxyPlace).add(towards);
     this.proxy.scale.setScalar(proxySize);
     this.hand.position.copy(this.hipPlace);
@@ -167,7 +182,7 @@ export class Tool {
     place(this.spring, this.hipPlace, this.proxyPlace, pixel, 2 * pixel);
     this.placeDrop(pixel);
     this.placeStylus(kStylus * pixel, pixel);
-    this.placeArrow(proxySize, pixel, perNewton, towards.normalize());
+    this.placeArrow(proxySize, pixel, perNewton, camera);
   }
 
   private placeDisk(size: number, towards: Vector3): void {
@@ -180,6 +195,12 @@ export class Tool {
       mesh.quaternion.setFromUnitVectors(kForward, this.normal);
       mesh.scale.setScalar(size);
     }
+  }
+
+  /** The ball that is seen of it: the proxy in contact, else the hand. */
+  get caster(): Caster {
+    const ball = this.touching ? this.proxy : this.hand;
+    return { place: this.touching ? this.proxyPlace : this.hipPlace, radius: kShadow * ball.scale.x };
   }
 
   /** How far it is to the surface, m; undefined where it is no farther than points are apart. */
@@ -211,8 +232,8 @@ export class Tool {
     this.stylus.scale.set(3.5 * pixel, length, 3.5 * pixel);
   }
 
-  /** Where it points at the eye or away, a ring shows its length. */
-  private placeArrow(start: number, pixel: number, perNewton: number, towards: Vector3): void {
+  /** It ends in the picture. Where it points at the eye or away, a ring shows its length. */
+  private placeArrow(start: number, pixel: number, perNewton: number, camera: Camera): void {
     const size = this.force.length();
     const shown = size > kLeastForce;
     this.shaft.visible = shown;
@@ -220,7 +241,9 @@ export class Tool {
     this.endOn.visible = false;
     if (!shown) return;
     const along = this.force.clone().divideScalar(size);
-    const length = Math.min(Math.max(size * perNewton, 10 * pixel), kLongest * pixel);
+    const longest = Math.min(size * perNewton, kLongest * pixel);
+    const tip = this.proxyPlace.clone().addScaledVector(along, start + longest);
+    const length = Math.max(longest * shareInPicture(camera, this.proxyPlace, tip), 10 * pixel);
     const headLength = Math.min(17 * pixel, 0.5 * length);
     const shaftLength = length - headLength;
     this.shaft.position.copy(this.proxyPlace).addScaledVector(along, start + shaftLength / 2);
@@ -228,6 +251,7 @@ export class Tool {
     this.shaft.scale.set(2.8 * pixel, shaftLength, 2.8 * pixel);
     this.head.position.copy(this.proxyPlace).addScaledVector(along, start + length - headLength / 2);
     this.head.quaternion.copy(this.shaft.quaternion);
+    const towards = camera.position.clone().sub(this.proxyPlace).normalize();
     this.endOn.visible = Math.abs(along.dot(towards)) > kEndOn;
     this.endOn.position.copy(this.proxyPlace);
     this.endOn.quaternion.setFromUnitVectors(kForward, towards);

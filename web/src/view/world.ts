@@ -236,10 +236,12 @@ export class World {
       tool.update({
         pixel,
         perNewton: Math.min(kArrow * this.radius, kArrowPixels * pixel),
-        eye: stage.camera.position,
+        camera: stage.camera,
         lift: this.lift(),
       });
     }
+    stage.up.copy(this.up);
+    stage.casters = this.tools.filter((tool) => tool.group.visible).map((tool) => tool.caster);
   }
 
   /** How far points stand out towards the eye: what lies in the surface is lifted above them. */

@@ -4,7 +4,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
-import { browser, kSmall, ready, text, withPage } from "./with_page.mjs";
+import { picture } from "./picture.mjs";
+import { shaded } from "./pixels.mjs";
+import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
 test("work under way has one notice that stays, with a percentage, until it is done", () =>
   withPage(kSmall, async (page, program) => {
@@ -67,3 +69,68 @@ test("a first visit says that the tool explores by itself, and offers to show ho
     await until("by itself again", () => page.locator("#by-itself").isVisible());
     assert.ok(!(await page.locator("#tour-offer").isVisible()), "offered once");
   }));
+
+test("where a cloud is seen but nothing is felt, the page says so, until something is", () =>
+  withPage(kSmall, async (page, program) => {
+    program.servo.hole = true;
+    await until("a surface is under the pointer", async () => {
+      await page.mouse.move(301, 240);
+      await page.mouse.move(300, 240);
+      return page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
+    });
+    assert.doesNotMatch(await text(page, "#touch"), /no surface/);
+    await page.mouse.down();
+    await until("said", async () => (await text(page, "#touch")) === "no surface here");
+    program.servo.hole = false;
+    await until("felt", async () => /touching/.test(await text(page, "#touch")));
+    program.servo.hole = true;
+    await until("said again", async () => (await text(page, "#touch")) === "no surface here");
+    await page.mouse.up();
+    await until("no longer, without a press", async () => /free/.test(await text(page, "#touch")));
+  }));
+
+test("on a narrow phone nothing covers anything else, with letters twice as large, too", async () => {
+  for (const standard of [16, 32]) {
+    await withPage({ ...kPhone, viewport: { width: 360, height: 740 } }, async (page) => {
+      await page.evaluate(() => localStorage.clear());
+      await (await page.context().newCDPSession(page)).send("Page.setFontSizes", { fontSizes: { standard } });
+      await until("letters have that size", async () => parseFloat(await page.evaluate(() => window.getComputedStyle(document.documentElement).fontSize)) > 0.9 * standard);
+      const names = [".actions", ".readout", ".grips", ".eye", ".measures .scale", ".tabs"];
+      const boxes = await Promise.all(names.map((name) => page.locator(name).boundingBox()));
+      boxes.forEach((a, i) => {
+        assert.ok(a.x >= 0 && a.x + a.width <= 360.5, `${names[i]} is ${a.width} wide`);
+        boxes.slice(0, i).forEach((b, k) => {
+          const apart = a.x >= b.x + b.width || b.x >= a.x + a.width || a.y >= b.y + b.height || b.y >= a.y + a.height;
+          assert.ok(apart, `${standard}: ${names[i]} covers ${names[k]}`);
+        });
+      });
+    });
+  }
+});
+
+test("where the system forces its colours, switches and sources are still told apart", () =>
+  withPage({ ...kSmall, forcedColors: "active" }, async (page) => {
+    const ground = (selector) => page.locator(selector).first().evaluate((element) => window.getComputedStyle(element).backgroundColor);
+    const switches = ["#panel-settings", "#panel-look"].map((panel) => ground(`${panel} input[role="switch"]`));
+    assert.notEqual(...(await Promise.all(switches)));
+    await until("sources", () => page.locator(".swatch").first().isVisible());
+    assert.notEqual(await ground(".swatch"), await page.evaluate(() => window.getComputedStyle(document.body).backgroundColor));
+  }));
+
+test("a tool in the air throws a shadow on the cloud below it", async () => {
+  const server = await serve({ points: 30000, still: true });
+  const page = await openPage(browser, server.address, kSmall);
+  await ready(page);
+  const seenAt = async (place) => {
+    server.program.servo.exploring = () => place;
+    await page.waitForTimeout(2000); // and its trail has faded
+    return page.locator("#view").screenshot({ timeout: 120_000 });
+  };
+  const away = await seenAt([-0.25, 0.2, 0.4]);
+  const above = await seenAt([0.15, -0.1, 0.04]);
+  await picture(page, "shadow");
+  const pixels = await shaded(page, above, away, [300, 100, 340, 170]); // no words there
+  assert.ok(pixels > 100, `${pixels} pixels are darker`);
+  await page.context().close();
+  await server.close();
+});

@@ -27,6 +27,17 @@ export async function changed(page, one, other) {
   return (4 * count) / first.length;
 }
 
+/** How many pixels of an area are darker in one picture than in another, in the same colour. */
+export async function shaded(page, one, other, area) {
+  const [first, second] = await page.evaluate(pixels, [coded([one, other]), area]);
+  let count = 0;
+  for (let i = 0; i < first.length; i += 4) {
+    const shares = [0, 1, 2].map((c) => first[i + c] / second[i + c]);
+    if (Math.max(...shares) < 0.88 && Math.max(...shares) - Math.min(...shares) < 0.05) count += 1;
+  }
+  return count;
+}
+
 /** Which part of an area's pixels is dark. */
 export async function dark(page, picture, area) {
   const [data] = await page.evaluate(pixels, [coded([picture]), area]);

@@ -19,6 +19,7 @@ export class Servo {
   felt = 500; // grows to that out of contact alone
   bound = 6;
   starting = false; // after the watchdog, until the tool is lifted
+  hole = false; // what is seen is no surface
   contact;
   force = [0, 0, 0];
   samples = [];
@@ -62,7 +63,7 @@ export class Servo {
     const goal = this.taken ? this.hand : this.exploring();
     const part = kStep / kFollow;
     this.hip = this.hip.map((c, i) => c + part * (goal[i] - c));
-    this.contact = stopAt(this.hip);
+    this.contact = this.hole ? undefined : stopAt(this.hip);
     if (!this.contact || this.felt > this.stiffness) this.felt = this.stiffness;
     if (!this.contact) this.starting = false;
     this.force = this.paused || this.fault || this.starting || !this.contact ? [0, 0, 0] : this.spring();
