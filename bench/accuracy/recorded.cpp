@@ -232,9 +232,10 @@ std::unique_ptr<Scene> scene_of(const DepthFrame& frame, const Contender& conten
 }
 
 std::string noise_line(const Recording& recording) {
+  if (recording.frames.size() < 2) return "";
   const auto scene = scene_of(recording.frames.back(), all_contenders().front());
   const Source::State told = scene->source(0).state();
-  if (recording.frames.size() < 2 || !(told.noise > 0)) return "";
+  if (!(told.noise > 0)) return "";
   Noise noise;
   for (const Patch& patch : recording.patches) {
     noise.add(recording.frames, recording.mean, patch, told);

@@ -183,13 +183,15 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
 std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                         Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
-  std::optional<SurfacePoint> at = project(probe, position_, here);
   const bool changed = probe.traits().revision != revision_;
-  if (!cut_short_ && surface_moved(probe, here, normal_, changed)) {
-    const std::optional<SurfacePoint> moved =
-        at && is_same_place(*at, position_, normal_) ? at : reanchor(probe, position_, normal_);
-    if (moved) {
-      at = moved;
+  const bool moved = !cut_short_ && surface_moved(probe, here, normal_, changed);
+  const double radius = probe.step_length();  // at the proxy: Newton may end where it is another
+  std::optional<SurfacePoint> at = project(probe, position_, here);
+  if (moved) {
+    const bool same = at && is_same_place(*at, position_, normal_);
+    const auto found = same ? at : reanchor(probe, position_, normal_, radius);
+    if (found) {
+      at = found;
       contact.notes |= ContactNote::reanchored;
     }
   }

@@ -232,8 +232,8 @@ bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
 }
 
 std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
-                                     const Eigen::Vector3d& normal) noexcept {
-  const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * probe.step_length());
+                                     const Eigen::Vector3d& normal, double radius) noexcept {
+  const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * radius);
   const Eigen::Vector3d top = position + reach * normal;
   if (probe.inside(top)) return std::nullopt;
   const Sweep way = first_contact(probe, top, position);

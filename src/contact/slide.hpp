@@ -51,9 +51,10 @@ struct Slide {
                                  const Eigen::Vector3d& normal) noexcept;
 
 /// Looks for the surface from above, along the last normal, within the field's re-anchor reach (at
-/// least R / 2). Empty when there is none that faces the same way.
+/// least half of `radius`, R there, m). Empty when there is none that faces the same way.
 [[nodiscard]] std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
-                                                   const Eigen::Vector3d& normal) noexcept;
+                                                   const Eigen::Vector3d& normal,
+                                                   double radius) noexcept;
 
 /// Looks for the surface after Newton has failed: from the first free place along the last normal,
 /// up to 2 R away.

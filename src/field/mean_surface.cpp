@@ -64,7 +64,9 @@ class NearCells {
         test_(ball.center - points_.origin),
         stack_(points_),
         radius_(radius),
-        extra_(layer.least_radius + ball.radius) {}
+        extra_(layer.least_radius + ball.radius) {
+    if (!stack_.empty() && !is_near(0)) (void)stack_.pop();
+  }
 
   [[nodiscard]] bool empty() const noexcept { return stack_.empty(); }
   [[nodiscard]] const CellGrid::Cell& pop() noexcept { return cells()[stack_.pop()]; }
@@ -73,8 +75,8 @@ class NearCells {
     std::array<std::pair<float, std::uint32_t>, 8> near;
     std::uint32_t count = 0;
     for (std::uint32_t i = cell.first_child; i < cell.first_child + cell.children; ++i) {
+      if (!is_near(i)) continue;
       const std::pair child{test_.squared_distance(cells()[i]), i};
-      if (child.first > test_.squared_limit(reach(i))) continue;
       std::uint32_t at = count++;
       for (; at > 0 && near[at - 1] < child; --at) near[at] = near[at - 1];
       near[at] = child;
@@ -86,8 +88,9 @@ class NearCells {
   [[nodiscard]] std::span<const CellGrid::Cell> cells() const noexcept {
     return points_.grid.cells();
   }
-  [[nodiscard]] double reach(std::uint32_t cell) const noexcept {
-    return std::max<double>(points_.cell_reach[cell], radius_) + extra_;
+  [[nodiscard]] bool is_near(std::uint32_t cell) const noexcept {
+    const double reach = std::max<double>(points_.cell_reach[cell], radius_);
+    return test_.near(cells()[cell], reach + extra_);
   }
 
   const SurfacePoints& points_;
@@ -106,11 +109,12 @@ double largest_weight(const ImplicitSurface& surface, const ActiveLayer& layer, 
   const auto ball_radius = static_cast<float>(ball.radius);
   double total = 0;
   NearCells near(layer, ball, radius);
+  visits = std::max(0, visits - 1);  // the root
   while (!near.empty() && visits > 0 && total < enough) {
     const CellGrid::Cell& cell = near.pop();
     if (cell.children > 0) {
       visits = std::max(0, visits - static_cast<int>(cell.children));
-      near.push_children(cell);
+      if (visits > 0) near.push_children(cell);
       continue;
     }
     for (std::uint32_t i = cell.begin; i < cell.end && total < enough; ++i) {

@@ -119,13 +119,8 @@ class CellTest {
 
   /// False only when the cell's box is certainly further away than `reach`, m.
   [[nodiscard]] bool near(const CellGrid::Cell& cell, double reach) const noexcept {
-    return squared_distance(cell) <= squared_limit(reach);
-  }
-
-  /// A box whose squared_distance() is above this is certainly further away than `reach`, m^2.
-  [[nodiscard]] float squared_limit(double reach) const noexcept {
     const float limit = static_cast<float>(reach) * (1 + 1e-6f) + slack_;
-    return limit * limit;
+    return squared_distance(cell) <= limit * limit;
   }
 
   /// To the cell's box, rounded, m^2.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "contact/drive.hpp"
 #include "contact/probe.hpp"
 #include "contact/test_fields.hpp"
 
@@ -86,6 +87,23 @@ TEST(Slide, HollowTakesFewSubSteps) {
   EXPECT_LE(probe.evaluations(), 20);
   RecordProperty("iterations", motion.iterations);
   RecordProperty("evaluations", probe.evaluations());
+}
+
+TEST(FindSurface, ThatMovedALittleNeedsNoSweep) {
+  const Vector3d hip(0.004, 0, -0.003);
+  for (const double dz : {-2e-3, -1e-3, 1e-3, 2e-3}) {  // R / 4 is 2.5 mm
+    SheetField sheet;
+    sheet.reach = 0.02;
+    Proxy proxy;
+    proxy.reset({0.004, 0, 0.03});
+    drive(proxy, sheet, {0.004, 0, 0.03}, hip, 0.1);
+    const int still = proxy.step(sheet, hip, kTick).evaluations;
+    sheet.height = dz;
+    ++sheet.revision;
+    const Contact c = proxy.step(sheet, hip, kTick);
+    EXPECT_TRUE(has(c.notes, ContactNote::reanchored)) << dz;
+    EXPECT_LE(c.evaluations, still + 2) << dz;
+  }
 }
 
 }  // namespace

@@ -261,5 +261,14 @@ TEST(FreeSpaceWork, IsBoundedAndNeverSaysFreeWithoutKnowing) {
   EXPECT_LT(free_balls, 500);
 }
 
+TEST(FreeSpaceWork, ALayerThatIsFarAwayIsOneLook) {
+  const SurfacePoints points = moving_sheet(1);
+  const std::vector<ActiveLayer> layers(20, ActiveLayer{&points});
+  const ImplicitSurface surface{FieldOptions{}};
+  int left = 21;
+  EXPECT_TRUE(is_free_space(surface, layers, 1, {Vector3d(1, 1, 1), 1e-3}, 0, left));
+  EXPECT_EQ(left, 1);
+}
+
 }  // namespace
 }  // namespace palpate

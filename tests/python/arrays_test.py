@@ -1,4 +1,4 @@
-"""Arrays that fit are read where they are, others are copied; what would change their numbers is refused in words."""
+"""Arrays that fit are read where they are, others are copied; what is of another kind or shape is refused in words."""
 
 import copy
 import gc

@@ -48,9 +48,12 @@ std::string TemporaryFolder::write(const std::string& name, std::string_view byt
 std::string TemporaryFolder::lend(const std::string& name, std::string_view bytes) {
   std::string path = write(name, bytes);
   lent_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (lent_ < 0) return path;  // too many files are open: it keeps its name
-  std::filesystem::remove(path);
-  std::filesystem::create_symlink(fmt::format("/proc/self/fd/{}", lent_), path);
+  const std::string open_file = fmt::format("/proc/self/fd/{}", lent_);
+  std::error_code failed;
+  if (lent_ < 0 || !std::filesystem::exists(open_file, failed)) return path;  // it keeps its name
+  const std::string link = file("link");
+  std::filesystem::create_symlink(open_file, link, failed);
+  if (!failed) std::filesystem::rename(link, path, failed);
   return path;
 }
 

@@ -22,7 +22,8 @@ class TemporaryFolder {
   std::string write(const std::string& name, std::string_view bytes) const;
 
   /// Writes it so that its bytes vanish with this process, even one that is killed: the path leads
-  /// to the open file, which has no other name. One for each folder.
+  /// to the open file, which has no other name, where /proc and links are there. One for each
+  /// folder.
   std::string lend(const std::string& name, std::string_view bytes);
 
  private:
