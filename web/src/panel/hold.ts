@@ -163,7 +163,7 @@ export class HoldPanel {
     if (!this.takeable()) {
       return this.session.tool.report.status === "silent" ? "The device of this tool is not responding" : "A device moves this tool";
     }
-    if (this.session.tool.has("taken")) return "Another page holds the tool; press on the surface to take it over";
+    if (!this.hand.held && this.session.tool.has("taken")) return "Another page holds the tool; press on the surface to take it over";
     if (!free) return `Press on the surface to touch it; drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");

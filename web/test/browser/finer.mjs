@@ -100,6 +100,13 @@ test("a stiffness that is asked for in contact and not felt yet is said beside i
     await until("no more", async () => (await softer.innerText()) === "");
   }));
 
+test("a phone that holds the tool is not told that another page does", () =>
+  withPage(kPhone, async (page, program) => {
+    await page.tap("#take");
+    await until("held", () => program.servo.taken);
+    await until("told how to touch", async () => /two fingers/.test(await text(page, "#hint")));
+  }));
+
 test("a page whose tool another takes is told, and holds it no more", () =>
   withPage(kSmall, async (page, program, server) => {
     await page.keyboard.press("t");
