@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Measures everything that bench/RESULTS.md holds, in one run, and writes it there.
+# Measures everything that bench/RESULTS.md holds, in one run, and writes it there: first what needs an idle machine,
+# then what says the same on any.
 #
 # bench/run_all.sh   needs the packages of scripts/packages.txt (groups build, test, bench); real
 #                    clouds are looked for in $PALPATE_DATA, else in ../shared/data, and left out
@@ -52,6 +53,15 @@ speed depth_bench
   --benchmark_format=json 2>/dev/null >"$scratch/two_threads.json"
 say "steps on real clouds"
 clouds >"$scratch/clouds.md"
+say "four cameras"
+cameras=$programs/bench/four_cameras/four_cameras_bench
+"$cameras" --pairs 0 >"$scratch/shared.md"
+"$cameras" --processor $(($(nproc) - 1)) >"$scratch/apart.md" || true  # it says what was missed
+say "devices"
+"$programs/bench/devices/device_bench" --benchmark_counters_tabular=true >"$scratch/devices.txt"
+say "the viewer"
+"$programs/bench/viewer/viewer_bench" --seconds 20 --processor $(($(nproc) - 1)) >"$scratch/viewer.md" || true
+load=$(cut -d' ' -f1 /proc/loadavg)
 say "accuracy"
 for noise in a b; do
   "$programs/bench/accuracy/accuracy_bench" --noise "$noise" >"$scratch/$noise.md"
@@ -63,24 +73,18 @@ say "events"
 "$programs/bench/robot/robot_bench" >"$scratch/robot.md"
 say "any cloud"
 "$programs/bench/any_cloud/any_cloud_bench" >"$scratch/any_cloud.txt"
-say "four cameras"
-cameras=$programs/bench/four_cameras/four_cameras_bench
-"$cameras" --pairs 0 >"$scratch/shared.md"
-"$cameras" --processor $(($(nproc) - 1)) >"$scratch/apart.md" || true  # it says what was missed
-say "devices"
-"$programs/bench/devices/device_bench" --benchmark_counters_tabular=true >"$scratch/devices.txt"
-say "the viewer"
-"$programs/bench/viewer/viewer_bench" --seconds 20 --processor $(($(nproc) - 1)) >"$scratch/viewer.md" || true
 
 {
   cat <<EOF
 # Results
 
 $(date +%Y-%m-%d), commit $(git rev-parse --short HEAD), $(nproc) cores ($(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)), load
-$(cut -d' ' -f1 /proc/loadavg) at the end, $(g++ --version | head -n 1), Release. What the rows mean and what was settled: [README.md](README.md).
+$load after the timed parts, $(g++ --version | head -n 1), Release. What the rows mean and what was settled: [README.md](README.md).
 All of it in one run of
 
     bench/run_all.sh
+
+What was measured while something was decided, before and after it, is in [FINDINGS.md](FINDINGS.md).
 
 ## Speed beside other libraries
 

@@ -22,6 +22,7 @@ struct Draft {
   std::optional<Eigen::Vector3d> viewpoint;
   Shape truth;  ///< empty: nobody knows
   HandPath hand;
+  int roam = 0;          ///< ticks that a hand roams around a closed body, where it would poke it
   double deep = 0.75;    ///< from this depth of the ideal contact on, contact is required
   double clear = 1.875;  ///< from this distance of the hand on, contact is forbidden
 

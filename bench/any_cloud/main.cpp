@@ -21,6 +21,7 @@ struct Arguments {
   std::string csv_file;
   std::vector<std::string> files;
   int ways = 10000;
+  int roam = 0;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -33,6 +34,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--file", arguments.files, "Only this cloud, without a truth; may be repeated");
   app.add_option("--ways", arguments.ways, "Straight ways through free air of a file's cloud")
       ->check(CLI::Range(0, 1000000));
+  app.add_option("--roam", arguments.roam,
+                 "Ticks of a hand that roams around a closed body and in it, in place of pokes")
+      ->check(CLI::Range(0, 10000000));
   app.add_option("--csv", arguments.csv_file, "Write every score to this file");
 }
 
@@ -54,6 +58,12 @@ std::vector<Row> wanted_rows(const Arguments& arguments) {
                        std::find(families.begin(), families.end(), row.family) == families.end();
     return other || row.name.find(arguments.row) == std::string::npos;
   });
+  for (Row& row : rows) {
+    row.draw = [draw = std::move(row.draw), roam = arguments.roam](Draft& draft) {
+      draft.roam = roam;
+      draw(draft);
+    };
+  }
   return rows;
 }
 

@@ -19,6 +19,7 @@ constexpr double kAgainst = -0.5;     // cosine
 constexpr double kLostShare = 0.2;    // a smaller share of the force wanted is contact lost
 constexpr int kThroughTicks = 3;      // lost for so long, a hand is through
 constexpr double kIdealError = 0.05;  // s
+constexpr double kInside = 1;         // s: what edges round off is no way through
 
 double mean(double sum, double count) {
   return count > 0 ? sum / count : kNone;
@@ -93,7 +94,6 @@ class Pokes {
   }
 
  private:
-  static constexpr double kInside = 1;      // s: what edges round off is no way through
   static constexpr double kOutside = 8;     // s
   static constexpr double kAtBody = 4;      // s; a proxy farther out touches strays, not the body
   static constexpr double kMostOver = 1.3;  // times the force wanted
@@ -137,8 +137,10 @@ class Comparison {
     if (tick.wanted == Wanted::ignored || !scene_.truth) return;
     if (felt > 0) add_height(std::abs(true_distance(scene_, trace_.proxy[i])));
     if (tick.wanted != Wanted::judged) return;
+    if (is_within(i)) ++within_;
     const double wanted = ideal_.force[i].norm();
     const double away = true_distance(scene_, tick.hand);
+    if (away > scene_.clear && felt > kFelt && way_is_free(trace_, i)) ++caught_;
     if (away > scene_.clear && wanted == 0 && felt > kFelt) ++in_free_air_;
     if (wanted > 0) squares_ += (trace_.force[i] - ideal_.force[i]).squaredNorm();
     if (wanted > 0) ++touching_;
@@ -158,6 +160,8 @@ class Comparison {
     score.height = mean(heights_, felt_);
     score.highest = felt_ > 0 ? highest_ : kNone;
     score.ideal_off = ideal_off_;
+    score.within = within_;
+    score.caught = caught_;
   }
 
  private:
@@ -181,14 +185,23 @@ class Comparison {
     const double height = true_distance(scene_, ideal_.proxy[i]);
     const bool missing = away < -scene_.deep && wanted < kFelt;
     const bool apart = height < -kIdealError || (wanted > 0 && height > kIdealError);
-    const bool stuck = wanted > kFelt && away > scene_.clear && way_is_free(i);
+    const bool stuck = wanted > kFelt && away > scene_.clear && way_is_free(ideal_, i);
     if (missing || apart || stuck) ++ideal_off_;
   }
 
-  // From the ideal proxy straight to the hand.
-  [[nodiscard]] bool way_is_free(std::size_t i) const {
+  // Has the proxy passed the true surface, or does that hold it from the other side?
+  [[nodiscard]] bool is_within(std::size_t i) const {
+    const Distance at =
+        scene_.truth(scene_.T_world_draft.inverse() * trace_.proxy[i] / scene_.spacing);
+    const Vector3d force = scene_.T_world_draft.linear().transpose() * trace_.force[i];
+    return at.value < -kInside ||
+           at.gradient.dot(force) < kAgainst * at.gradient.norm() * force.norm();
+  }
+
+  // From the proxy straight to the hand.
+  [[nodiscard]] bool way_is_free(const Trace& trace, std::size_t i) const {
     constexpr int kPlaces = 400;  // thin panels lie between
-    const Vector3d from = ideal_.proxy[i];
+    const Vector3d from = trace.proxy[i];
     for (int k = 1; k < kPlaces; ++k) {
       const double share = static_cast<double>(k) / kPlaces;
       if (true_distance(scene_, from + share * (scene_.ticks[i].hand - from)) < 0) return false;
@@ -211,6 +224,8 @@ class Comparison {
   double highest_ = 0;
   double felt_ = 0;
   double ideal_off_ = 0;
+  double within_ = 0;
+  double caught_ = 0;
   int lost_run_ = 0;
 };
 

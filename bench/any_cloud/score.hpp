@@ -26,6 +26,8 @@ struct Score {
   double held = 0;          ///< of all those held by the body 8 spacings outside, the ideal free
   double most_outside = 0;  ///< the largest force there, N
   double over = 0;          ///< share of ticks above 1.3 of the ideal force and the noise in it, %
+  double within = 0;        ///< ticks with a proxy 1 s inside the solid, or a force into it
+  double caught = 0;        ///< ticks with force where proxy and hand are in the same free space
   double energy = 0;        ///< given to the hand by a stroke, the most, mJ at 1 mm a spacing
   double faults = 0;        ///< ticks that were not finite
   double usual_us = 0;      ///< computing time of a step, median, us

@@ -35,6 +35,8 @@ constexpr std::array kMetrics{
     Metric{"held", &Score::held, 4, 0, false},
     Metric{"outN", &Score::most_outside, 5, 2, false},
     Metric{"over", &Score::over, 5, 2, false},
+    Metric{"in", &Score::within, 5, 0, false},
+    Metric{"caught", &Score::caught, 6, 0, false},
     Metric{"mJ", &Score::energy, 5, 2, false},
     Metric{"nan", &Score::faults, 3, 0, false},
     Metric{"us", &Score::usual_us, 4, 0, false},
@@ -77,7 +79,9 @@ std::string legend() {
          "with force in free air. side: ticks with force\nthe other way. h: mean distance "
          "of the proxy from the surface. pokes: in which contact is\nrequired, pass: that went "
          "through the surface, held: by the body, 8 spacings outside, outN: there by so much "
-         "at\nmost, over: % of ticks above 1.3 of the ideal force. mJ: given to the hand. us: a "
+         "at\nmost, over: % of ticks above 1.3 of the ideal force. in: ticks with a proxy inside "
+         "the solid or a force into it, caught: with force where proxy and hand share free space. "
+         "mJ: given to the hand. us: a "
          "step.\n";
 }
 

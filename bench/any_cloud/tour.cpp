@@ -68,13 +68,38 @@ void travel(Draft& draft, const Vector3d& to, double ball) {
   draft.hand.tick(to);
 }
 
+// From the origin.
+double reach_of(const Draft& draft) {
+  double reach = 0;
+  for (const Vector3d& p : draft.points) reach = std::max(reach, p.norm());
+  return reach;
+}
+
 }  // namespace
 
-void poke_around(Draft& draft) {
+void roam_around(Draft& draft) {
+  constexpr double kDeepest = 3;  // spacings
   if (draft.points.empty()) return;
-  double ball = 0;
-  for (const Vector3d& p : draft.points) ball = std::max(ball, p.norm());
-  ball += kAway;
+  const double ball = reach_of(draft) + kNear;
+  Vector3d at = ball * draft.direction();
+  draft.hand.start(at);
+  const auto ticks = static_cast<std::size_t>(draft.roam);
+  while (draft.hand.ticks.size() < ticks) {
+    const Vector3d goal = ball * draft.random.uniform() * draft.direction();
+    const Vector3d stride = 1e-3 * draft.between(kPush, kReach) * (goal - at).normalized();
+    const auto strides = static_cast<int>((goal - at).norm() / stride.norm());
+    for (int i = 0; i < strides && draft.hand.ticks.size() < ticks; ++i) {
+      const Distance next = draft.truth(at + stride);
+      if (next.value < -kDeepest && next.gradient.dot(stride) < 0) break;
+      draft.hand.tick(at += stride);
+    }
+  }
+}
+
+void poke_around(Draft& draft) {
+  if (draft.roam > 0) return roam_around(draft);
+  if (draft.points.empty()) return;
+  const double ball = reach_of(draft) + kAway;
   for (int i = 0; i < kPokes; ++i) {
     const std::optional<Poke> poke = draw_poke(draft, ball);
     if (!poke) continue;

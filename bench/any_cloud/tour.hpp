@@ -10,4 +10,8 @@ namespace palpate::any_cloud {
 /// stays so.
 void poke_around(Draft& draft);
 
+/// One hand that moves straight to drawn places for draft.roam ticks, around a closed body and in
+/// it. Where it is 3 spacings deep it turns back.
+void roam_around(Draft& draft);
+
 }  // namespace palpate::any_cloud

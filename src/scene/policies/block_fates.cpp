@@ -33,7 +33,7 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
 }
 
 /// Are four live points seen again within R, as they face, beside no edge, alone at their places?
-/// Else there is more to decide. Worth 16 to 29 % of a frame (bench/RESULTS.md).
+/// Else there is more to decide. Worth 16 to 29 % of a frame (bench/FINDINGS.md).
 bool BlockFates::goes_on(const SeenFour& seen, FourWays& ways) const {
   const std::uint32_t first = tracks_.four_at(seen.place);
   if (first == BlockEntries::kNone) return false;
