@@ -64,7 +64,7 @@ bool is_quiet(const ServoState& step) {
          !has(step.contact.notes, ContactNote::fault);
 }
 
-// As `palpate touch FILE --duration 10` does.
+// Touches as `palpate touch FILE --duration 10` does.
 TouchStatistics statistics_of(const TouchPlan& plan) {
   LoadedScene loaded = load_sources(plan.sources, {.explored = true});
   std::vector<Hand> hands = open_hands(plan.devices, plan.motion, plan.time, nullptr);

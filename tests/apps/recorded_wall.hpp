@@ -21,7 +21,7 @@ inline std::string wall_pgm(int number) {
   return text;
 }
 
-// As a sequence of 30 frames a second in the folder "wall".
+// Writes a sequence of 30 frames a second into the folder "wall".
 inline void write_wall(const Shell& shell, int frames) {
   std::filesystem::create_directory(shell.path("wall"));
   for (int i = 0; i < frames; ++i) shell.write(fmt::format("wall/{:03}.pgm", i), wall_pgm(i));

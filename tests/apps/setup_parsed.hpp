@@ -9,7 +9,7 @@
 
 namespace palpate::app {
 
-/// As the program does with a command line after "palpate touch".
+/// Parses as the program does what follows "palpate touch".
 inline TouchPlan planned(const std::string& arguments) {
   TouchChoices choices;
   CLI::App command;

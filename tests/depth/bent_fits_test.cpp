@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of a ball's blocks that are seen at `low` to `high` degrees.
+/// Errors of a ball's blocks that are seen at `low` to `high` degrees.
 Errors errors_on_a_ball(const depth::BlockFits& fits, const Solid& ball, double low, double high) {
   Errors errors;
   for (int row = 2; row < fits.grid.rows - 2; ++row) {

@@ -192,7 +192,7 @@ double variance_of(const std::vector<double>& p, double length) {
   return sum;
 }
 
-// Of windows that the correlation reaches across, as of those that it does not.
+// The same of windows that the correlation reaches across and of those that it does not.
 TEST(Blocks, SharedErrorOfATermIsWhatCorrelationLeavesOfIt) {
   for (const double length : {2.0, 3.0, 4.0}) {                     // blocks
     const double c = 2 * length * std::sqrt(2 * std::numbers::pi);  // its square counts pixels

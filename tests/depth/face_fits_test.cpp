@@ -67,7 +67,7 @@ void each_block(const Truth& truth, NoiseKind noise, const Visit& visit) {
   }
 }
 
-// Of the blocks up to two from another face: the share whose normal is far from their own's.
+// The share of blocks up to two from another face whose normal is far from their own face's.
 double share_turned_away(const std::vector<Solid>& solids, NoiseKind noise) {
   const Truth truth(solids);
   int blocks = 0;
@@ -86,7 +86,7 @@ struct Errors {
   double turn = 0;    // rad, root mean square
 };
 
-// Of the blocks more than two and up to six from another face.
+// The same of blocks more than two and up to six from another face.
 Errors errors_beside_edges(const std::vector<Solid>& solids, NoiseKind noise) {
   const Truth truth(solids);
   Errors sums;

@@ -49,7 +49,7 @@ struct ImageErrors {
   int count = 0;
 };
 
-/// Of the pixels whose true depths are within nearest ... farthest, three on either side included.
+/// Counts pixels whose true depths are within nearest ... farthest, three on either side included.
 ImageErrors errors_of(const Image& image, const Image& truth, float closest, float farthest) {
   ImageErrors errors;
   const auto known = [&](std::size_t i) { return truth[i] >= closest && truth[i] <= farthest; };

@@ -66,7 +66,7 @@ TEST_F(TemporalFilterTest, SlopesAreAveragedAlike) {
   EXPECT_LT(sd, kSlopeSd / 3);  // a running mean of weight 1/8 ends at 1 / sqrt(15)
 }
 
-// As beside rims, where a fit's window depends on the noise.
+// Rims do that: a fit's window depends on the noise there.
 TEST_F(TemporalFilterTest, FitsThatScatterMoreThanTheySayAreAveragedAllTheSame) {
   constexpr double kTimes = 10;
   for (int frame = 0; frame < 60; ++frame) {

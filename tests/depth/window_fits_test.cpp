@@ -137,7 +137,7 @@ TEST(WindowFits, TellTheirOwnErrors) {
   EXPECT_NEAR(slopes / count, 1, 0.35);
 }
 
-// Of many windows around a block, a small one often fails by chance where the largest is a plane:
+// A small one of many windows around a block often fails by chance where the largest is a plane:
 // asked from the smallest on, a tenth of the blocks would be beside an edge.
 TEST(WindowFits, TakeNoChanceForAnEdge) {
   const Solid table = plane({0, 0, 0.7}, Vector3d(0, -0.8, -0.6).normalized());

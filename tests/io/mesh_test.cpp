@@ -226,7 +226,7 @@ TEST(Stl, NamesTheLineOfWhatIsWrong) {
   EXPECT_EQ(read_text(begin + "vertex 0 1 0\nendloop\nendfacet\nENDSOLID\n").mesh->triangles, 1u);
 }
 
-// As many as `PALPATE_TEST_EFFORT` asks for; each may be sampled in full.
+// There are as many as `PALPATE_TEST_EFFORT` asks for; each may be sampled in full.
 TEST(Mesh, FilesWithWrongBytesEndInWordsOrACloud) {
   Random random(7);
   int read = 0;

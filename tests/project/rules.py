@@ -167,7 +167,7 @@ def purpose(root):
 
 def riddles(root):
     """Comments begin with their subject or their verb."""
-    for path in counts.code_of(root, ("include", "src", "apps", "bench", "python")):
+    for path in counts.code_of(root, ("include", "src", "apps", "bench", "tests", "python")):
         for number in counts.riddles(path):
             yield f"{path.relative_to(root)}:{number}: a comment that begins with Of, By, As, To be or Those"
 

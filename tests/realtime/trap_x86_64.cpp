@@ -11,7 +11,7 @@
 namespace palpate::realtime {
 namespace {
 
-// Of <linux/prctl.h>; older headers lack them.
+// Numbers of <linux/prctl.h>; older headers lack them.
 constexpr int kSetSyscallUserDispatch = 59;
 constexpr unsigned long kDispatchOn = 1;
 constexpr char kAllow = 0;

@@ -48,7 +48,7 @@ constexpr unsigned kLongestClutch = 25;  // steps
 constexpr int kLongestWay = 400;         // to a contact, steps
 constexpr double kWorthFading = 0.5;     // N
 
-// Of faults of the device and of time no force is left, from the same step on.
+// Faults of the device and of time leave no force, from the same step on.
 bool is_fatal(Fault fault) {
   switch (fault) {
     case Fault::place_is_no_number:

@@ -99,7 +99,7 @@ TEST_P(TwoFaces, AreToldToTheBlocksOfEachOther) {
     EXPECT_EQ(edge.share, convex ? 1 : -1);
     EXPECT_LT(std::abs(x), radius) << "too far away to matter";
     if (std::abs(x) < 1.5e-3) return;  // which of the two faces a block on the line has
-    // Of the other face: (sin, 0, -cos) of its tilt, through (0, 0, 0.5).
+    // The other face's: (sin, 0, -cos) of its tilt, through (0, 0, 0.5).
     const double tilt = (x > 0) == convex ? -kLean : kLean;
     const Vector3d normal(std::sin(tilt), 0, -std::cos(tilt));
     EXPECT_GT(edge.normal.cast<double>().dot(normal), std::cos(0.05)) << x;

@@ -117,7 +117,7 @@ TEST(NoHoles, InASphereOfRandomPoints) {
   EXPECT_EQ(passed, 0);
 }
 
-/// Of a sphere of 60 mm: two layers `apart` (spacings of 3 mm), each with half of its points.
+/// A sphere of 60 mm as two layers `apart` (spacings of 3 mm), each with half of its points.
 PointCloud thinned_layers(double apart, std::mt19937& random) {
   constexpr double kSphere = 0.06;
   constexpr double kSpacing = 3e-3;

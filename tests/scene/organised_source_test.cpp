@@ -60,7 +60,7 @@ double largest_difference(const std::vector<Vector3d>& one, const std::vector<Ve
   return most;
 }
 
-// As a recording of one frame is.
+// A recording of one frame is read so.
 Source& add_recording(Scene& scene, const DepthFrame& frame) {
   Source& source = scene.add("recording", {.policy = {.fit_everywhere = true}});
   source.push(frame, [] { return 0.0; });

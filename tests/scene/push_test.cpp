@@ -37,7 +37,7 @@ void push(Source& source, double stamp, double height) {
   source.push(frame_of(small_camera(), stamp, wall(0.5 - height)), [=] { return stamp + 0.01; });
 }
 
-// As seen from the sensor's side.
+// Seen from the sensor's side.
 double height_at(SceneField& field, double now) {
   field.update(now, Vector3d::Zero(), Vector3d(0, 0, 8e-3));
   return height_of(field);

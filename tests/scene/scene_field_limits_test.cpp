@@ -189,7 +189,7 @@ TEST(SceneField, SaysWhenKernelOrToolDoNotFitThePoints) {
   EXPECT_EQ(fitting.notes(), FieldNote::none);
 }
 
-// Of metaballs, a ball as large as a support would be in contact where nothing pushes it out.
+// A ball as large as a support would touch metaballs where nothing pushes it out.
 TEST(SceneField, AToolOfAnySizeIsPushedOutAndCountsForWhatTheSupportCarries) {
   constexpr double kRadius = 10e-3;  // R
   for (const Kernel kernel : {Kernel::wyvill, Kernel::wendland}) {

@@ -146,7 +146,7 @@ TEST_F(ASight, KnowsWhenFramesAreDueOfACameraWhoseClockIsAhead) {
   EXPECT_EQ(at({0, 0, 0.4}, 0, kFramePeriod - kAhead + 1e-3).says, Says::old);
 }
 
-// As the guide of a second robot does before it knows the time.
+// The guide of a second robot does so before it knows the time.
 TEST_F(ASight, LearnsNothingFromWhoAsksForATimeOfAnotherClock) {
   stamp_ = 1000;
   for (int k = 0; k < 20; ++k) {

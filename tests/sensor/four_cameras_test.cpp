@@ -36,7 +36,7 @@ struct Lane {
     starts.push_back(from);
   }
 
-  // Of what is felt at time t, s; negative: nothing yet.
+  // The age of what is felt at time t, s; negative: nothing yet.
   [[nodiscard]] double age(double t) const {
     const auto next = std::ranges::upper_bound(starts, t);
     return next == starts.begin() ? -1

@@ -33,7 +33,7 @@ void write_dump(const Folder& folder, int frames) {
   folder.write("INDEX.txt", index);
 }
 
-// By the maker's nominal values: 1.2 m and 75 mm, one pixel of the sensor being 1.042 mm there.
+// The maker's nominal values: 1.2 m and 75 mm, one pixel of the sensor being 1.042 mm there.
 float metres(int raw) {
   return static_cast<float>(1.2 * 0.075 / (0.075 - (raw / 4.0 - 200.375) * 1.042e-3));
 }

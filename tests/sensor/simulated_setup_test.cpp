@@ -19,7 +19,7 @@ std::vector<float> frame_of(const std::string& specification) {
   return frame.depth;
 }
 
-// Of the upper quarter of `approach`, which is wall at 0.9 m.
+// The depths of the upper quarter of `approach`, which is wall at 0.9 m.
 double deviation(const std::string& keys) {
   const std::vector<float> depth = frame_of("approach,silhouettes=0," + keys);
   double squares = 0;

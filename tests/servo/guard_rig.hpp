@@ -7,7 +7,7 @@
 
 namespace palpate::test {
 
-/// Of the links, slew, clamp, fault and watchdog alone.
+/// A guard with the links slew, clamp, fault and watchdog alone.
 inline GuardOptions plain(double maximum_force = std::numeric_limits<double>::infinity()) {
   GuardOptions options;
   options.maximum_force = maximum_force;

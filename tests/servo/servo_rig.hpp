@@ -18,8 +18,8 @@ inline Source& add_sheet(Scene& scene) {
   return source;
 }
 
-/// Of the guard's links, fault, watchdog, slew and clamp alone: without them a force passes bit for
-/// bit.
+/// The guard's links fault, watchdog, slew and clamp alone: without the others a force passes bit
+/// for bit.
 inline ServoOptions first_links() {
   ServoOptions options;
   options.guard.damping = 0;

@@ -191,7 +191,7 @@ class ReferenceField final : public Field {
     return -0.5 * (dot(mean_normal, a) + s.nq / s.trusted);
   }
 
-  /// By e = v |share|, the height above both planes: the larger of the two, or in a crease the
+  /// The height above both planes, by e = v |share|: the larger of the two, or in a crease the
   /// smaller, rounded over a part of R.
   static void add_edge(Sums& s, const ReferencePoint& p, const Eigen::Vector3d& x, const Dual& v) {
     const double share = p.edge.share;
@@ -224,7 +224,7 @@ class ReferenceField final : public Field {
     return (0.35 / options_.minimum_support) * (radius * (constant(level) - support));
   }
 
-  /// By what acute creases are closed (docs/method.md 2.6).
+  /// The height by which acute creases are closed (docs/method.md 2.6).
   [[nodiscard]] Dual closure(const Sums& s, const Dual& radius) const {
     if (!options_.capped) return {};
     const DualVector a = s.q / s.trusted;

@@ -16,7 +16,7 @@ struct Frame {
   [[nodiscard]] bool binary(int kind) const {
     return opcode == 2 && !payload.empty() && payload[0] == kind;
   }
-  /// Of a close frame.
+  /// The status of a close frame.
   [[nodiscard]] int code() const {
     return payload.size() < 2 ? 0
                               : static_cast<unsigned char>(payload[0]) * 256 +

@@ -14,7 +14,7 @@ namespace {
 using test::RawClient;
 using test::ViewerRig;
 
-/// Of this process, those that a program which it starts would have, too.
+/// Files of this process that a program which it starts would have, too.
 std::set<int> inherited() {
   std::set<int> found;
   for (int file = 0; file < 1024; ++file) {
