@@ -2,6 +2,7 @@
 
 #include "prepare/blocks.hpp"
 
+#include <malloc.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
@@ -33,6 +34,9 @@ constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;
 constexpr double kHalo = 3;
 // The same on further levels, where R is 1.5 to 6 of these; there it costs little; judgement.
 constexpr double kSparseHalo = 12;
+
+// Points of pieces that are freed between two looks for memory to give back: some 60 MB; judgement.
+constexpr std::size_t kFreed = std::size_t{1} << 20;
 
 constexpr int kMostHalvings = 11;  // derived: levels of a CellGrid's curve
 
@@ -95,6 +99,7 @@ std::array<double*, 5> times(Prepared::Report& report) {
 }
 
 void add(Prepared::Report one, Prepared::Report& all) {
+  all.voxel = std::max(all.voxel, one.voxel);  // 0 of one without points
   all.points_in += one.points_in;
   all.points_out += one.points_out;
   all.duplicates += one.duplicates;
@@ -198,41 +203,90 @@ std::vector<Piece> Blocks::prepare_all() const {
   return pieces;
 }
 
-Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts, const Vector3d& origin,
-              Kernel kernel) {
-  Stopwatch watch;
-  Prepared joined;
-  SurfacePoints& points = joined.points;
-  std::vector<Vector3f> positions;
-  for (const Piece* const piece : pieces) {
+namespace {
+
+/// Blocks that become one surface, one after the other.
+class Joining {
+ public:
+  explicit Joining(std::size_t points) : points_(points) {}
+
+  void add(const Piece& piece) {
+    SurfacePoints& points = joined_.points;
     const auto sheets = static_cast<std::uint32_t>(points.sheets.part.size());
     const std::size_t before = points.sheets.sheet.size();
-    positions.insert(positions.end(), piece->positions.begin(), piece->positions.end());
-    each_column([](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); },
-                piece->columns, points);
+    append_to(positions_, piece.positions);
+    each_column([&](const auto& from, auto& to) { append_to(to, from); }, piece.columns, points);
     for (std::size_t i = before; i < points.sheets.sheet.size(); ++i) {
       std::uint32_t& sheet = points.sheets.sheet[i];
       if (sheet != SurfacePoints::Sheets::kNone) sheet += sheets;
     }
-    append(piece->columns.sheets, points.sheets);
-    add(piece->report, joined.report);
+    append(piece.columns.sheets, points.sheets);
+    palpate::add(piece.report, joined_.report);
   }
-  points.kernel = kernel;
-  points.origin = origin;
-  CellGrid::Cube cube{facts.extent.lower - points.origin, Division::kBlockEdge * facts.radius};
-  const double longest = facts.extent.size().maxCoeff();
-  for (int k = 0; k < kMostHalvings && cube.edge < longest; ++k) cube.edge *= 2;
-  points.grid = CellGrid(positions, cube);
-  positions = {};
-  each_column([&](auto& column) { column = in_grid_order(points.grid, column); }, points);
-  watch.lap(joined.report.seconds_index);
-  joined.report.spacing = facts.spacing;
-  joined.report.noise = facts.noise.sigma;
-  for (const Piece* const piece : pieces) {  // 0 of one without points
-    joined.report.voxel = std::max(joined.report.voxel, piece->report.voxel);
+
+  [[nodiscard]] Prepared end(const CloudFacts& facts, const Vector3d& origin, Kernel kernel) {
+    SurfacePoints& points = joined_.points;
+    points.kernel = kernel;
+    points.origin = origin;
+    CellGrid::Cube cube{facts.extent.lower - points.origin, Division::kBlockEdge * facts.radius};
+    const double longest = facts.extent.size().maxCoeff();
+    for (int k = 0; k < kMostHalvings && cube.edge < longest; ++k) cube.edge *= 2;
+    points.grid = CellGrid(positions_, cube);
+    positions_ = {};
+    each_column([&](auto& column) { column = in_grid_order(points.grid, column); }, points);
+    joined_.report.spacing = facts.spacing;
+    joined_.report.noise = facts.noise.sigma;
+    watch_.lap(joined_.report.seconds_index);
+    complete(joined_);
+    return std::move(joined_);
   }
-  complete(joined);
-  return joined;
+
+ private:
+  /// Room that no point has filled yet costs address space, not memory.
+  template <class T>
+  void append_to(std::vector<T>& column, const std::vector<T>& more) const {
+    if (!more.empty()) column.reserve(points_);
+    column.insert(column.end(), more.begin(), more.end());
+  }
+
+  std::size_t points_;  // of all blocks
+  Stopwatch watch_;
+  Prepared joined_;
+  std::vector<Vector3f> positions_;
+};
+
+std::size_t points_of(std::span<const Piece* const> pieces) {
+  std::size_t points = 0;
+  for (const Piece* const piece : pieces) points += piece->positions.size();
+  return points;
+}
+
+}  // namespace
+
+Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts, const Vector3d& origin,
+              Kernel kernel) {
+  Joining joining(points_of(pieces));
+  for (const Piece* const piece : pieces) joining.add(*piece);
+  return joining.end(facts, origin, kernel);
+}
+
+Prepared join(std::vector<Piece> pieces, const CloudFacts& facts, const Vector3d& origin,
+              Kernel kernel) {
+  std::vector<const Piece*> all;
+  for (const Piece& piece : pieces) all.push_back(&piece);
+  Joining joining(points_of(all));
+  std::size_t freed = 0;  // points, since memory went back to the system
+  for (Piece& piece : pieces) {
+    joining.add(piece);
+    freed += piece.positions.size();
+    piece = {};
+    if (freed < kFreed) continue;
+    malloc_trim(0);  // many small pieces would stay in the heap
+    freed = 0;
+  }
+  pieces = {};
+  malloc_trim(0);
+  return joining.end(facts, origin, kernel);
 }
 
 }  // namespace palpate

@@ -58,4 +58,8 @@ class Blocks {
 [[nodiscard]] Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts,
                             const Eigen::Vector3d& origin, Kernel kernel);
 
+/// The same, and frees each piece once it is in.
+[[nodiscard]] Prepared join(std::vector<Piece> pieces, const CloudFacts& facts,
+                            const Eigen::Vector3d& origin, Kernel kernel);
+
 }  // namespace palpate

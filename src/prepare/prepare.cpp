@@ -49,10 +49,8 @@ Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
   if (!goes_by_blocks(placed.cloud().size(), options))
     return prepare_at_once(placed, options, report);
   const Blocks blocks(placed, options);
-  const std::vector<Piece> pieces = blocks.prepare_all();
-  std::vector<const Piece*> all;
-  for (const Piece& piece : pieces) all.push_back(&piece);
-  Prepared prepared = join(all, blocks.facts(), placed.cloud().origin, options.kernel);
+  Prepared prepared =
+      join(blocks.prepare_all(), blocks.facts(), placed.cloud().origin, options.kernel);
   prepared.report.points_in = report.points_in;
   prepared.report.seconds_filter += report.seconds_filter;
   return prepared;

@@ -57,7 +57,7 @@ struct OnDemand::Inside {
   void prepare(CloudBlock& block, double now);
   void show_near(Source& source, double now);
   void show_all(Source& source);
-  void publish(Source& source, std::span<const Piece* const> shown, Snapshot snapshot);
+  void publish(Source& source, Prepared joined, Snapshot snapshot);
 
   std::unique_ptr<BlockSupply> supply;
   Kernel kernel;
@@ -214,25 +214,27 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
   snapshot.missing = told_missing = missing(chosen);
-  publish(to, shown, std::move(snapshot));
+  Prepared joined;
+  beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
+  publish(to, std::move(joined), std::move(snapshot));
 }
 
 void OnDemand::Inside::show_all(Source& to) {
-  std::vector<const Piece*> all;
+  std::vector<Piece> all;
   for (CloudBlock& block : blocks) {
     block.piece.columns.presences.clear();
     block.piece.columns.end_presences.clear();
-    all.push_back(&block.piece);
+    all.push_back(std::move(block.piece));
   }
-  publish(to, all, {});
   blocks.clear();
+  Prepared joined;
+  beside_servos([&] { joined = join(std::move(all), supply->facts(), supply->origin(), kernel); });
+  publish(to, std::move(joined), {});
   share = 1;
   done = true;
 }
 
-void OnDemand::Inside::publish(Source& to, std::span<const Piece* const> shown, Snapshot snapshot) {
-  Prepared joined;
-  beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
+void OnDemand::Inside::publish(Source& to, Prepared joined, Snapshot snapshot) {
   joined.report.points_in = supply->points();
   {
     const std::lock_guard lock(to.inside_->mutex);
