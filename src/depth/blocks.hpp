@@ -49,6 +49,7 @@ struct BlockRange {
 
   bool operator==(const BlockRange&) const = default;
   [[nodiscard]] bool empty() const { return columns <= 0 || rows <= 0; }
+  [[nodiscard]] bool has_row(int row) const { return row >= first_row && row < first_row + rows; }
   /// Larger by `border` on all sides, as far as the grid goes.
   [[nodiscard]] BlockRange grown(int border, const BlockGrid& grid) const {
     const int left = std::max(first_column - border, 0);
@@ -200,9 +201,9 @@ struct SameSurface {
 /// `scratch` is kept for its memory.
 void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch);
 
-/// Plain fits: each block's own mean, its slopes by least squares over those of its eight
+/// Plain fits of a row: each block's own mean, its slopes by least squares over those of its eight
 /// neighbours that show the same surface.
-void fit_plain(const Blocks& blocks, const NoiseModel& noise, BlockFits& fits);
+void fit_plain(const Blocks& blocks, const NoiseModel& noise, int row, BlockFits& fits);
 
 inline constexpr int kLongestGap = 3;  ///< blocks (docs/method.md 6.3)
 

@@ -86,32 +86,31 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// States, places, normals, deviations and spacings from the fits. A block that a fit puts clearly
-// out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
-void write_points(const BlockFits& fits, const DepthFilterOptions& range, FilteredDepth& out) {
+// States, places, normals, deviations and spacings of a row from its fits. A block that a fit puts
+// clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
+void write_row(const BlockFits& fits, int row, const DepthFilterOptions& range,
+               FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
   const auto farthest = static_cast<float>(1 / ((1 + kBeyond) * range.farthest));
   const auto nearest = static_cast<float>((1 + kBeyond) / range.nearest);
-  for_rows(grid, [&](int row) {
-    const Rays rays{static_cast<float>(grid.y(row)), static_cast<float>(grid.step_x),
-                    static_cast<float>(grid.step_y), static_cast<float>(out.pitch)};
-    Part part;
-    for (int first = 0; first < grid.columns; first += Part::kMost) {
-      const int count = std::min(Part::kMost, grid.columns - first);
-      std::size_t i = grid.index(first, row);
-      for (int k = 0; k < count; ++k) part.x[k] = static_cast<float>(grid.x(first + k));
-      rays.follow(fits, i, count, part, out);
-      for (int k = 0; k < count; ++k, ++i) {
-        const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
-        out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
-        out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
-        const bool known = fits.confidences[i] > 0;
-        const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);
-        out.normals[i] = known ? normal : Vector3f(Vector3f::Zero());
-        out.confidences[i] = fits.confidences[i];
-      }
+  const Rays rays{static_cast<float>(grid.y(row)), static_cast<float>(grid.step_x),
+                  static_cast<float>(grid.step_y), static_cast<float>(out.pitch)};
+  Part part;
+  for (int first = 0; first < grid.columns; first += Part::kMost) {
+    const int count = std::min(Part::kMost, grid.columns - first);
+    std::size_t i = grid.index(first, row);
+    for (int k = 0; k < count; ++k) part.x[k] = static_cast<float>(grid.x(first + k));
+    rays.follow(fits, i, count, part, out);
+    for (int k = 0; k < count; ++k, ++i) {
+      const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
+      out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
+      out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
+      const bool known = fits.confidences[i] > 0;
+      const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);
+      out.normals[i] = known ? normal : Vector3f(Vector3f::Zero());
+      out.confidences[i] = fits.confidences[i];
     }
-  });
+  }
 }
 
 }  // namespace
@@ -167,13 +166,13 @@ struct DepthFilter::State {
                            static_cast<float>(options.farthest)});
   }
 
-  // Fits, in this view, without regard to earlier frames.
-  void fit(const DepthFrame& frame) {
+  // Fits, in this view, without regard to earlier frames: the rows of the answer; others are only
+  // averaged yet.
+  depth::BlockRange fit(const DepthFrame& frame) {
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
-    depth::fit_plain(blocks, out.noise, fits);
-    window_fits.fit(blocks, out.noise, options.normal_error, region, fits);
+    return window_fits.fit(blocks, out.noise, options.normal_error, region, fits);
   }
 
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
@@ -191,11 +190,15 @@ struct DepthFilter::State {
 
   // In its view, from what has been measured and what is remembered.
   const FilteredDepth& points(const DepthFrame& frame) {
-    fit(frame);
-    temporal.filter(
-        depth::temporal_options(options.memory, out.noise.correlation, options.normal_error),
-        out.T_world_sensor, fits);
-    depth::write_points(fits, options, out);
+    const depth::BlockRange fitted = fit(frame);
+    const depth::TemporalOptions in_time =
+        depth::temporal_options(options.memory, out.noise.correlation, options.normal_error);
+    temporal.begin(fits.grid, out.T_world_sensor);
+    depth::for_rows(fits.grid, [&](int row) {  // all of it while the processor's cache holds it
+      if (!fitted.has_row(row)) depth::fit_plain(blocks, out.noise, row, fits);
+      temporal.filter_row(in_time, row, fits);
+      depth::write_row(fits, row, options, out);
+    });
     return out;
   }
 };

@@ -221,12 +221,12 @@ void FaceFits::give(std::span<const Face* const> faces, float rho, float sigma, 
 
 void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, int tile_row,
                      BlockFits& fits) const {
-  const int bottom = std::min(tile_row + kAround, tile_rows_ - 1);
+  const int bottom = std::min(tile_row + kAround, end_ - 1);
   for (int tile = 0; tile < tiles_; ++tile) {
     const Face* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
     const int right = std::min(tile + kAround, tiles_ - 1);
-    for (int r = std::max(tile_row - kAround, 0); r <= bottom; ++r) {
+    for (int r = std::max(tile_row - kAround, first_); r <= bottom; ++r) {
       for (int c = std::max(tile - kAround, 0); c <= right; ++c) {
         const Face& face = faces_[static_cast<std::size_t>(r) * tiles_ + c];
         if (face.found) near[count++] = &face;
@@ -247,15 +247,17 @@ void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, int t
 void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
                      BlockFits& fits) {
   tiles_ = (fits.grid.columns + kTile - 1) / kTile;
-  tile_rows_ = (fits.grid.rows + kTile - 1) / kTile;
-  faces_.resize(static_cast<std::size_t>(tiles_) * tile_rows_);
+  first_ = input.table.first_row / kTile;
+  end_ = (input.table.first_row + input.table.rows + kTile - 1) / kTile;
+  faces_.resize(static_cast<std::size_t>(tiles_) * end_);
   constexpr std::size_t kAtATime = 4;  // rows of tiles that a thread takes at once (judgement)
-  const auto rows = static_cast<std::size_t>(tile_rows_);
+  const auto rows = static_cast<std::size_t>(end_ - first_);
   detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
-    find(input, filled, noise, fits, static_cast<int>(row));
+    find(input, filled, noise, fits, first_ + static_cast<int>(row));
   });
-  detail::parallel_each(rows, kAtATime,
-                        [&](std::size_t row) { share(input, noise, static_cast<int>(row), fits); });
+  detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
+    share(input, noise, first_ + static_cast<int>(row), fits);
+  });
 }
 
 }  // namespace palpate::depth

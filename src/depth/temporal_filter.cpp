@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.hpp"
-
 namespace palpate::depth {
 namespace {
 
-constexpr std::size_t kBlocksAtATime = 4096;  // blocks that a thread takes at once (judgement)
-constexpr float kLonger = 8;                  // times the memory, at most (docs/method.md 6.6)
+constexpr float kLonger = 8;    // times the memory, at most (docs/method.md 6.6)
 constexpr int kCalmFrames = 2;  // calm frames after which a moving block rests (docs/method.md 6.6)
 constexpr float kLearn = 1 / 16.F;  // share of a frame in the learned scatter (docs/method.md 6.6)
 
@@ -188,7 +185,7 @@ void TemporalFilter::reset() {
   std::fill(memory_.begin(), memory_.end(), BlockMemory{});
 }
 
-void TemporalFilter::prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
+void TemporalFilter::begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
   if (grid != grid_) {
     grid_ = grid;
     memory_.assign(grid.size(), {});
@@ -199,19 +196,18 @@ void TemporalFilter::prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_w
   T_world_sensor_ = T_world_sensor;
 }
 
-void TemporalFilter::filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
-                            BlockFits& fits) {
-  prepare(fits.grid, T_world_sensor);
+void TemporalFilter::filter_row(const TemporalOptions& options, int row, BlockFits& fits) {
   const auto gate2 = static_cast<float>(options.gate * options.gate);
-  detail::parallel_each(memory_.size(), kBlocksAtATime, [&](std::size_t i) {
+  const std::size_t first = grid_.index(0, row);
+  for (std::size_t i = first; i < first + static_cast<std::size_t>(grid_.columns); ++i) {
     BlockMemory& m = memory_[i];
     if (fits.states[i] == FilteredDepth::State::empty) {
       miss(options.hold, m);
-      return;
+      continue;
     }
     step(measured(fits, i), options, gate2, m);
     write(m, i, fits);
-  });
+  }
 }
 
 }  // namespace palpate::depth

@@ -87,12 +87,15 @@ struct TemporalOptions {
 /// is measured. Bounded work; it allocates only when the grid's size changes.
 class TemporalFilter {
  public:
-  /// Takes in one frame and replaces its columns by the filtered ones. Empty blocks stay empty, but
-  /// are remembered for TemporalOptions::hold frames, and continue if they are measured by then.
-  /// `T_world_sensor` is the pose at the stamp; if it has changed, the memory is put into the new
-  /// view first. A block whose state changes between plain and fitted starts again.
-  void filter(const TemporalOptions& options, const Eigen::Isometry3d& T_world_sensor,
-              BlockFits& fits);
+  /// Before the rows of a frame. `T_world_sensor` is the pose at the stamp; if it has changed, the
+  /// memory is put into the new view.
+  void begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
+
+  /// Takes in one row of the frame and replaces its columns by the filtered ones; several threads
+  /// may take different rows. Empty blocks stay empty, but are remembered for
+  /// TemporalOptions::hold frames, and continue if they are measured by then. A block whose state
+  /// changes between plain and fitted starts again.
+  void filter_row(const TemporalOptions& options, int row, BlockFits& fits);
 
   void reset();
 
@@ -100,8 +103,6 @@ class TemporalFilter {
   [[nodiscard]] std::span<const BlockMemory> memory() const { return memory_; }
 
  private:
-  void prepare(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
-
   BlockGrid grid_;
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   std::vector<BlockMemory> memory_;

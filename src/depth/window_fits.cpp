@@ -156,34 +156,39 @@ void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region) {
   }
 }
 
-void WindowFits::fit_row(const simd::FitInput& in, int row, std::span<const std::int32_t> columns,
-                         BlockFits& fits) const {
-  functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
-  const std::size_t first = fits.grid.index(0, row);
-  for (const std::int32_t column : columns)
-    fits.states[first + column] = FilteredDepth::State::fitted;
+/// Those of the region's blocks in a row.
+std::span<const std::int32_t> WindowFits::columns_of(const BlockRange& range, int row) const {
+  if (!range.has_row(row)) return {};
+  const auto r = static_cast<std::size_t>(row - range.first_row);
+  return std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]);
 }
 
-void WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
-                     const FitRegion& region, BlockFits& fits) {
+BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
+                           const FitRegion& region, BlockFits& fits) {
   const BlockGrid& grid = blocks.grid;
   if (filled_.grid != grid) {
     table_.resize(static_cast<std::size_t>(grid.columns + 1) * (grid.rows + 1));
     columns_.reserve(grid.size());
     row_begin_.reserve(static_cast<std::size_t>(grid.rows) + 1);
   }
-  if (region.range().empty()) return;
+  if (region.range().empty()) return {};
   const BlockRange range = region.range().grown(kBorder, grid);
   fill_gaps(blocks, noise, range, filled_);
   const simd::FitInput in = input(blocks, noise, normal_error, range);
   functions_->table(in.table, rows_of(filled_));
   list_columns(blocks, region);
-  const auto count = static_cast<std::size_t>(region.range().rows);
-  detail::parallel_each(count, kRowsAtATime, [&](std::size_t r) {
-    fit_row(in, region.range().first_row + static_cast<int>(r),
-            std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]), fits);
+  detail::parallel_each(static_cast<std::size_t>(range.rows), kRowsAtATime, [&](std::size_t r) {
+    const int row = range.first_row + static_cast<int>(r);
+    fit_plain(blocks, noise, row, fits);
+    const auto columns = columns_of(region.range(), row);
+    functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
+    const std::size_t first = grid.index(0, row);
+    for (const std::int32_t column : columns) {
+      fits.states[first + static_cast<std::size_t>(column)] = FilteredDepth::State::fitted;
+    }
   });
   faces_.refit(in, filled_, noise, fits);
+  return range;
 }
 
 }  // namespace palpate::depth

@@ -90,7 +90,8 @@ class FaceFits {
                    BlockFits& fits);
 
   int tiles_ = 0;  // in a row
-  int tile_rows_ = 0;
+  int first_ = 0;  // row of tiles with rows of the input; others hold no fitted block
+  int end_ = 0;
   std::vector<Face> faces_;
 };
 
@@ -126,9 +127,11 @@ class WindowFits {
   explicit WindowFits(const simd::FitFunctions& functions = simd::best_fits())
       : functions_(&functions) {}
 
-  /// Replaces the plain fits of the region's blocks where a window fits.
-  void fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
-           const FitRegion& region, BlockFits& fits);
+  /// Fits all blocks of the rows that windows of the region reach: the region's where a window
+  /// fits, the others plainly.
+  /// @return a range with these rows; other rows of `fits` are as they were.
+  [[nodiscard]] BlockRange fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
+                               const FitRegion& region, BlockFits& fits);
 
  private:
   struct alignas(64) Place {
@@ -138,9 +141,7 @@ class WindowFits {
   [[nodiscard]] simd::FitInput input(const Blocks& blocks, const NoiseModel& noise,
                                      double normal_error, const BlockRange& range);
   void list_columns(const Blocks& blocks, const FitRegion& region);
-  void fit_row(const simd::FitInput& in, int row, std::span<const std::int32_t> columns,
-               BlockFits& fits) const;
-
+  [[nodiscard]] std::span<const std::int32_t> columns_of(const BlockRange& range, int row) const;
   const simd::FitFunctions* functions_;
   Blocks filled_;
   std::vector<Place> table_;

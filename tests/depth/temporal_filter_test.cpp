@@ -29,7 +29,7 @@ class TemporalFilterTest : public ::testing::Test {
   void show(const BlockScene& scene, const TemporalOptions& options = {},
             const Eigen::Isometry3d& pose = kStill) {
     test::measure(scene, pose, kSd, kSlopeSd, random_, fits_);
-    filter_.filter(options, pose, fits_);
+    test::filter(filter_, options, pose, fits_);
   }
 
   /// Blocks of which no frame but the last is remembered.
@@ -73,7 +73,7 @@ TEST_F(TemporalFilterTest, FitsThatScatterMoreThanTheySayAreAveragedAllTheSame) 
     test::measure({}, kStill, kTimes * kSd, kTimes * kSlopeSd, random_, fits_);
     std::ranges::fill(fits_.variance, static_cast<float>(kSd * kSd));
     std::ranges::fill(fits_.slope_variance, static_cast<float>(kSlopeSd * kSlopeSd));
-    filter_.filter({}, kStill, fits_);
+    test::filter(filter_, {}, kStill, fits_);
   }
   EXPECT_LT(begun(), 30);
   EXPECT_LT(errors_of(fits_, {}, kStill).rms, 0.5 * kTimes * depth_sd(0.8));
@@ -88,7 +88,7 @@ TEST_F(TemporalFilterTest, AMemoryOfOneFrameChangesNothing) {
   for (int frame = 0; frame < 3; ++frame) {
     test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
     const std::vector<float> rho = fits_.rho;
-    filter_.filter(options, kStill, fits_);
+    test::filter(filter_, options, kStill, fits_);
     EXPECT_EQ(fits_.rho, rho);
   }
 }
@@ -165,7 +165,7 @@ TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsRememberedForAWhile) {
       test::measure({}, kStill, kSd, kSlopeSd, random_, fits_);
       fits_.states[7] = FilteredDepth::State::empty;
       fits_.rho[7] = 0;
-      filter_.filter(options, kStill, fits_);
+      test::filter(filter_, options, kStill, fits_);
       EXPECT_EQ(fits_.states[7], FilteredDepth::State::empty);
       EXPECT_EQ(filter_.memory()[8].missed, 0);
     }
@@ -187,7 +187,7 @@ TEST_F(TemporalFilterTest, WhatIsNotMeasuredIsRememberedForAWhile) {
 TEST_F(TemporalFilterTest, WhatComesBackElsewhereStartsAnew) {
   for (int frame = 0; frame < 5; ++frame) show({.plane_point = {0, 0, 0.6}});
   std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::empty);
-  filter_.filter({}, kStill, fits_);
+  test::filter(filter_, {}, kStill, fits_);
   EXPECT_EQ(begun(), 0);
   show({});
   EXPECT_EQ(begun(), 3000);
@@ -197,7 +197,7 @@ TEST_F(TemporalFilterTest, ABlockThatBecomesFittedStartsAnew) {
   const auto show_plain = [&](double z) {
     test::measure({.plane_point = {0, 0, z}}, kStill, 20 * kSd, kSlopeSd, random_, fits_);
     std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::plain);
-    filter_.filter({}, kStill, fits_);
+    test::filter(filter_, {}, kStill, fits_);
   };
   for (int frame = 0; frame < 5; ++frame) show_plain(0.8);
   show({});
@@ -224,7 +224,7 @@ TEST_F(TemporalFilterTest, BlocksWithoutSlopesDoNotSpoilThem) {
     fits_.confidences[i] = fits_.slope_variance[i] = 0;
     fits_.slope_x[i] = slope;  // means nothing
   }
-  filter_.filter({}, kStill, fits_);
+  test::filter(filter_, {}, kStill, fits_);
   for (std::size_t i = 0; i < fits_.size(); ++i) {
     ASSERT_LT(std::abs(fits_.slope_x[i]), 5 * kSlopeSd);
     ASSERT_NEAR(fits_.confidences[i], 7.0 / 8, 1e-5);

@@ -5,8 +5,16 @@
 
 #include "base/numbers.hpp"
 #include "depth/blocks.hpp"
+#include "depth/temporal_filter.hpp"
 
 namespace palpate::test {
+
+/// Takes in all rows of a frame.
+inline void filter(depth::TemporalFilter& filter, const depth::TemporalOptions& options,
+                   const Eigen::Isometry3d& T_world_sensor, depth::BlockFits& fits) {
+  filter.begin(fits.grid, T_world_sensor);
+  for (int row = 0; row < fits.grid.rows; ++row) filter.filter_row(options, row, fits);
+}
 
 /// A camera of 160 x 120 blocks whose blocks are as wide as the Kinect's.
 inline depth::BlockGrid block_camera(int columns = 160, int rows = 120) {

@@ -32,13 +32,13 @@ class TemporalWarpTest : public ::testing::Test {
 
   void show(const BlockScene& scene, const Isometry3d& pose, double sd = kWarpSd) {
     test::measure(scene, pose, sd, kWarpSlopeSd, random_, fits_);
-    filter_.filter({}, pose, fits_);
+    test::filter(filter_, {}, pose, fits_);
   }
 
   /// An image in which nothing is measured; fits_ gets what is remembered.
   void show_nothing(const Isometry3d& pose) {
     std::fill(fits_.states.begin(), fits_.states.end(), FilteredDepth::State::empty);
-    filter_.filter({}, pose, fits_);
+    test::filter(filter_, {}, pose, fits_);
     for (std::size_t i = 0; i < fits_.size(); ++i) {
       const BlockMemory& m = filter_.memory()[i];
       fits_.states[i] = m.count > 0 ? m.state : FilteredDepth::State::empty;
@@ -62,7 +62,7 @@ TEST_F(TemporalWarpTest, APlaneIsTheSamePlaneInEveryView) {
   const BlockScene scene{.plane_normal = Vector3d(0.3, -0.4, -1).normalized()};
   const Isometry3d before = turned(0.2, Vector3d(1, 2, 3).normalized(), {0.1, 0, 0});
   test::measure(scene, before, 0, 0, random_, fits_);
-  filter_.filter({}, before, fits_);
+  test::filter(filter_, {}, before, fits_);
   const Isometry3d after =
       before * turned(0.04, Vector3d(-1, 1, 1).normalized(), {0.02, 0.01, 0.03});
   show_nothing(after);
@@ -126,7 +126,7 @@ TEST_F(TemporalWarpTest, TheNearerSurfaceHidesTheOther) {
   const Isometry3d start = Isometry3d::Identity();
   const Isometry3d aside = turned(0, Vector3d::UnitY(), {0.03, 0, 0});
   test::measure(scene, start, 0, 0, random_, fits_);
-  filter_.filter({}, start, fits_);
+  test::filter(filter_, {}, start, fits_);
   show_nothing(aside);
   // What the new view sees of the ball is ball or not known, never the plane behind it.
   const Isometry3d T_sensor_world = aside.inverse();
@@ -181,7 +181,7 @@ TEST_F(TemporalWarpTest, WhateverComesStaysFinite) {
       fits_.slope_variance[i] = static_cast<float>(random_.uniform());
       fits_.confidences[i] = random_.uniform() < 0.5 ? 0.0F : 1.0F;
     }
-    filter_.filter({}, pose, fits_);
+    test::filter(filter_, {}, pose, fits_);
     for (std::size_t i = 0; i < fits_.size(); ++i) {
       if (fits_.states[i] == FilteredDepth::State::empty) continue;
       ASSERT_TRUE(std::isfinite(fits_.rho[i]) && fits_.rho[i] > 0);
