@@ -86,8 +86,8 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// States, places, normals, deviations and spacings from the fits. A block that a fit puts clearly
-// out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
+// Writes states, places, normals, deviations and spacings of the fits. A block that a fit puts
+// clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
 void write_points(const BlockFits& fits, const DepthFilterOptions& range, FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
   const auto farthest = static_cast<float>(1 / ((1 + kBeyond) * range.farthest));
@@ -167,7 +167,7 @@ struct DepthFilter::State {
                            static_cast<float>(options.farthest)});
   }
 
-  // Fits, in this view, without regard to earlier frames.
+  // Fits a frame without regard to earlier ones.
   void fit(const DepthFrame& frame) {
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
@@ -189,7 +189,7 @@ struct DepthFilter::State {
     return points(frame);
   }
 
-  // In its view, from what has been measured and what is remembered.
+  // Fits a frame in its own view and averages it with what is remembered.
   const FilteredDepth& points(const DepthFrame& frame) {
     fit(frame);
     temporal.filter(

@@ -76,7 +76,8 @@ struct OnDemand::Inside {
   std::mutex mutex;  // of advance()
 };
 
-/// Where tools are; at the cloud's start before there are any.
+/// Reads where tools are (the cloud's start before there are any), lists the blocks there and
+/// measures how far each is.
 void OnDemand::Inside::look(const Source& at, double now) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
@@ -195,7 +196,7 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   Snapshot snapshot;
   if (!first) snapshot.start = now + kLead;
   snapshot.end = snapshot.start + (first ? 0 : kAppear);
-  // What rises goes on where it will be.
+  // A block whose presence still rises goes on from where that is at the new start.
   const double past = std::clamp((snapshot.start - last_start) / kAppear, 0., 1.);
   last_start = snapshot.start;
   const std::vector<CloudBlock*> chosen = this->chosen();

@@ -31,7 +31,7 @@ inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
 
 struct PolicyOptions {
   std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
-  int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; unset by `replace`, `morph`
+  int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; the others do not use it
   double silence = 0.3;  ///< fade a surface after this long without new data, s
   double fade = 0.5;     ///< duration of that fade, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
@@ -221,8 +221,8 @@ class Source {
   /// until a frame is pushed after the first call. Any thread but a servo's.
   [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
-  /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a
-  /// servo's.
+  /// The newest surface's newest layer (of one that came by publish(), its first), for those who
+  /// draw or explore; may be null. Any thread but a servo's.
   [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
   /// Its state. Any thread but a servo's. Scene::state() adds the disagreement with other sources.

@@ -70,8 +70,8 @@ class FrameBlocks {
   /// everywhere. Allocates only to grow.
   void look(const FilteredDepth& depth, std::span<const Ball> reach, bool everywhere);
 
-  /// Puts the frame where its camera is. `streams`: what varies among frames counts for less.
-  /// Returns whether blocks see elsewhere than those of the frame before.
+  /// Puts the frame where its camera is. `streams`: more than one frame has come, so points weigh
+  /// by their trust. Returns whether blocks see elsewhere than those of the frame before.
   bool put(const FilteredDepth& depth, const Eigen::Vector3d& origin, bool streams);
 
   [[nodiscard]] const BlockOrder& order() const { return order_; }
