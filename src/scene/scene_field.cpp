@@ -13,8 +13,8 @@
 
 #include "field/evaluate.hpp"
 #include "scene/patch_cache.hpp"
-#include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
+#include "scene/source_view.hpp"
 
 namespace palpate {
 namespace {

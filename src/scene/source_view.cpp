@@ -1,11 +1,12 @@
 // Follows the snapshots of one source in time, as one reader sees them.
+#include "scene/source_view.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "scene/scene_view.hpp"
 
 namespace palpate {
 namespace {
