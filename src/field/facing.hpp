@@ -67,11 +67,11 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
-  /// The proxy is where nothing is solid: all is decided again, and what was seen on the way
+  /// Has all decided again, for a proxy that is where nothing is solid. What was seen on the way
   /// counts.
   void reopen() noexcept;
 
-  /// Nothing was seen before.
+  /// Forgets what is decided and what was seen.
   void forget() noexcept;
 
   /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point

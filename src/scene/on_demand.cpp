@@ -106,9 +106,9 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// What is shown first where there is no room for all: what tools can reach, then what is near.
-/// What is shown already stays before others, or a hand's way would change what is shown all the
-/// time.
+/// Ranks a block where there is no room for all: first what tools can reach, then what is near.
+/// What is shown already comes before others of its kind, or a hand's way would change what is
+/// shown all the time.
 int OnDemand::Inside::rank(const CloudBlock& block) const {
   if (block.distance <= 0) return 0;
   return (block.distance <= near ? 1 : 3) + (block.state == State::shown ? 0 : 1);

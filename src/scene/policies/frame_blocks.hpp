@@ -76,7 +76,7 @@ class FrameBlocks {
 
   [[nodiscard]] const BlockOrder& order() const { return order_; }
 
-  /// What four places show that follow one another; behind the last the last again.
+  /// What four places show that follow one another; the last place stands for those beyond it.
   [[nodiscard]] SeenFour four_at(std::size_t place) const;
 
   /// Fetches for four_at() ahead of time.
