@@ -100,7 +100,7 @@ struct Snapshot {
 
 /// What a depth camera's newest frames say of a ball.
 struct Seen {
-  /// In order: of several cameras, the last counts.
+  /// In rising order: of what several cameras say, the last one in this list counts.
   enum class Says {
     outside,  ///< the ball, or part of it, is not in the picture
     nothing,  ///< nothing is measured there
@@ -145,8 +145,8 @@ class Source {
     [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
   };
 
-  /// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
-  /// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now
+  /// Says when the surface of a pushed frame or cloud is to start being felt, s, on the clock that
+  /// SceneField::update is given. Asked once, when all that needs no start is done. Live: now
   /// plus a lead in which the rest is done (some ms for a depth frame); a surface that comes after
   /// its start all the same begins where the last one waits and catches up. In simulated time: the
   /// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
