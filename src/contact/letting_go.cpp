@@ -7,16 +7,17 @@ namespace palpate {
 namespace {
 
 constexpr double kFaded = 0.01;  // of the stiffness: a spring that is gone
-constexpr double kWaits = 2;     // of R that a hand moves before it is no longer the same press
+constexpr double kWaits = 2;     // of R: a hand that moves farther ends the wait (judgement)
 constexpr double kHardest = 10;  // N in free air: desktop devices sustain less (judgement)
 constexpr double kFar = 10;      // of R, from the proxy (judgement)
 constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneField)
 
 }  // namespace
 
-// A sensor that does not see what the hand presses takes the surface away and brings it back. Until
-// then the proxy keeps its side, on the plane that it touched (`place`, `normal`), without force;
-// the tank pays for what comes back with what the spring held. A hand that moves on is free.
+// Waits where a contact's surface vanished: a sensor that does not see what the hand presses takes
+// it away and brings it back. Until then the proxy keeps its side, on the plane that it touched
+// (`place`, `normal`), without force. The tank keeps what the spring held, which pays for the
+// stiffness that comes back. A hand that moves on is free.
 void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                           const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
   const double depth = normal.dot(place - hip);
@@ -30,8 +31,8 @@ void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eige
   tank_.take_over(0);
 }
 
-// A contact whose surface was not found in this step. The spring goes on from as far as the proxy
-// came; where the search was not only cut short, it fades after a moment.
+// Keeps the spring of a contact whose surface was not found in this step, at the place to which the
+// proxy came. It fades after kKeepLost, unless the search had only run out of its budget.
 void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   contact.normal = normal_;
@@ -43,10 +44,11 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
-// Who passed through a surface is not held by it from within: the spring fades with a time constant
-// of 20 ms. A proxy that moves fast is not asked: what a step saw beyond its patch tells the next
-// one the sides (SceneField), and looking elsewhere would forget it. And no hand is held hard in
-// free air for long; the inside of a scanned body is free air, too.
+// Lets go of a hand whose proxy passed through a surface and is held by it from within: the spring
+// fades with a time constant of 20 ms. A proxy that moves fast is not looked at: what a step saw
+// beyond its patch tells the next one the sides (SceneField), and looking elsewhere would forget
+// it. Lets go as well of a hand that is held hard in free air for long; the inside of a scanned
+// body is free air, too.
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
                               const Eigen::Vector3d& hip, double dt, Contact& contact,
                               bool changed) noexcept {
@@ -67,9 +69,9 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
   if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
 }
 
-// Never through what cannot be found: from a free place to the first contact; from inside, only
-// when the hand has come out again in front of where it went in. Until then the proxy waits there,
-// without force.
+// Ends a contact that is lost, and never takes the proxy through what cannot be found. From a free
+// place it goes to the first contact; from inside only when the hand has come out again in front of
+// where it went in. Until then the proxy waits there, without force.
 void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
   if (since_.lost <= kKeepLost) return;
   if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);

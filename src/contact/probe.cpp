@@ -31,7 +31,8 @@ double held_stretch(const FrictionLaw& law, double normal, double tangential,
 
 namespace {
 
-// Orthogonal, and oblique to the axes: on the axis-aligned planes that people build, all vary.
+// Orthogonal, and oblique to the axes: on the axis-aligned planes that people build, all three
+// sinusoids vary.
 constexpr std::array<std::array<double, 3>, 3> kDirections{
     {{2. / 3, -1. / 3, 2. / 3}, {2. / 3, 2. / 3, -1. / 3}, {-1. / 3, 2. / 3, 2. / 3}}};
 

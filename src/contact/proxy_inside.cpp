@@ -55,7 +55,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
   await(probe, before, side, held ? hand_ : pressed_, hip);
   step_length_ = probe.step_length();
-  const bool first = !revision_;  // since a reset, which may be into a solid
+  const bool first = !revision_;  // step since a reset, which may put the proxy into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
   free_hand(probe, before, hip, dt, contact, changed);
   revision_ = probe.traits().revision;
@@ -91,7 +91,8 @@ double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eige
   return jump > kLeastFall * step_length_ ? jump : 0;
 }
 
-// What the spring that a surface ended gives up while it fades pays for the one that takes over.
+// Lets the contact that there is now go on with the tank of `before`. What the spring that ended
+// gives up while it fades pays for the stiffness that this one still lacks.
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   tank_ = before;

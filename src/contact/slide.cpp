@@ -129,9 +129,9 @@ class Slider {
     return std::max(kLeastPace, moved.squaredNorm() / fallen);
   }
 
-  // Along the surface is no way on. At the foot of a wall the tangent plane runs into the wall, and
-  // that is the end; but at a sharp edge it runs into free space, from where the hand may be free,
-  // or nearer to another face.
+  // Leaves the surface where no step along it was accepted. At the foot of a wall the tangent plane
+  // runs into the wall, and that is the end; but at a sharp edge it runs into free space, from
+  // where the hand may be free, or nearer to another face.
   [[nodiscard]] Turn leap(const Eigen::Vector3d& step) noexcept {
     const SurfacePoint& at = result_.at;
     if (options_.method == ProxyOptions::Method::single_step) return Turn::stop;
@@ -160,7 +160,7 @@ class Slider {
     return scale * options_.tangent_tolerance * result_.at.radius;
   }
 
-  // Returns the length that was accepted; 0: none.
+  // Tries a step along `direction`, halved until it is accepted. Returns its length; 0: none was.
   [[nodiscard]] double move(const Eigen::Vector3d& direction, double step, double length) noexcept {
     const bool tiny = step < options_.tangent_tolerance * result_.at.radius;
     const int halvings =

@@ -125,7 +125,7 @@ void WayOut::wander(Probe& probe, const Eigen::Vector3d& place) noexcept {
   ++direction_;
 }
 
-/// All that was found of the proxy's way is forgotten.
+/// Forgets what was found of the proxy's way out: it is looked for from `place`.
 void WayOut::ask(const Eigen::Vector3d& place) noexcept {
   state_ = State::asked;
   direction_ = 0;

@@ -10,8 +10,8 @@ namespace palpate {
 ///
 /// A place has a way out if one leads from it to open air, 256 R away: straight, or along what is
 /// in the way. A proxy that has been in open air hardly comes to a place without a way out, unless
-/// a surface let it pass; that surface holds it from within. The sides of points do not count but
-/// near where a way begins. Real-time.
+/// a surface let it pass; that surface holds it from within. The sides of points count only near
+/// where a way begins. Real-time.
 class WayOut {
  public:
   /// What a step spends at most, evaluations.

@@ -86,8 +86,8 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// States, places, normals, deviations and spacings of a row from its fits. A block that a fit puts
-// clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
+// Writes states, places, normals, deviations and spacings of a row from its fits. A block that a fit
+// puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
 void write_row(const BlockFits& fits, int row, const DepthFilterOptions& range,
                FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
@@ -166,9 +166,14 @@ struct DepthFilter::State {
                            static_cast<float>(options.farthest)});
   }
 
+<<<<<<< HEAD
   // Fits, in this view, without regard to earlier frames: the rows of the answer; others are only
   // averaged yet.
   depth::BlockRange fit(const DepthFrame& frame) {
+=======
+  // Fits a frame without regard to earlier ones.
+  void fit(const DepthFrame& frame) {
+>>>>>>> engineers
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
@@ -188,7 +193,7 @@ struct DepthFilter::State {
     return points(frame);
   }
 
-  // In its view, from what has been measured and what is remembered.
+  // Fits a frame in its own view and averages it with what is remembered.
   const FilteredDepth& points(const DepthFrame& frame) {
     const depth::BlockRange fitted = fit(frame);
     const depth::TemporalOptions in_time =

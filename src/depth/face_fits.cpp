@@ -66,7 +66,7 @@ struct FaceFits::Search {
   double variance;   // of a block's measurement
   bool met = false;  // another face
 
-  // Is more known of the face now?
+  // Looks in all directions, then fits the face. True when more is known of it then.
   bool run() {
     const std::size_t i = fits.grid.index(own.column, own.row);
     const int u = 2 * fits.reach_u[i];

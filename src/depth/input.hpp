@@ -16,7 +16,8 @@ void check(const DepthFilterOptions& options);
 /// Pixels across and down of three blocks: fewer give no slope (derived).
 inline constexpr int kFewestPixels = 6;
 
-/// @throws Error when the frame's size and depths disagree, its camera is none, or it is too small.
+/// @throws Error when the frame's size and depths disagree, its intrinsics are not valid, or it is
+/// too small.
 void check(const DepthFrame& frame);
 
 /// @throws Error when the pose is not finite.

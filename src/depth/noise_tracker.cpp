@@ -103,8 +103,9 @@ void NoiseTracker::State::resize(const DepthView& frame) {
   differences = single;
 }
 
-// Inverse depths: planes are planes in them too. Where most neighbours are alike and nothing is
-// left, noise is below the sensor's step, or there is no measurement at all.
+// Measures the noise of a window in inverse depths, in which planes are planes, too. Where most
+// neighbours are alike and nothing is left, noise is below the sensor's step, or nothing was
+// measured.
 void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
   values.clear();
   append(frame, windows[window], values);
@@ -159,8 +160,9 @@ std::span<const NoiseSample> NoiseTracker::State::changes() const {
   return std::span(noise.samples).first(noise.whole ? noise.samples.size() : 0);
 }
 
-// A sensor's fixed pattern and its steps show in single frames alone, and fits stumble over them as
-// over what changes. What is far more is shape that fills the image.
+// Takes the samples of single frames, which show a sensor's fixed pattern and its steps, too: fits
+// stumble over these as over what changes. Limits them to kPattern times what changes, since more
+// is shape that fills the image; where they are missing, differences of frames stand for them.
 void NoiseTracker::State::choose_samples() {
   const std::span<const NoiseSample> pairs = changes();
   samples = of_single.noise().samples;
@@ -178,7 +180,8 @@ void NoiseTracker::State::choose_samples() {
   }
 }
 
-// n_c. Frames' differences hold no shape, but no pattern either.
+// n_c of the whole noise, by that of the frames' differences, which hold no shape, but no pattern
+// either: they count by their part of the noise.
 double NoiseTracker::State::shared(const NoiseModel& noise) const {
   double parts = 0;  // of the noise, that they show
   double weights = 0;

@@ -113,7 +113,7 @@ void average(const Measured& now, int memory, BlockMemory& m) {
   average_slopes(now, share, m);
 }
 
-// Takes the frame as it is: whatever lags behind what moves is felt.
+// Takes the frame as it is, since a hand feels whatever lags behind what moves.
 void follow(const Measured& now, float gate2, BlockMemory& m) {
   const float d = now.rho - m.rho;
   // A surface that approaches slowly looks calm in each single frame.

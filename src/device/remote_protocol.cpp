@@ -143,8 +143,8 @@ PacketFlaw RemoteProtocol::receive(std::span<const std::byte> bytes, const Socke
   return PacketFlaw::none;
 }
 
-// Nothing that was known of the last client, and no force that was allowed for it, is kept for the
-// next one.
+// Begins with a client: keeps nothing that was known of the last one, and no force that was allowed
+// for it.
 void RemoteProtocol::begin(const StatePacket& packet, const SocketAddress& from) noexcept {
   client_ = from;
   newest_ = packet;
@@ -185,7 +185,7 @@ DeviceState RemoteProtocol::state(double now) noexcept {
   return state_;
 }
 
-// It grows only where the step before knew the hand.
+// Moves the limit of forces, which grows only where the step before knew the hand.
 void RemoteProtocol::move_limit(double now) noexcept {
   const double change = options_.maximum_force * (now - now_);
   if (is_silent(now)) {

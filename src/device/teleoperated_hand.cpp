@@ -186,7 +186,7 @@ void TeleoperatedHand::Inside::play(double dt) noexcept {
   mode = Mode::returning;
 }
 
-// So fast that it can come to rest there.
+// Goes to the goal so fast that it can come to rest there.
 void TeleoperatedHand::Inside::approach(const Vector3d& goal, double dt) noexcept {
   const double length = (goal - target.position).norm();
   go(goal, std::min(options.speed, std::sqrt(2 * options.braking * length)), dt);

@@ -29,7 +29,7 @@ constexpr double kFaintLabel = 1e-6;
 // docs/method.md 2.3): farther out the weights are too flat to find it.
 constexpr double kHighest = 0.85;
 
-/// W, R(x) and what is at hand of the sums.
+/// W and R(x), and the plain sum of weights that they follow from.
 struct Support {
   Value w;
   Value radius;

@@ -92,7 +92,8 @@ std::uint8_t* Facing::Table::find(const Key& key) noexcept {
   return &slots[at];
 }
 
-/// kMost: there are too many. There are no more parts than sheets.
+/// The slot of a sheet, which is made if it is new; kMost: there are too many. Parts are never more
+/// than sheets, so there is room for them.
 std::uint32_t Facing::sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept {
   const SurfacePoints::Sheets& own = points.sheets;
   const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
@@ -197,8 +198,8 @@ void Facing::add_references(const Sheet& sheet) noexcept {
   }
 }
 
-/// All that is decided. Where a cloud gave way to another, what was decided of it stands for what
-/// lies in its place; true then.
+/// Lists all points that are decided. Where a cloud gave way to another, the points remembered of
+/// it are among them, for what lies in their place now. Returns whether they are.
 bool Facing::list_references(const Stance& stance) noexcept {
   references_.clear();
   bool vanished = false;
@@ -271,8 +272,8 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   remembered_from_ = stance.proxy;
 }
 
-/// Does what is near say whether the proxy is behind? Points that do not know their side would not
-/// be there if it was.
+/// Does what is near say whether the proxy is behind? Points of views that do not tell their side
+/// do not: they are absent for a proxy that is.
 bool Facing::tells() const noexcept {
   const std::span<const Part> parts = std::span(now_.parts).first(now_.part_count);
   const bool side = std::ranges::any_of(parts, [](const Part& p) { return p.key == kOneSided; });

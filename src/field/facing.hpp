@@ -15,11 +15,11 @@ namespace palpate {
 
 /// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
-  kInFront = 0,  ///< the free side of its plane is free, beside it
-  kBehind = 1,   ///< it meets what is in front at a convex edge, or that hides it: solid is
+  kInFront = 0,  ///< what is above it is free
+  kBehind = 1,   ///< it meets what is in front at a convex edge, or is hidden by it: solid is
                  ///< what is below both
-  kAcross = 2,   ///< it meets what is in front in a crease, or where that goes on: free is what is
-                 ///< above both
+  kAcross = 2,   ///< it meets what is in front in a crease, or that goes on beyond its plane: free
+                 ///< is what is above both
 };
 static_assert(kAcross == simd::kLabels - 1);
 
@@ -42,8 +42,8 @@ struct Rise {
 };
 
 /// Decides which side of each sheet near the tool is free, and how the sheets meet as seen from
-/// there. A decision stands as long as any of the sheet's points has weight at the proxy, so that
-/// the field changes by where it is evaluated alone. Real-time but for construction; bounded in
+/// there. A decision stands as long as any of the sheet's points has weight at the proxy: meanwhile
+/// the field depends only on where it is evaluated. Real-time but for construction; bounded in
 /// pairs of points that are compared.
 class Facing {
  public:
@@ -67,11 +67,11 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool behind() const noexcept { return was_behind_; }
 
-  /// The proxy is where nothing is solid: all is decided again, and what was seen on the way
+  /// Has all decided again, for a proxy that is where nothing is solid. What was seen on the way
   /// counts.
   void reopen() noexcept;
 
-  /// Nothing was seen before.
+  /// Forgets what is decided and what was seen.
   void forget() noexcept;
 
   /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point
@@ -84,8 +84,9 @@ class Facing {
   static constexpr std::uint32_t kUnsure = kMost + 1;  // no sheet, but a point of a single view
   static constexpr std::uint8_t kOpen = 0xff;  // a label that is not decided; above every Label
 
-  /// Whose sheet or part it is. All layers without sheets of their own are of one. Another part is
-  /// all that was seen from one side alone, with sheets or without.
+  /// Names a sheet or a part: the surface points that it is of, and its number among theirs. Layers
+  /// without sheets of their own share one (key_of_all()), and all that was seen from one side
+  /// alone is one part (kOneSided).
   struct Key {
     const void* owner = nullptr;
     std::uint32_t number = 0;
@@ -114,8 +115,8 @@ class Facing {
     std::uint32_t begin = 0;  // of its points in order_
     std::uint32_t count = 0;
     double weight = 0;
-    double all = 0;     // sums of weights: of its points,
-    double hidden = 0;  // and of those that another sheet hides
+    double all = 0;     // sum of its points' weights
+    double hidden = 0;  // the same of those that another sheet hides
   };
   struct Table {
     std::array<Part, kMost> parts;

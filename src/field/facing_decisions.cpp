@@ -140,8 +140,9 @@ void Facing::choose_eye(const Stance& stance) noexcept {
   eye_.view = std::sqrt(closest) + kView * radius_;
 }
 
-/// What speaks for the sides that the eye sees. What was seen on the way here fades with it: close
-/// to a sparse bend few points tell, and the planes of some are wrong.
+/// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
+/// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
+/// of some are wrong.
 void Facing::see(const Stance& stance) noexcept {
   const double way = (stance.proxy - remembered_from_).norm();
   const double kept = std::exp(-way / (kFades * static_cast<double>(radius_)));
@@ -172,7 +173,7 @@ void Facing::see(const Stance& stance) noexcept {
   }
 }
 
-/// What the proxy begins to touch is in front of it: turns parts whose points say the opposite.
+/// Turns parts whose points say the opposite of a contact that begins: what it touches is in front.
 void Facing::turn_by(const Vector3f& normal) noexcept {
   std::array<double, kMost> agreed{};
   std::array<double, kMost> all{};
@@ -253,7 +254,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   return concave ? kAcross : kBehind;
 }
 
-/// The weightiest sheet first.
+/// Labels the sheets that have no label, the weightiest first.
 void Facing::decide_labels() noexcept {
   for (;;) {
     Sheet* next = nullptr;
@@ -262,7 +263,7 @@ void Facing::decide_labels() noexcept {
     }
     if (!next) return;
     Part& part = now_.parts[next->part];
-    // Nothing of it is seen: it goes on what is decided beside it.
+    // Nothing of the part is seen: what is decided beside it tells its sign.
     const bool turned = part.sign == 0 && part.key != kOneSided && across(next->part) < 0;
     if (part.sign == 0) part.sign = turned ? -1 : 1;
     next->label = label_of(*next);

@@ -27,7 +27,8 @@ Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
 
 namespace {
 
-// R (docs/method.md 2.6). Half of it closes the creases of a scan, not all between two sheets.
+// R (docs/method.md 2.6). With 0.1 the creases of a scan are closed, but not all between two
+// sheets.
 constexpr double kClosed = 0.2;
 constexpr double kFacing = 0.7;  // |Nb|^2 where two equal sheets meet at 114 degrees; judgement
 // h, in R, from which on a surface is concave beyond doubt; judgement.

@@ -38,8 +38,9 @@ struct Oriented {
 /// Eqs. (5)-(7): f = n . (x - A), and its exact gradient.
 [[nodiscard]] Oriented pointset(const simd::Moments& sums) noexcept;
 
-/// a R = sum v n.q / V - Nb . A, the height of the point-set surface above IMLS: above 0 where the
-/// surface is convex as the normals see it, 0 on a plane, below 0 where it is concave.
+/// sum v n.q / V - Nb . A, which is -h R of docs/method.md 2.6, the height of the point-set surface
+/// above IMLS: above 0 where the surface is convex as the normals see it, 0 on a plane, below 0
+/// where it is concave.
 [[nodiscard]] Oriented convexity(const simd::Moments& sums) noexcept;
 
 /// |Nb|^2: 1 where all normals agree, (1 + cos) / 2 between two equal sheets whose normals stand at
@@ -55,7 +56,7 @@ struct FieldPlace {
   const simd::Columns* columns = nullptr;
   Kernel kernel = Kernel::wyvill;
   const double* x = nullptr;        ///< relative to the patch, 3 entries, m
-  const simd::Sums* all = nullptr;  ///< of `all` there
+  const simd::Sums* all = nullptr;  ///< what Functions::all gives there
   int label = 0;                    ///< that is looked at here
   Value radius;                     ///< R(x), m
 
@@ -102,7 +103,7 @@ struct FieldPlace {
 [[nodiscard]] Value with_edges(const FieldPlace& place, const Value& smooth) noexcept;
 
 /// The length that closes acute creases: it is subtracted from the height as seen from the proxy's
-/// side, m, with its gradient. 0 on single surfaces, between sheets that meet at 115 degrees and
+/// side, m, with its gradient. 0 on single surfaces, between sheets that meet at 114 degrees and
 /// more, and wherever the surface is not concave.
 ///
 /// Where two sheets face each other within a support, their normals and heights cancel: the mean of

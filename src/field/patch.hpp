@@ -17,11 +17,11 @@ namespace palpate {
 
 /// How points are gathered into a patch.
 struct GatherOptions {
-  double radius = 0;         ///< R of all points, m; 0: each has its own
-  bool raw_weights = false;  ///< leave out the density weights
-  bool normals = true;       ///< copy normals and confidences; metaballs need none
-  Rise rise = {};            ///< where the surface is felt
-  int most_visits = 1 << 30;
+  double radius = 0;               ///< R of all points, m; 0: each has its own
+  bool raw_weights = false;        ///< leave out the density weights
+  bool normals = true;             ///< copy normals and confidences; metaballs need none
+  Rise rise = {};                  ///< of the surface above its points
+  int most_visits = 1 << 30;       ///< cells and points that may be looked at
   const Stance* stance = nullptr;  ///< that points are turned to; nullptr: they stay as they are
 };
 
@@ -40,9 +40,9 @@ class Patch {
   bool gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
               double extra, const GatherOptions& options = {}) noexcept;
 
-  /// Brings what was gathered to the present: the same layers, at a progress from when it was
-  /// gathered to their `until` of that time. False, and covers nothing, when they are others.
-  /// Layers whose points have become others at the same address need clear().
+  /// Moves what was gathered to where it is now. `layers`: the same as then, their progress between
+  /// what it was then and the `until` of then. False when they are others; then the patch covers
+  /// nothing. Layers are compared by address: call clear() before others can come to the same one.
   bool advance(std::span<const ActiveLayer> layers) noexcept;
 
   /// Turns points to the tool where it is now and sorts them by how their sheets meet.
@@ -152,7 +152,7 @@ class Patch {
   bool has_presences_ = false;
   bool has_motion_ = false;
   int sources_ = 1;
-  std::size_t count_ = 0;  // without
+  std::size_t count_ = 0;  // without the padding
   double smallest_radius_ = 0;
   double mean_radius_ = 0;
   double last_radius_ = 0;

@@ -66,7 +66,7 @@ std::vector<OnLine> lines_of(std::span<const SplatCell> cells, const Step& step)
   return lines;
 }
 
-// What light from all sides finds.
+// The light that comes to each cell from all sides.
 struct Light {
   std::vector<float> brightest;             // transmittance up to each cell, of the best direction
   std::vector<Eigen::Vector3f> directions;  // sum of directions that light comes from

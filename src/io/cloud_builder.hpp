@@ -51,7 +51,7 @@ class Roles {
   [[nodiscard]] Columns columns() const;
 
  private:
-  /// So many that follow one another.
+  /// Are there so many roles that follow one another?
   [[nodiscard]] bool has(Role first, std::size_t count) const;
 
   std::vector<std::optional<Role>> roles_;

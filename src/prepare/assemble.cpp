@@ -48,7 +48,7 @@ void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
   append(positions, &Twin::point);
   points.grid = CellGrid(positions);
 
-  // All of a twin is the point's but what its host knows of the sheet.
+  // A twin copies its point's columns; the normal and what concerns sheets are its host's.
   const auto add = [&](auto& column, std::uint32_t Twin::*from) {
     append(column, from);
     if (!column.empty()) column = in_grid_order(points.grid, column);

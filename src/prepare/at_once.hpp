@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// All steps but the first. `report`: what is known so far.
+/// Takes all steps of prepare() but place(). `report`: what is known so far.
 [[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
                                        Prepared::Report report);
 

@@ -29,7 +29,7 @@ constexpr std::size_t kPointsAround =
     4096;                                  // points around each: windows of 20 s fit in; judgement
 constexpr std::size_t kRun = 256;          // points that are passed over together; judgement
 constexpr std::size_t kAsked = 1 << 17;    // points that are asked how far that is; judgement
-constexpr std::size_t kOneStrayOf = 1000;  // one in so many may be, at either end; judgement
+constexpr std::size_t kOneStrayOf = 1000;  // points, one a stray, at either end; judgement
 
 /// How far from a place `share` of the sampled points lie, m^2.
 float reach(std::span<const Vector3f> sample, const Vector3f& place, double share) {
@@ -53,7 +53,8 @@ struct Bounds {
   Vector3f upper;
 };
 
-/// Scanners write down together what lies together, so that most runs are far from most places.
+/// The box of each run of kRun points. Scanners write down together what lies together, so most
+/// runs are far from most places and are passed over whole.
 std::vector<Bounds> boxes_of_runs(std::span<const Vector3f> points) {
   std::vector<Bounds> boxes((points.size() + kRun - 1) / kRun);
   detail::parallel_each(boxes.size(), 64, [&](std::size_t r) {

@@ -202,7 +202,7 @@ double Division::radius(std::size_t block) const {
   return levels_[blocks_[block].level].radius;
 }
 
-/// Also for means of points, which may lie where no cell is.
+/// Is what lies in a part prepared on this level? Also for means of points, where no cell may be.
 bool Division::Level::is_settled(const Index& part) const {
   const Index at = coarser(part, kPartShift);
   const Cell* const found = cells.find(at);

@@ -43,10 +43,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
       if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
       radii[i] = wanted;
       spacings[i] = std::max(spacings[i], wanted / kMultiple);
-      own.normals[i] = fit.normal.cast<float>();
-      own.confidences[i] = static_cast<float>(fit.planarity);
-      own.residuals[i] = static_cast<float>(fit.residual);
-      own.bends[i] = static_cast<float>(fit.bend);
+      take_fit(fit, i, own);
       raised[k] = 1;
     }
   });

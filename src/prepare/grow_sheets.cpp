@@ -64,8 +64,8 @@ class Growth {
         });
   }
 
-  /// Do i and j, which are near each other, lie on one sheet? Of points that were snapped, their
-  /// hosts tell: at a sharp rim, where the two sides meet, these are as far apart as the sides are.
+  /// Joins i and j, which are near each other, if they lie on one sheet. Compares their hosts: at a
+  /// sharp rim, where two sides meet, these are as far apart as the sides are.
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
             std::vector<Pair>& across) {
     if (i == j || hosts_[i] == kNoHost || hosts_[j] == kNoHost) return;

@@ -20,8 +20,9 @@ constexpr double kApart = 4;            // judgement (docs/method.md 5.5)
 constexpr double kApartSpacings = 0.5;  // judgement
 constexpr double kEmpty = 0.45;         // judgement
 
-/// May heights fall into two groups? These leave a fifth of the range empty; this asks for a tenth,
-/// in a row, and for a gap wide enough, and does not sort.
+/// May heights fall into two groups? A test that needs no sorting, and refuses only what is none:
+/// two groups leave a fifth of the range empty, so a tenth has to be empty in one stretch, and a
+/// gap has to be wide enough.
 bool may_fall_apart(std::span<const double> heights, double spacing) {
   constexpr int kLast = 31;  // derived: the bin of the highest, the last bit of `empty`
   const auto [lowest, highest] = std::ranges::minmax(heights);
@@ -42,8 +43,9 @@ bool may_fall_apart(std::span<const double> heights, double spacing) {
   if ((empty & (empty >> 1) & (empty >> 2)) == 0) return false;
   const auto count = static_cast<double>(heights.size());
   const double variance = (squares - sum * sum / count) / count;
-  // That of two groups is within^2 + share (1 - share) way^2, where kApart within fit into the way
-  // between their means: it tells how long the way is at least, so it bounds the gap, too.
+  // The variance of two groups is within^2 + share (1 - share) way^2, with `way` between their
+  // means and `within` at most way / kApart. So it says how long the way is at least, and with it
+  // the gap.
   constexpr double kLeast = 0.999 * kEmpty * kEmpty;  // derived: less than rounding takes
   double below = 0;
   int last = 0;

@@ -15,10 +15,11 @@ namespace {
 
 constexpr std::size_t kSamples = 1000;  // windows, about; judgement
 
-/// Windows of two widths, in spacings: of about 28 and 15 points. In the narrower one noise leaves
-/// the same, and shape that a quadric misses, as a thin rod's, 0.4 of it or less.
+/// A window that noise is measured in. Two widths are compared, of about 28 and 15 points: noise
+/// leaves the same residual in both; shape that a quadric misses, as a thin rod's, leaves 0.4 of it
+/// or less in the narrower one.
 struct Window {
-  double reach;
+  double reach;              // spacings
   std::size_t fewest;        // points
   double quarter_to_median;  // of the residuals that noise alone gives
 };
@@ -29,15 +30,18 @@ constexpr double kShape = 0.65;  // of the wider window's noise: the rest is sha
 
 // A ball full of points has a residual of 0.3 to 0.45 of its reach, and a layer whose sigma is a
 // quarter of the reach 0.23 (computed: uniform and normal heights, less the quadric). Where a
-// residual is larger the window tells and not the noise, so that a window twice as wide is asked.
+// residual is larger it tells the window's size and not the noise, so a window twice as wide is
+// fitted.
 constexpr double kFilled = 1 / kSigmasInReach;
 constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's filter; judgement
-constexpr double kVolume = 0.35;     // of the widest reach: more than a layer of 0.6 of it leaves
+// Share of the widest reach. A ball full of points leaves 0.45, a layer whose sigma is 0.45 of the
+// reach 0.34 (computed).
+constexpr double kVolume = 0.35;
 
 // Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
 // grows with the third power of the window or faster.
 constexpr std::size_t kWideSamples = 400;  // windows, about; judgement
-constexpr double kMapReach = 5;            // spacings: that of the map of noise (kWindow)
+constexpr double kMapReach = 5;            // spacings, of the map of noise as well; judgement
 constexpr double kMiddleReach = 10;        // spacings; twice that
 constexpr double kWideReach = 20;          // spacings; twice that
 constexpr double kTile = 4;           // spacings: sides of tiles, of about 16 points; judgement
@@ -58,8 +62,8 @@ bool fills(double residual, double reach) {
   return residual > kFilled * reach;
 }
 
-/// `first`, the fit at a place within `reach`, or one so much farther that noise does not fill its
-/// window. In a volume there is no layer to be found: the first fit is all that can be told.
+/// The fit at a place: `first`, whose window reaches `reach`, or one of a window so much wider that
+/// noise does not fill it. In a volume no window finds a layer: then it is `first`.
 SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
                           double reach, double spacing, const SheetFit& first) {
   SheetFit fit = first;
@@ -103,7 +107,7 @@ double noise_in(const std::vector<Row>& rows, SheetFit Row::*fit, const Window& 
   return window.quarter_to_median * *quarter;
 }
 
-/// Widens windows that noise fills.
+/// The noise that narrow windows tell, m; those that noise fills are widened.
 double narrow_noise(const CellGrid& grid, double spacing) {
   std::vector<Row> rows = fit_windows(grid, spacing);
   const double narrow = noise_in(rows, &Row::narrow, kNarrow);
@@ -136,7 +140,7 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
     const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
     if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) return;
     const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
-    double together = wide.bend;  // looked at where shape does not count
+    double together = wide.bend;  // used only where the wide window holds no shape
     if (wide.bend <= kShapeGrowth * middle.bend) {
       const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
       together = std::max(together, std::sqrt(tiles));
@@ -184,7 +188,6 @@ namespace {
 constexpr std::size_t kRawPerSample = 32;  // points for one window of the map; judgement
 // Windows of the map, about, to bound its time; judgement.
 constexpr std::size_t kMostSamples = 20000;
-constexpr double kWindow = 5;        // spacings; judgement
 constexpr float kSurroundings = 20;  // spacings; judgement
 // The quantile that is taken, so that edges are no noise; judgement.
 constexpr double kFlatter = 0.3;
@@ -199,7 +202,7 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
     const std::size_t i = k * step + step / 2;
     const auto spacing = static_cast<double>(spacings[i]);
-    const double reach = kWindow * spacing;
+    const double reach = kMapReach * spacing;
     SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
     fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
     found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};

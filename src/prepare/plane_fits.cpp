@@ -20,6 +20,13 @@ constexpr double kNoisyFit = 1.2;  // of the noise, for the same use; judgement
 
 }  // namespace
 
+void take_fit(const SheetFit& fit, std::size_t i, OwnSheets& own) {
+  own.normals[i] = fit.normal.cast<float>();
+  own.confidences[i] = static_cast<float>(fit.planarity);
+  own.residuals[i] = static_cast<float>(fit.residual);
+  own.bends[i] = static_cast<float>(fit.bend);
+}
+
 OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
                          std::span<const float> radii, std::span<const float> noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);
@@ -40,10 +47,7 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
                                    kNoisyFit * static_cast<double>(noise[i]));
     const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
                                     static_cast<double>(spacings[i]), smooth);
-    sheets.normals[i] = fit.normal.cast<float>();
-    sheets.confidences[i] = static_cast<float>(fit.planarity);
-    sheets.residuals[i] = static_cast<float>(fit.residual);
-    sheets.bends[i] = static_cast<float>(fit.bend);
+    take_fit(fit, i, sheets);
     sheets.others[i] = fit.others ? 1 : 0;
   };
   detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +21,11 @@ struct OwnSheets {
   std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
   std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
 };
+
+struct SheetFit;
+
+/// Makes a fit that of point i; `others` stays as it is.
+void take_fit(const SheetFit& fit, std::size_t i, OwnSheets& own);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
 // judgement (docs/method.md 5.5).

@@ -216,7 +216,7 @@ constexpr float kStrayRadius = 2.5f;
 
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
-/// Where the cloud is noisy, R follows the noise from place to place.
+/// R by spacing and noise, which is taken from place to place where the cloud was thinned for it.
 std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
   const CloudFacts& facts = sampling.facts;
   const bool by_place = !sampling.local.products.empty();

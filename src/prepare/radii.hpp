@@ -16,11 +16,11 @@ struct OwnSheets;
 /// The support radii.
 struct Radii {
   std::vector<float> values;         ///< R_i in sorted order, m
-  std::vector<std::uint8_t> strays;  ///< 1: one, whose R is small; empty: not looked for
+  std::vector<std::uint8_t> strays;  ///< 1: a stray, whose R is small; empty: not looked for
 };
 
-/// No R is larger where the facts tell a typical one, m: what a stray's support reaches beyond that
-/// nobody looks for (Blocks). Infinite where they do not.
+/// The largest R that a point may have, m: 12 of the typical ones that the facts tell, since a
+/// block looks no farther around itself (Blocks::halo). Infinite where they tell none.
 [[nodiscard]] double largest_radius(const CloudFacts& facts);
 
 /// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say

@@ -53,7 +53,7 @@ void measure_spacings(const PrepareOptions& options, Sampling& sampling) {
   sampling.spacing = options.facts ? facts.spacing : median(sampling.spacings);
 }
 
-/// What is measured of all points where nobody knows it.
+/// Measures the noise and irregularity of all points where no facts are given.
 void measure_of_all(const PrepareOptions& options, Sampling& sampling) {
   if (options.facts || options.paper) return;
   const CellGrid& grid = sampling.grid;
@@ -75,7 +75,7 @@ void drop_duplicates(PointCloud& less, const PointCloud*& cloud, Sampling& sampl
   sampling.grid = CellGrid(less.positions);
 }
 
-/// Centroids stand closer than their voxels on a slanted surface; s is the voxel.
+/// Raises spacings to the voxel's edge: on a slanted surface centroids stand closer than that.
 void raise_to_voxel(Sampling& sampling) {
   const auto leaf = static_cast<float>(sampling.voxel);
   for (float& s : sampling.spacings) s = std::max(s, leaf);

@@ -15,7 +15,7 @@ namespace palpate {
 /// face of a plate, a shelf behind a shelf) do not take part: where heights along the normal fall
 /// into two groups with an empty gap between them, those of the place's own group alone count.
 struct SheetFit {
-  std::size_t points = 0;  ///< that the fit is of; below kEnough for a quadric: 0 and nothing else
+  std::size_t points = 0;  ///< that the fit is of; 0, and nothing else is known: they fit no plane
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary; zero: undefined
   bool others = false;                               ///< are there points of other sheets around?
   double planarity = 0;                              ///< 0-1, as Normals::confidences

@@ -40,7 +40,7 @@ std::vector<std::size_t> leaves_of(const Layout& layout) {
   return leaves;
 }
 
-/// So many of the leaves at most, spread over their points.
+/// At most `places` of the leaves, spread over their points.
 std::vector<std::size_t> drawn(const Layout& layout, const std::vector<std::size_t>& leaves,
                                std::size_t places) {
   std::size_t all = 0;
@@ -67,7 +67,8 @@ std::vector<std::size_t> chain(const std::map<Key, std::size_t>& numbers, Key ke
   return nodes;
 }
 
-/// Leaves the points of the box, and of these the nearest ones to the one nearest to their middle.
+/// Keeps the points in the box; of more than kAtPlace, those around the one nearest to their
+/// middle.
 void keep_middle(const Box& box, PointCloud& cloud) {
   PointCloud places;
   places.origin = cloud.origin;
@@ -98,7 +99,7 @@ std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
   return order;
 }
 
-/// Clouds of some nodes, by their numbers: those that can be read, or are none.
+/// The clouds of some nodes, by their numbers; that of a node that cannot be read is empty.
 struct Nodes {
   Nodes(const PointStore& store, std::vector<std::size_t> nodes) {
     std::ranges::sort(nodes);

@@ -16,7 +16,7 @@ struct StoreSample {
 };
 
 /// At least a hundred thousand points of all of the store, and some thousand nearest ones at each
-/// of 32 places, which are spread over its points. Always the same of the same store. Nodes that
+/// of 64 places, which are spread over its points. Always the same of the same store. Nodes that
 /// cannot be read are left out.
 /// @throws Error when no point is left: the first that reading gave.
 [[nodiscard]] StoreSample sample_of(const PointStore& store);

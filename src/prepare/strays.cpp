@@ -95,13 +95,13 @@ void drop_strays_off_sheets(const Sampling& sampling, const Sheets& sheets, Weig
   std::vector<float> spacings = local_spacings(grid);
   widen_to_lines(grid, spacings);
   const std::vector<std::uint8_t> strays = find_strays(grid, spacings, sampling.spacing);
-  const double near = sampling.spacing * sampling.spacing;
+  const double typical_squared = sampling.spacing * sampling.spacing;
   std::vector<CellGrid::Neighbor> places;
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const std::uint32_t i = off[grid.order()[k]];
     if (strays[k] == 0) continue;
     nearest_places(sampling.grid, i, 2, places);
-    if (places.size() > 1 && places[1].squared_distance <= near) continue;
+    if (places.size() > 1 && places[1].squared_distance <= typical_squared) continue;
     weights.values[i] = 0;
     ++weights.speckle;
   }

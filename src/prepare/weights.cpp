@@ -72,7 +72,7 @@ void sums_of(const Input& input, std::span<const float> values, std::span<const 
   });
 }
 
-// The same of values = own, over the point's own.
+// For each point i that is asked for the mean of its surroundings: sum of w_ij own_j over own_i.
 void means_of(const Input& input, std::span<const float> own, std::span<const std::uint8_t> asked,
               std::vector<float>& means) {
   sums_of(input, own, asked, means);
@@ -81,7 +81,8 @@ void means_of(const Input& input, std::span<const float> own, std::span<const st
   }
 }
 
-// 1 for each point of leaves that are within the reach of points in another, m; 0: they have none.
+// 1 for each point of leaves into which any point reaches. `reaches`: of the points, m; 0: not at
+// all.
 std::vector<std::uint8_t> reached(const CellGrid& grid, const std::vector<float>& reaches) {
   std::vector<std::uint8_t> result(grid.size());
   const std::vector<float> of_cells = detail::largest_in_cells(grid, reaches);
@@ -194,7 +195,8 @@ Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& su
   auto mask = speckle_mask(sampling.grid, radii.values, sums);
   for (std::size_t i = 0; i < radii.strays.size(); ++i) mask[i] |= radii.strays[i];
   const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
-  // A cloud of nothing else is a sparse one; a part of a cloud is of strays.
+  // A whole cloud of nothing but speckle is a sparse one and keeps its weights. A part of a cloud,
+  // which has facts, does consist of strays.
   if (speckle == mask.size() && !options.facts) return weights;
   weights.speckle = speckle;
   for (std::size_t i = 0; i < mask.size(); ++i) {

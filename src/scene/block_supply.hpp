@@ -23,7 +23,7 @@ struct CloudBlock {
 
   Division::Key key;
   Box box;    ///< that holds its points, world frame, m
-  Box place;  ///< of a store: where it is needed, if a tool is near; holds `box`
+  Box place;  ///< of a store: it is needed while a tool is near this box, which holds `box`
   State state = State::missing;
   double retry = 0;     ///< of one that failed: from when on it is tried again, s
   double presence = 0;  ///< at the start of what was shown last; 1 at its end

@@ -76,7 +76,8 @@ struct OnDemand::Inside {
   std::mutex mutex;  // of advance()
 };
 
-/// Where tools are; at the cloud's start before there are any.
+/// Reads where tools are (the cloud's start before there are any), lists the blocks there and
+/// measures how far each is.
 void OnDemand::Inside::look(const Source& at, double now) {
   at.inside_->reaches.read(tools);
   std::vector<Ball> balls(tools.begin(), tools.end());
@@ -105,9 +106,9 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// What is shown first where there is no room for all: what tools can reach, then what is near.
-/// What is shown already stays before others, or a hand's way would change what is shown all the
-/// time.
+/// Ranks a block where there is no room for all: first what tools can reach, then what is near.
+/// What is shown already comes before others of its kind, or a hand's way would change what is
+/// shown all the time.
 int OnDemand::Inside::rank(const CloudBlock& block) const {
   if (block.distance <= 0) return 0;
   return (block.distance <= near ? 1 : 3) + (block.state == State::shown ? 0 : 1);
@@ -195,7 +196,7 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   Snapshot snapshot;
   if (!first) snapshot.start = now + kLead;
   snapshot.end = snapshot.start + (first ? 0 : kAppear);
-  // What rises goes on where it will be.
+  // A block whose presence still rises goes on from where that is at the new start.
   const double past = std::clamp((snapshot.start - last_start) / kAppear, 0., 1.);
   last_start = snapshot.start;
   const std::vector<CloudBlock*> chosen = this->chosen();

@@ -66,7 +66,7 @@ void PatchCache::gather_near(const Vector3d& center, double extra) noexcept {
 }
 
 bool PatchCache::near_covers(std::span<const Ball> balls, double extra) noexcept {
-  constexpr double kTooWide = 4;  // a patch that lacks points for the sake of far ones
+  constexpr double kTooWide = 4;  // times `extra`: a patch lacks points for the sake of far ones
   if (near_.patch.thinned() && near_.patch.extra() > kTooWide * extra) return false;
   const auto reached = [this](const Ball& ball) { return near_.patch.reaches(ball); };
   if (near_.patch.outdated() && std::ranges::all_of(balls, reached)) {

@@ -16,7 +16,7 @@ namespace palpate {
 /// and in an update and in a proxy's step of all of them together. Real-time but for construction.
 class PatchCache {
  public:
-  /// What was done.
+  /// The work that was done.
   struct Work {
     FieldNote notes = FieldNote::none;  ///< thinned and work_spent, since begin_update()
     int summed = 0;  ///< points in the last step, and as many as gathers take the time of

@@ -13,8 +13,8 @@
 
 #include "field/evaluate.hpp"
 #include "scene/patch_cache.hpp"
-#include "scene/scene_view.hpp"
 #include "scene/source_inside.hpp"
+#include "scene/source_view.hpp"
 
 namespace palpate {
 namespace {
@@ -95,7 +95,7 @@ struct SceneField::State {
   PatchCache patches{surface};
 };
 
-/// Are the views' snapshots those of the last call? None comes to the address of one shown last.
+/// Are the views' snapshots those of the last call? A new one never has the old one's address.
 bool SceneField::State::same_snapshots() noexcept {
   bool same = true;
   for (std::size_t s = 0; s < views.size(); ++s) {

@@ -107,8 +107,8 @@ std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pi
   return places;
 }
 
-/// Adds what a ray shows to what is known of the ball. The surface goes on as it came from an
-/// earlier frame, and noise may feign three deviations of what follows from that.
+/// Adds what a ray shows to what is known of the ball: where the surface is and, if it goes on as
+/// it came since an earlier frame, where it will be. Three deviations of either may be noise.
 void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& seen) {
   double behind = 0;
   double lift = 0;  // is steady where it begins, and soon the whole depth

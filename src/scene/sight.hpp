@@ -33,7 +33,7 @@ class Sight {
   void see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
            const NoiseModel& noise);
 
-  /// No frame has come any more.
+  /// Forgets all frames.
   void forget();
 
   /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until

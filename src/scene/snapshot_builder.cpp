@@ -137,7 +137,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   return snapshot;
 }
 
-/// Are normals told by where the sensor is, rather than by somebody else?
+/// Do normals get their signs from where the sensor is?
 bool SnapshotBuilder::knows_sides() const {
   using Orientation = PrepareOptions::Orientation;
   const Orientation by = options_.prepare.orientation;
@@ -145,7 +145,7 @@ bool SnapshotBuilder::knows_sides() const {
 }
 
 /// Was all of it seen from one place, and from the sides that its normals will point to? Where no
-/// viewpoint is given, one cloud that proves it tells it of all; one of few pixels proves nothing.
+/// viewpoint is given, one cloud that proves it counts for all after it; few pixels prove nothing.
 bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
   if (options_.prepare.viewpoint) return knows_sides();
   view_ = view_ || is_view(cloud);

@@ -38,8 +38,8 @@ namespace palpate {
 /// distance. What lies further apart stays two.
 class Seams {
  public:
-  /// Compares the newest points of the source at `place` with those of the others that have come
-  /// by. It stays where it is. Takes milliseconds, and memory; any thread but a servo's.
+  /// Compares the newest points of the source at `place` with those of the others that have called
+  /// this. The source outlives it. Takes milliseconds, and memory; any thread but a servo's.
   void compare(std::size_t place, const Source& source);
 
   /// No support radius of that source is to be below this, m. Changes; may be read by any thread.

@@ -1,11 +1,12 @@
 // Follows the snapshots of one source in time, as one reader sees them.
+#include "scene/source_view.hpp"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "palpate/base/error.hpp"
-#include "scene/scene_view.hpp"
 
 namespace palpate {
 namespace {
@@ -53,7 +54,8 @@ bool SourceView::advance(double now) noexcept {
          least_radius_ != radius_before;
 }
 
-/// Where the points are. The lag that a snapshot began with shrinks in a straight line.
+/// Finds how far the points have gone. The lag that a snapshot began with shrinks in a straight
+/// line.
 void SourceView::move(double now) noexcept {
   progress_ = current_ ? progress(*current_, now) : 0;
   const double duration = current_ ? current_->end - current_->start : 0;

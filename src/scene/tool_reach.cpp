@@ -42,10 +42,10 @@ void ReachTable::read(std::vector<Reach>& found) const {
 
 namespace {
 
-// A frame is felt for one interval, and the one before it was prepared; and so long it takes until
-// it can be felt (docs/method.md 7.5).
+// Intervals that a reach has to last: one until a frame comes that is prepared for it, and one in
+// which that frame is felt (docs/method.md 7.5).
 constexpr double kFrames = 2;
-constexpr double kLatency = 0.03;  // s
+constexpr double kLatency = 0.03;  // s, from a frame until it is felt (docs/method.md 7.5)
 
 // A hand that rests may start with an acceleration that takes it this far in that time; one that
 // moves may double its speed. No hand is faster than the last (judgement; docs/method.md 7.5).

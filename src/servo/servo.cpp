@@ -52,6 +52,7 @@ double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
+// A hand that is not finite makes the proxy latch a fault first: that is the one which is told.
 Guard::Fault known_fault(const ServoState& state) noexcept {
   if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
   return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;

@@ -180,7 +180,8 @@ void StiffnessTest::Inside::advance(const DeviceState& hand, double now, double 
   }
 }
 
-// Only what the hand has felt whole counts: a force at its bound holds still whatever the wall.
+// Counts for how long the hand felt the wall whole: a force at its bound holds still whatever the
+// wall.
 void StiffnessTest::Inside::press(double dt, double now) noexcept {
   constexpr GuardNote kNotWhole =
       GuardNote::clamped | GuardNote::silence | GuardNote::starting | GuardNote::fault;

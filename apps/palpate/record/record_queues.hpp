@@ -76,7 +76,7 @@ class RecordOrders {
   /// The file that was asked for last; empty: it was ended.
   [[nodiscard]] std::string name() const;
 
-  /// That file ended by itself.
+  /// Notes that this file ended by itself.
   void forget(const std::string& name);
 
   /// No order comes any more.

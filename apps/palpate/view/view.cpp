@@ -219,7 +219,7 @@ struct View::Parts {
     return page;
   }
 
-  // What of a cloud could not be read, each thing once.
+  // Tells what of a cloud could not be read, each thing once.
   void tell_problems() {
     const std::vector<std::string> problems = feed.problems();
     for (; told < problems.size(); ++told) {

@@ -89,7 +89,8 @@ class DepthFilter {
   /// (world frame) are fitted, the others are plain.
   /// `T_world_sensor` is the sensor's pose at the stamp: what is remembered of earlier frames is
   /// warped into this view.
-  /// @throws Error when size and depths disagree, the camera is none or has not 6 x 6 pixels.
+  /// @throws Error when size and depths disagree, the camera's intrinsics are not valid, or it has
+  /// less than 6 x 6 pixels.
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
                               std::span<const Ball> fit_within);
 

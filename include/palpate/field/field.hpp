@@ -53,8 +53,8 @@ class Field {
 
   [[nodiscard]] virtual Traits traits() const noexcept = 0;
 
-  /// A proxy's step begins and ends. What is asked in between is bounded together: a field that has
-  /// spent its work answers on the safe side, which is that all it does not know is solid.
+  /// Begins a proxy's step, which end_step() ends. What is asked in between is bounded together: a
+  /// field that has spent its work answers on the safe side: all that it does not know is solid.
   virtual void begin_step() const noexcept {}
   /// Points that have been summed over since a step began: what its evaluations cost. A field that
   /// sums over none costs the same everywhere.

@@ -25,7 +25,7 @@ inline constexpr double kLoneSpacing = 1e-3;
 /// most, so that a stray point does not reach far.
 [[nodiscard]] std::vector<float> local_spacings(const CellGrid& grid);
 
-/// The median; 0 of none. By value: it reorders.
+/// The median; 0 of none.
 [[nodiscard]] double median(std::span<const float> values);
 
 }  // namespace palpate

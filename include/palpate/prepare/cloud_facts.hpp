@@ -1,4 +1,4 @@
-// What is one for all of a cloud, however little of it is prepared.
+// The facts of a cloud, such as spacing and noise: one for all of it, however little is prepared.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -34,7 +34,7 @@ struct CloudFacts {
 
 /// Measures the facts of a cloud in places that are drawn, always the same of the same cloud: some
 /// thousand points around each, which takes a few tenths of a second whatever the cloud's size.
-/// Few strays change nothing, and crops of one scan have nearly the same facts.
+/// A few strays change nothing, and crops of one scan have nearly the same facts.
 /// @throws Error as prepare() does.
 [[nodiscard]] CloudFacts measure_facts(
     const PointCloud& cloud, const PrepareOptions& options,

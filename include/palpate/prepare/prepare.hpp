@@ -31,7 +31,7 @@ struct PrepareOptions {
                                                ///< noise asks for more
   double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;  ///< wanted error of normals, rad (theta: 1.15 degrees)
-  /// Position of the sensor, in the cloud's frame, m. Comes before given signs.
+  /// Position of the sensor, in the cloud's frame, m. Tells signs instead of given normals.
   std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
   std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m

@@ -71,8 +71,8 @@ class SceneField final : public Field {
   [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] Traits traits() const noexcept override;
 
-  /// Is another surface of the same points from the next update() on. Real-time. `checked`: check()
-  /// has passed it. How the force changes with it is for a Guard to soften.
+  /// Makes another surface of the same points from the next update() on. Real-time. `checked`:
+  /// check() has passed it. How the force changes with it is for a Guard to soften.
   void change(const FieldOptions& checked) noexcept;
 
   void begin_step() const noexcept override;

@@ -31,7 +31,7 @@ inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
 
 struct PolicyOptions {
   std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
-  int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; unset by `replace`, `morph`
+  int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; the others do not use it
   double silence = 0.3;  ///< fade a surface after this long without new data, s
   double fade = 0.5;     ///< duration of that fade, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
@@ -100,7 +100,7 @@ struct Snapshot {
 
 /// What a depth camera's newest frames say of a ball.
 struct Seen {
-  /// In order: of several cameras, the last counts.
+  /// In rising order: of what several cameras say, the last one in this list counts.
   enum class Says {
     outside,  ///< the ball, or part of it, is not in the picture
     nothing,  ///< nothing is measured there
@@ -145,8 +145,8 @@ class Source {
     [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
   };
 
-  /// Asked once, when of a pushed frame or cloud all is done that can be done before: when its
-  /// surface is to start being felt, s, on the clock that SceneField::update is given. Live: now
+  /// Says when the surface of a pushed frame or cloud is to start being felt, s, on the clock that
+  /// SceneField::update is given. Asked once, when all that needs no start is done. Live: now
   /// plus a lead in which the rest is done (some ms for a depth frame); a surface that comes after
   /// its start all the same begins where the last one waits and catches up. In simulated time: the
   /// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
@@ -221,8 +221,8 @@ class Source {
   /// until a frame is pushed after the first call. Any thread but a servo's.
   [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
-  /// The newest surface's first layer, for those who draw or explore; may be null. Any thread but a
-  /// servo's.
+  /// The newest surface's newest layer (of one that came by publish(), its first), for those who
+  /// draw or explore; may be null. Any thread but a servo's.
   [[nodiscard]] std::shared_ptr<const SurfacePoints> points() const;
 
   /// Its state. Any thread but a servo's. Scene::state() adds the disagreement with other sources.

@@ -76,10 +76,10 @@ class Guard {
   /// Why the force stays at zero.
   enum class Fault : std::uint8_t {
     none,
-    force,   ///< force or stiffness were not finite, or absurdly large
-    hand,    ///< hand position or velocity not finite, or absurdly large
-    time,    ///< the time since the last step was not finite, or negative
-    proxy,   ///< the proxy has latched a fault (ContactNote::fault)
+    force,  ///< force or stiffness were not finite, or absurdly large
+    hand,   ///< hand position or velocity not finite, or absurdly large
+    time,   ///< the time since the last step was not finite, or negative
+    proxy,  ///< the proxy has latched a fault (ContactNote::fault), as of a hand that is not finite
     device,  ///< the device has failed
   };
 

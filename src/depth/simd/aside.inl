@@ -158,8 +158,8 @@ constexpr Directions kDirections[2] = {{{1, 0, -1, 0}, {0, 1, 0, -1}},
 struct Aside {
   int size;
   bool whole, diagonal;
-  double
-      promise;  // best score of windows there, over that of the largest one's mean: if it is flat
+  // Score of a window there that sees a plane, over the variance of the largest one's mean.
+  double promise;
 };
 constexpr int kWays = 4;                 // half or whole, along axes or diagonals
 constexpr int kAsides = kWays * kSizes;  // each of them in each size
@@ -237,8 +237,9 @@ inline double centred_score(const FitInput& in, int row, const Chunk& c, const S
   return score(f, affine, Doubles{}, Doubles{}, search.lever_u2, search.lever_v2)[0];
 }
 
-// Near an edge windows beside the block see more of its surface than those around it. Where neither
-// the most promising windows of a way are explained nor the smallest ones, none is.
+// Looks for a better window beside a block: near an edge it sees more of the block's surface than
+// one around it. Tries the most promising windows of a way first and then, before all others of
+// that way, the smallest: where none of these is explained, no larger one is.
 inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
   const auto lever_u = static_cast<double>(c.lever_u[i]);
   const auto lever_v = static_cast<double>(c.lever_v[i]);

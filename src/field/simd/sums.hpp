@@ -30,7 +30,7 @@ struct Columns {
   double* slope;                          // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
   std::uint32_t run_begin[kMaxRuns + 1];  // run of a label l and source s: l * sources + s
   int sources;
-  int labels;  // from the first on; those behind have no points
+  int labels;  // so many, from the first on; the others have no points
 
   std::uint32_t begin_of(int label) const { return run_begin[label * sources]; }
   std::uint32_t end() const { return run_begin[labels * sources]; }
@@ -67,7 +67,7 @@ struct Sums {
   double grad_wr[3];
 };
 
-// Over the points beside edges, with v_i by how sure their edge is: sum v_i, and sum v_i h_i of the
+// Over the points beside edges, with v_i = c_i w_i |share_i|: sum v_i, and sum v_i h_i of the
 // heights of x above what both planes leave.
 struct EdgeSums {
   double v;

@@ -57,7 +57,7 @@ constexpr double kScaleW = kWendland ? 1 : 1. / 9;  // w = s^4 (4 r + 1) or s^2 
 template <bool kWendland>
 constexpr double kScaleSteep = kWendland ? 20 : 4. / 9;  // -g = 20 s^3 or 4 / 9 s (5 + 6 s)
 
-// Eqs. (1) and (2) with their slopes (field/field_options.hpp), at q = r^2.
+// Eqs. (1) and (2) with their slopes (field/formulas.hpp), at q = r^2.
 // Without the attribute it is called and not inlined, which costs more than it computes.
 template <bool kWendland>
 [[gnu::always_inline]] inline Weight kernel(const Lanes& q) {

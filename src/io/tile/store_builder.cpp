@@ -119,7 +119,7 @@ std::size_t count_done(const Plan& plan, const fs::path& work) {
 
 }  // namespace
 
-// What of octree.bin no file of a chunk tells is cut off.
+// Cuts off what of octree.bin no file of a chunk tells.
 StoreBuilder::StoreBuilder(const Plan& plan, std::size_t most, const fs::path& work)
     : plan_(plan),
       tree_{plan.layout, plan.frame.bits, most},

@@ -13,7 +13,7 @@ constexpr std::size_t kAhead =
 // Share of the blocks around one that have to show the same surface; a line has 2 of 8 (derived).
 constexpr float kVouch = 0.25f;
 
-// Closer than R by what rounding may do.
+// Share of R^2: points whose squared distance is below it are within R, however it was rounded.
 constexpr float kWithin2 = 0.98f;
 
 }  // namespace

@@ -39,7 +39,7 @@ struct BlockGrid {
   /// Makes room for the columns of a frame, with a margin of so many blocks.
   void make_room(const FilteredDepth& depth, int blocks);
 
-  /// Puts down where the blocks of a row are.
+  /// Copies the positions of a row's blocks into the columns.
   void lay_out_places(const FilteredDepth& depth, std::size_t v);
 };
 

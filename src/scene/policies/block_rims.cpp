@@ -24,8 +24,8 @@ Floats weight(Kernel kernel, const Floats& q) {
 
 }  // namespace
 
-// No block is beside a rim yet; how many blocks of the rectangle from the image's first block to
-// each are empty or lie beside another surface.
+// Forgets the rims of the frame before. Counts for each block how many of the rectangle from the
+// image's first block to it are empty or lie beside another surface.
 void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of, const BlockGrid& grid) {
   halves_.assign(depth.size() + kLanes, 0);
   row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);

@@ -25,8 +25,8 @@ class BlockRims {
   BlockRims(Kernel kernel, float minimum_radius)
       : kernel_(kernel), minimum_radius_(minimum_radius) {}
 
-  /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere. `radii` of all
-  /// blocks, and lanes more; `grid`: where they are.
+  /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere. `radii`: of all
+  /// blocks, and room for kLanes more; `grid`: where they are.
   void find(const FilteredDepth& depth, std::span<const float> radii, const BlockGrid& grid,
             std::span<const Ball> balls, Exact exact);
 

@@ -15,8 +15,8 @@ constexpr float kSpacings = 2.5f;  // R in spacings
 constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
 
-// Deviation of a place that is sure, in R: three of it are where a point weighs half, 0.47 R
-// (derived; docs/method.md 6.7).
+// Deviation of a place that is sure, in R: at three of it, 0.47 R, a point still weighs more than
+// half by Wyvill's kernel (judgement; docs/method.md 6.7).
 constexpr float kSure = 0.157f;
 
 // Density-normalised weights of a surface that goes on on all sides sum to this times R^2 over the

@@ -70,13 +70,13 @@ class FrameBlocks {
   /// everywhere. Allocates only to grow.
   void look(const FilteredDepth& depth, std::span<const Ball> reach, bool everywhere);
 
-  /// Puts the frame where its camera is. `streams`: what varies among frames counts for less.
-  /// Returns whether blocks see elsewhere than those of the frame before.
+  /// Puts the frame where its camera is. `streams`: more than one frame has come, so points weigh
+  /// by their trust. Returns whether blocks see elsewhere than those of the frame before.
   bool put(const FilteredDepth& depth, const Eigen::Vector3d& origin, bool streams);
 
   [[nodiscard]] const BlockOrder& order() const { return order_; }
 
-  /// What four places show that follow one another; behind the last the last again.
+  /// What four places show that follow one another; the last place stands for those beyond it.
   [[nodiscard]] SeenFour four_at(std::size_t place) const;
 
   /// Fetches for four_at() ahead of time.

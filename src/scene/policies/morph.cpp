@@ -76,8 +76,8 @@ void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoi
   writer_.begin(points, std::max(old + old / 16, blocks / 2));
 }
 
-/// Places of the curve, shared out: what becomes of their points is decided, then there is known
-/// where they stand among all, then they are written.
+/// Shares places of the curve out among threads: decides what becomes of their points, counts
+/// these, so that each piece knows where its own begin, and writes them.
 void Morph::settle(std::size_t begin, std::size_t end, std::span<Piece> pieces) {
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
     const std::size_t first = begin + k * kPlaces;

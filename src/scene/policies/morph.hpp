@@ -62,7 +62,7 @@ class Morph {
   void fill_still(const MorphInput& input, const FrameTiming& moment,
                   const std::shared_ptr<SurfacePoints>& points);
 
-  /// There is no surface any more.
+  /// Forgets the surface: the next frame begins another.
   void forget() { shown_.forget(); }
 
  private:

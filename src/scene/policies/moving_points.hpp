@@ -15,7 +15,7 @@ enum class EntryKind : std::uint8_t {
   hidden,   ///< by what the block shows
   going,    ///< has been seen through, and is trusted less and less
   leaving,  ///< nobody feels it any more: its weight goes over one frame
-  outside,  ///< has left the image, which a moving camera looks elsewhere now
+  outside,  ///< of the image, since a moving camera looks elsewhere now
 };
 
 /// Remembers of a point what the field does not need.

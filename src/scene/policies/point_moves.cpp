@@ -132,7 +132,7 @@ Way PointMoves::unseen(Fate fate, std::uint32_t i) const {
   }
 }
 
-/// Nothing says that the point is gone, nothing that it is there.
+/// Keeps a point of which nothing says whether it is gone or there.
 Way PointMoves::hold(std::uint32_t i) const {
   const Entry& entry = shown_.entries()[i];
   // Stamps may go back.
@@ -145,13 +145,13 @@ Way PointMoves::hold(std::uint32_t i) const {
   return keep(i, from, presence, entry.kind, confirmed);
 }
 
-/// Something before it keeps it from being seen.
+/// Keeps a point that something nearer hides.
 Way PointMoves::hide(std::uint32_t i) const {
   const PointState from = shown_.at(i);
   return keep(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
 }
 
-/// It has been seen through.
+/// Lets a point fade that was seen through.
 Way PointMoves::go(std::uint32_t i) const {
   if (ends_) return leave(i);
   const PointState from = shown_.at(i);
@@ -159,7 +159,8 @@ Way PointMoves::go(std::uint32_t i) const {
   return keep(i, from, presence, EntryKind::going, shown_.entries()[i].confirmed);
 }
 
-/// Stays where it is, and is as sure as that when the snapshot ends; what nobody is sure of leaves.
+/// Keeps a point where it is and takes its presence to `presence` while the snapshot lasts; one
+/// that has none leaves.
 Way PointMoves::keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
                      double confirmed) const {
   if (from.presence <= 0) return leave(i);

@@ -20,7 +20,7 @@ class ShownPoints {
   /// 500 N/m.
   static constexpr float kSudden = 0.6f;
 
-  /// The next snapshot starts then; its points are relative to `origin`.
+  /// Sets when the next snapshot starts; its points are relative to `origin`.
   void begin(const FrameTiming& next, const Eigen::Vector3d& origin);
 
   /// Takes what is shown from now on. `entries` of its points; gets those of before, to be

@@ -86,7 +86,7 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
   return undefined;
 }
 
-/** Every so-manieth, that no more than enough are left. */
+/** Leaves one in so many that kMany are left at most. */
 function thin(hits: Hit[]): void {
   const stride = Math.ceil(hits.length / kMany);
   for (let i = 0; i * stride < hits.length; i += 1) hits[i] = hits[i * stride]!;
