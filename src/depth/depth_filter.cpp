@@ -166,14 +166,8 @@ struct DepthFilter::State {
                            static_cast<float>(options.farthest)});
   }
 
-<<<<<<< HEAD
-  // Fits, in this view, without regard to earlier frames: the rows of the answer; others are only
-  // averaged yet.
+  // Fits a frame without regard to earlier ones: the rows of the answer; others are averaged alone.
   depth::BlockRange fit(const DepthFrame& frame) {
-=======
-  // Fits a frame without regard to earlier ones.
-  void fit(const DepthFrame& frame) {
->>>>>>> engineers
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
