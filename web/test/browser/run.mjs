@@ -9,6 +9,7 @@ import { dark } from "./pixels.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./finer.mjs";
 import "./first_hour.mjs";
+import "./simple.mjs";
 import "./time_line.mjs";
 
 test("shows the scene and its force, and the browser has nothing to complain of", () =>
