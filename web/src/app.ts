@@ -30,6 +30,7 @@ import { applyLink, writeLink, type Link } from "./protocol/link";
 import { kVersion, type FromProgram, type SettingValue, type ToProgram, type Welcome } from "./protocol/messages";
 import { Rumble } from "./sound/rumble";
 import { Sound } from "./sound/sound";
+import { surfaceOf } from "./sound/surface";
 import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
@@ -237,7 +238,7 @@ export class App {
       if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
       this.readout.note(tool, now, this.hand.held && !this.stroke.content, this.stroke.nothing);
-      this.sound.hear(message);
+      this.sound.hear(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
       if (this.hand.held) this.rumble.feel(message, now);
     }
   }

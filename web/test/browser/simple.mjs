@@ -100,7 +100,7 @@ test("on the simple page the focus is never on what is hidden", () =>
     await page.locator("#presets button").first().focus();
     await page.keyboard.press("a");
     assert.equal(await page.evaluate(() => document.activeElement.parentElement.id), "presets", "it moved with its focus");
-    await page.getByRole("switch", { name: "Texture" }).focus();
+    await page.getByRole("switch", { name: "Grain" }).focus();
     await page.keyboard.press("a");
     assert.equal(await page.evaluate(() => document.activeElement.id), "view", "what had it is hidden");
   }));
