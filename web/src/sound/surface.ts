@@ -25,9 +25,10 @@ const kWhisper = 0.2; // share of that loudness without friction: a slip on ice 
 const kNoise = 0.9; // gain of the loudest noise
 const kDeep = 500; // Hz in the middle of a slow slip's noise
 const kBright = 2500; // Hz of a quick one's
-const kSteep = 0.06; // slope of a texture that is rough: hairs and grains; a smooth one has 0
+const kRough = 0.06; // slope of a texture that hisses as loudly as one can: hairs; a smooth one has 0
+const kSteep = 0.18; // slope of a texture over which a tool rattles loudest: the grain of wood
 const kHiss = 3; // a rough surface that gives way (hair) is brighter by so many times
-const kGrain = 3; // gain of the loudest grain; the resonance after it takes most of it away
+const kGrain = 1.6; // gain of the loudest grain; the resonance after it takes most of it away
 const kLeastTone = 8; // Hz; below that grains are single clicks
 const kMostTone = 2000; // Hz; above that nobody hears grains apart from noise
 const kSticks = 0.7; // coefficient from which on a slip sticks and slips: rubber, not wood
@@ -48,17 +49,18 @@ export function slipOf(surface: Surface, speed: number, force: number): Slip {
   const quick = share(speed, kFullSpeed);
   const effort = Math.sqrt(quick * share(force, kFullForce)); // the root of a power is an amplitude
   const rub = kWhisper + (1 - kWhisper) * share(friction, kFullFriction);
-  const rough = wavelength > 0 ? share((2 * Math.PI * amplitude) / wavelength, kSteep) : 0;
-  const hair = rough * (1 - stiff) ** 3; // stiff grains rattle instead
+  const slope = wavelength > 0 ? (2 * Math.PI * amplitude) / wavelength : 0;
+  const hair = share(slope, kRough) * (1 - stiff) ** 2; // stiff grains rattle instead
+  const soft = Math.max(stiff, 0.01) ** 0.25; // what is soft swallows some of a sound, and never all
   const tone = wavelength > 0 ? speed / wavelength : 0; // Hz at which grains pass
   return {
     noise: {
-      gain: kNoise * effort * rub * Math.max(stiff, 0.01) ** 0.4, // what is soft swallows some of it
+      gain: kNoise * effort * rub * soft,
       frequency: (kDeep + (kBright - kDeep) * quick) * (0.8 + 0.4 * stiff) * (1 + kHiss * hair),
       quality: 0.5 + 1.5 * stiff, // what is stiff rings
     },
     grain: {
-      gain: tone < kLeastTone ? 0 : kGrain * effort * rough * stiff,
+      gain: tone < kLeastTone ? 0 : kGrain * effort * share(slope, kSteep) * soft,
       frequency: Math.min(kMostTone, Math.max(kLeastTone, tone)),
     },
     squeak: {

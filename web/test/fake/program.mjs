@@ -25,7 +25,7 @@ export const kPresets = {
   default: { stiffness: 500, friction: 0.2, field: "balanced", texture: 0, grain: false },
   paper: { stiffness: 300, field: "pointset", policy: "average" },
   fur: { stiffness: 150, friction: 0.5, texture: 0.03, wavelength: 3 },
-  wood: { stiffness: 800, friction: 0.35, texture: 0.08, wavelength: 2 },
+  wood: { stiffness: 600, friction: 0.35, texture: 0.06, wavelength: 2 },
   ice: { stiffness: 1200, friction: 0.02, texture: 0 },
   rubber: { stiffness: 200, friction: 1, texture: 0 },
 };
