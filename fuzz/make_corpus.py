@@ -365,7 +365,7 @@ def client_messages():
                        ("set_number", '"key":"stiffness","value":750.5'),
                        ("set_choice", '"key":"field","value":"balanced"'),
                        ("set_switch", '"key":"friction","value":true'),
-                       ("preset", '"name":"soft"'), ("pause", '"on":true'), ("record", '"on":false'), ("seek", '"time":2.5'),
+                       ("preset", '"name":"wood"'), ("pause", '"on":true'), ("record", '"on":false'), ("seek", '"time":2.5'),
                        ("play", '"on":true,"speed":0.5'),
                        ("points", '"points":1000'), ("ping", '"id":7')):
         seed("client_message", name, '{"type":"%s",%s}' % (name.split("_")[0], rest))

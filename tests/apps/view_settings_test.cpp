@@ -23,6 +23,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
       {"stiffness", 320.0},
       {"friction", 0.3},
       {"texture", 0.5},
+      {"wavelength", 3.0},
       {"smoothing", 1.5},
       {"policy", std::string("average")},
       {"history", 2.0},
@@ -38,6 +39,7 @@ TEST(ViewSettings, WhatIsSetIsWhatIsListed) {
   EXPECT_EQ(settings.field.kind, FieldOptions::Kind::metaball);
   EXPECT_EQ(settings.feel.stiffness, 320);
   EXPECT_DOUBLE_EQ(settings.feel.texture.amplitude, 0.5e-3);
+  EXPECT_DOUBLE_EQ(settings.feel.texture.wavelength, 3e-3);
   EXPECT_EQ(settings.feel.friction.static_coefficient, 0.3);
 }
 
@@ -67,13 +69,49 @@ TEST(ViewSettings, PresetsStartFromWhatTheRunBeganWith) {
   ViewSettings initial;
   initial.feel.stiffness = 200;
   EXPECT_EQ(preset(initial, "default", kAll).feel.stiffness, 200);
-  EXPECT_LT(preset(initial, "soft", kAll).feel.stiffness, 200);
-  EXPECT_GT(preset(initial, "glass", kAll).feel.stiffness, 200);
   const ViewSettings paper = preset(initial, "paper", kAll);
   EXPECT_TRUE(paper.field.raw_weights);
   EXPECT_EQ(paper.preparation.policy, Policy::average);
   EXPECT_NO_THROW(check(paper.field));
   EXPECT_THROW((void)preset(initial, "stone", kAll), Error);
+}
+
+TEST(ViewSettings, FurRubberWoodAndIceAreEachStifferThanTheOneBefore) {
+  double before = 0;
+  for (const char* const name : {"fur", "rubber", "wood", "ice"}) {
+    const ContactSettings feel = preset({}, name, kAll).feel;
+    EXPECT_GT(feel.stiffness, before) << name;
+    EXPECT_EQ(feel.friction.static_coefficient, feel.friction.dynamic_coefficient) << name;
+    before = feel.stiffness;
+  }
+  const auto friction = [](const char* name) {
+    return preset({}, name, kAll).feel.friction.dynamic_coefficient;
+  };
+  EXPECT_LT(friction("ice"), friction("wood"));
+  EXPECT_LT(friction("wood"), friction("fur"));
+  EXPECT_LT(friction("fur"), friction("rubber"));
+}
+
+TEST(ViewSettings, TexturesOfPresetsAreSmoothUnderANewton) {
+  for (const double scale : {0.1, 1.0, 50.0}) {
+    ViewScope scope = kAll;
+    scope.scale = scale;
+    scope.stiffest /= scale;
+    scope.deepest_texture *= scale;
+    ViewSettings initial;
+    initial.feel.stiffness /= scale;
+    initial.feel.texture.amplitude = 1e-4 * scale;
+    for (const char* const name : {"fur", "wood"}) {
+      const ContactSettings feel = preset(initial, name, scope).feel;
+      const double depth = 1 / feel.stiffness;
+      const Texture& texture = feel.texture;
+      EXPECT_GT(texture.amplitude, 0) << name;
+      EXPECT_LE(texture.amplitude, texture.wavelength * texture.wavelength / (40 * depth) * 1.0001)
+          << name << ' ' << scale;
+    }
+    for (const char* const name : {"ice", "rubber"})
+      EXPECT_EQ(preset(initial, name, scope).feel.texture.amplitude, 0) << name;
+  }
 }
 
 TEST(ViewSettings, AnotherKindOfThePapersSurfaceIsThePapers) {
@@ -100,11 +138,12 @@ TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
       {"field", std::string("metaball")},
       {"stiffness", 320.0},
       {"friction", 0.3},
-      {"texture", 0.5}};
+      {"texture", 0.5},
+      {"wavelength", 3.0}};
   ViewSettings settings;
   for (const auto& [key, value] : felt) set(settings, kAll, key, value);
   EXPECT_EQ(settings.preparation, ViewSettings::Preparation{});
-  EXPECT_EQ(preset({}, "glass", kAll).preparation, ViewSettings::Preparation{});
+  EXPECT_EQ(preset({}, "wood", kAll).preparation, ViewSettings::Preparation{});
   const std::vector<std::pair<std::string, Setting::Value>> prepared = {
       {"smoothing", 1.5}, {"policy", std::string("average")}, {"history", 2.0}, {"voxel", 4.0}};
   for (const auto& [key, value] : prepared) {
@@ -118,9 +157,11 @@ TEST(ViewSettings, PresetsKeepToTheBounds) {
   ViewSettings initial;
   initial.feel.stiffness = 1500;
   initial.feel.texture.amplitude = 5e-3;
-  const ViewSettings glass = preset(initial, "glass", kAll);
-  EXPECT_EQ(glass.feel.stiffness, kAll.stiffest);
-  EXPECT_EQ(glass.feel.texture.amplitude, kAll.deepest_texture);
+  EXPECT_EQ(preset(initial, "ice", kAll).feel.stiffness, kAll.stiffest);
+  EXPECT_EQ(preset(initial, "default", kAll).feel.texture.amplitude, kAll.deepest_texture);
+  ViewScope thin = kAll;
+  thin.deepest_texture = 1e-5;
+  EXPECT_EQ(preset(initial, "wood", thin).feel.texture.amplitude, thin.deepest_texture);
 }
 
 TEST(ViewSettings, NothingIsListedThatWouldDoNothing) {
@@ -136,7 +177,7 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   own.policy.policy = Policy::replace;
   own.policy.history = 6;
   const ViewSettings initial;
-  ViewSettings settings = preset(initial, "glass", kAll);
+  ViewSettings settings = preset(initial, "wood", kAll);
   SourceOptions options = prepared_by(settings.preparation, initial.preparation, own);
   EXPECT_EQ(options.depth.normal_error, 0.01);
   EXPECT_EQ(options.prepare.radius, 0.02);
@@ -161,11 +202,13 @@ TEST(ViewSettings, BoundsAndStepsAreThoseOfTheCloud) {
     const double scale = size / 0.1;
     ViewScope scope = {.clouds = true};
     scope.stiffest = 2000 / scale;
+    scope.scale = scale;
     scope.spacing = size / 200;
     scope.deepest_texture = 0.5 * scope.spacing;
     ViewSettings settings;
     settings.feel.stiffness = 0.43 * scope.stiffest;
     settings.feel.texture.amplitude = 0.37 * scope.deepest_texture;
+    settings.feel.texture.wavelength = 4e-3 * scale;
     settings.preparation.voxel = 2.1 * scope.spacing;
     for (const Setting& setting : list_settings(settings, scope)) {
       if (setting.kind != Setting::Kind::number || setting.step == 1) continue;

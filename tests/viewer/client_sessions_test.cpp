@@ -20,7 +20,7 @@ TEST(ClientSessions, HelloIsAnsweredByWelcome) {
   EXPECT_EQ(messages[0]["devices"][1]["takeable"], false);
   EXPECT_EQ(messages[0]["settings"][0]["key"], "k");
   EXPECT_EQ(messages[0]["settings"][0]["value"], 20.0);
-  EXPECT_EQ(messages[0]["presets"], json::array({"soft"}));
+  EXPECT_EQ(messages[0]["presets"], json::array({"wood"}));
   EXPECT_TRUE(session.greeted);
   EXPECT_EQ(session.points, 1000u);
 }
@@ -98,8 +98,8 @@ TEST(ClientSessions, ASettingOutOfRangeOrUnknownOrThatTheProgramRefusesStays) {
 TEST(ClientSessions, PresetPauseResetPointsAndPingDoWhatTheySay) {
   SessionsRig rig;
   Session& session = rig.enter();
-  EXPECT_EQ(rig.answers(session, R"({"type":"preset","name":"soft"})")[0]["type"], "settings");
-  EXPECT_EQ(rig.preset, "soft");
+  EXPECT_EQ(rig.answers(session, R"({"type":"preset","name":"wood"})")[0]["type"], "settings");
+  EXPECT_EQ(rig.preset, "wood");
   rig.answers(session, R"({"type":"pause","on":true})");
   EXPECT_TRUE(rig.paused);
   rig.answers(session, R"({"type":"reset"})");

@@ -28,7 +28,7 @@ struct SessionsRig {
       if (value == Setting::Value{13.0}) throw Error("not thirteen");
       setting.value = value;
     };
-    options.controls.presets = {"soft"};
+    options.controls.presets = {"wood"};
     options.controls.preset = [this](const std::string& name) { preset = name; };
     options.controls.pause = [this](bool on) { paused = on; };
     options.controls.reset = [this](std::optional<std::size_t> tool) { resets.push_back(tool); };

@@ -34,7 +34,7 @@ TEST(ClientMessage, EveryKindOfTheProtocolIsRead) {
   EXPECT_EQ(std::get<double>(read<Set>(R"({"type":"set","key":"k","value":-1.5})").value), -1.5);
   EXPECT_EQ(std::get<bool>(read<Set>(R"({"type":"set","key":"k","value":true})").value), true);
   EXPECT_EQ(std::get<std::string>(read<Set>(R"({"type":"set","key":"k","value":"a"})").value), "a");
-  EXPECT_EQ(read<Preset>(R"({"type":"preset","name":"soft"})").name, "soft");
+  EXPECT_EQ(read<Preset>(R"({"type":"preset","name":"wood"})").name, "wood");
   EXPECT_TRUE(read<Pause>(R"({"type":"pause","on":true})").on);
   read<Reset>(R"({"type":"reset"})");
   EXPECT_FALSE(read<Record>(R"({"type":"record","on":false})").on);

@@ -15,6 +15,7 @@ import { HoldPanel } from "./panel/hold";
 import { LookPanel } from "./panel/look";
 import { Notices } from "./panel/notices";
 import { Overlay } from "./panel/overlay";
+import type { Panels } from "./panel/panels";
 import { Plots } from "./panel/plots";
 import { Readout } from "./panel/readout";
 import { SettingsPanel } from "./panel/settings";
@@ -29,6 +30,7 @@ import { applyLink, writeLink, type Link } from "./protocol/link";
 import { kVersion, type FromProgram, type SettingValue, type ToProgram, type Welcome } from "./protocol/messages";
 import { Rumble } from "./sound/rumble";
 import { Sound } from "./sound/sound";
+import { surfaceOf } from "./sound/surface";
 import type { Graphics } from "./view/graphics";
 import { World } from "./view/world";
 
@@ -38,7 +40,7 @@ const kCalmInterval = 250; // ms, where less motion is asked for
 
 export class App {
   private readonly session = new Session();
-  private readonly notices = new Notices();
+  private readonly notices = new Notices(() => !this.panels.all);
   private readonly devices = new Devices(this.session, this.notices);
   private readonly sound = new Sound();
   private readonly rumble = new Rumble();
@@ -66,7 +68,7 @@ export class App {
   private calmUntil = 0; // ms: a start has its own troubles, which pass
   private run: string | undefined;
 
-  constructor(private readonly link: Link, graphics: Graphics) {
+  constructor(private readonly link: Link, graphics: Graphics, private readonly panels: Panels) {
     const send = (message: ToProgram) => this.connection.send(message);
     this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
@@ -81,7 +83,7 @@ export class App {
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.tour = new Tour(this.session, this.hand, this.stroke, take, send, (words) => say(byId("tour"), words));
-    this.bar = new Bar(this.session, this.world, this.sound, this.notices, link.token, send);
+    this.bar = new Bar(this.session, this.world, this.sound, this.notices, panels, link.token, send);
     this.timeLine = new TimeLinePanel(send);
     const keys = (this.keys = new Keys({
       toggleTool: () => this.hold.toggle(),
@@ -94,6 +96,7 @@ export class App {
       turnUpright: () => this.world.turnUpright(),
       help: () => this.bar.help(),
       freeze: () => this.freeze(),
+      togglePanels: () => panels.toggle(),
       sayForce: () => (byId("polite").textContent = this.readout.sentence(this.session.tool)),
     }));
     const spaceMouse = new SpaceMouse();
@@ -210,6 +213,7 @@ export class App {
     else this.tour.forget();
     if (first) this.calmUntil = performance.now() + kCalm;
     if (!first) return; // a new connection finds the program as it is
+    if (this.session.recorded) this.panels.show(true);
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
     history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
@@ -234,7 +238,7 @@ export class App {
       if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
       this.readout.note(tool, now, this.hand.held && !this.stroke.content, this.stroke.nothing);
-      this.sound.hear(message);
+      this.sound.hear(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
       if (this.hand.held) this.rumble.feel(message, now);
     }
   }
@@ -261,6 +265,7 @@ export class App {
   }
 
   private freeze(): void {
+    if (!this.panels.all) return; // nobody would see why plots stand still
     this.plots.frozen = !this.plots.frozen;
     byId("freeze").setAttribute("aria-pressed", String(this.plots.frozen));
   }
@@ -282,15 +287,5 @@ export class App {
       if (document.hidden) this.hand.letGo();
       this.tellPoints();
     });
-    for (const tab of document.querySelectorAll<HTMLElement>(".tabs [data-tab]")) {
-      tab.addEventListener("click", () => this.openTab(tab.dataset["tab"] ?? "force"));
-    }
-  }
-
-  private openTab(name: string): void {
-    document.body.dataset["tab"] = name;
-    for (const tab of document.querySelectorAll<HTMLElement>(".tabs [data-tab]")) {
-      tab.setAttribute("aria-current", String(tab.dataset["tab"] === name));
-    }
   }
 }

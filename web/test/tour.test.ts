@@ -36,7 +36,7 @@ test("a tour presses, strokes, shows two materials and leaves everything as it w
   assert.ok(tour.start(0));
   for (let now = 0; now < 40_000; now += 16) tour.update(now);
   assert.deepEqual(sent.map((one) => (one.type === "set" ? [one.key, one.value] : one.type)),
-    [["stiffness", 240], ["stiffness", 1500], ["friction", 0], ["stiffness", 800], ["friction", 0.2]]);
+    [["stiffness", 240], ["friction", 0.5], ["stiffness", 1500], ["friction", 0.02], ["stiffness", 800], ["friction", 0.2]]);
   assert.deepEqual([...values], [["stiffness", 800], ["friction", 0.2]]);
   assert.equal(words.length, 6);
   assert.equal(words.at(-1), "");

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <utility>
 
 #include "apps/palpate/cli/names.hpp"
+#include "apps/palpate/run/materials.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -21,6 +21,7 @@ constexpr const char* kAutomatic = "automatic";
 constexpr double kSliderSteps = 80;   // of a slider, about
 constexpr double kWidestVoxel = 10;   // spacings
 constexpr double kUsualVoxel = 0.05;  // m, where no spacing is known
+constexpr double kWidestWave = 0.01;  // m of the hand: longer waves are felt as shape
 
 // 1, 2 or 5 times a power of ten, next to `value` by ratio.
 double round_step(double value) {
@@ -55,6 +56,14 @@ Setting number(const char* key, const char* label, const char* unit, double leas
           .most = most,
           .step = step,
           .value = value};
+}
+
+// A texture has a wavelength above 0.
+Setting wavelength_setting(const Unit& unit, double most, double value) {
+  most = std::max(most, value) / unit.metres;
+  value /= unit.metres;
+  const double step = round_step(most / kSliderSteps);
+  return number("wavelength", "Wavelength", unit.name, std::min(step, value), most, step, value);
 }
 
 // A length from 0 to `most`, m.
@@ -94,30 +103,18 @@ FieldOptions other_kind(FieldOptions field, FieldOptions::Kind kind) {
   return field;
 }
 
-struct Preset {
-  const char* name;
-  void (*apply)(ViewSettings&);
-};
+// `scale`: world metres of a metre of the hand.
+void make_of(const Material& material, double scale, ContactSettings& feel) {
+  feel.stiffness *= material.stiffness;
+  set_friction(feel, material.friction);
+  feel.texture = {scale * material.texture.amplitude, scale * material.texture.wavelength};
+}
 
-constexpr std::array<Preset, 4> kPresets = {{
-    {"default", [](ViewSettings&) {}},
-    {"paper",
-     [](ViewSettings& settings) {
-       settings.field = paper_field();
-       settings.preparation.policy = Policy::average;
-       settings.feel.texture = {};
-     }},
-    {"soft",
-     [](ViewSettings& settings) {
-       settings.feel.stiffness *= 0.3;
-       set_friction(settings.feel, 0.4);
-     }},
-    {"glass",
-     [](ViewSettings& settings) {
-       settings.feel.stiffness *= 2.4;
-       set_friction(settings.feel, 0);
-     }},
-}};
+void make_paper(ViewSettings& settings) {
+  settings.field = paper_field();
+  settings.preparation.policy = Policy::average;
+  settings.feel.texture = {};
+}
 
 }  // namespace
 
@@ -133,6 +130,8 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
   if (scope.deepest_texture > 0) {
     list.push_back(length_setting("texture", "Texture", unit, scope.deepest_texture,
                                   settings.feel.texture.amplitude));
+    list.push_back(
+        wavelength_setting(unit, kWidestWave * scope.scale, settings.feel.texture.wavelength));
   }
   if (scope.lives || scope.clouds) {
     list.push_back(
@@ -170,28 +169,33 @@ void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
     set_friction(settings.feel, std::get<double>(value));
   } else if (key == "texture") {
     settings.feel.texture.amplitude = std::get<double>(value) * unit_of(scope).metres;
+  } else if (key == "wavelength") {
+    settings.feel.texture.wavelength = std::get<double>(value) * unit_of(scope).metres;
   } else {
     throw Error(fmt::format("unknown setting '{}'", key));
   }
 }
 
 std::vector<std::string> preset_names() {
-  std::vector<std::string> names;
-  for (const Preset& each : kPresets) names.emplace_back(each.name);
+  std::vector<std::string> names = {"default", "paper"};
+  for (const Material& each : kMaterials) names.emplace_back(each.name);
   return names;
 }
 
 ViewSettings preset(const ViewSettings& initial, const std::string& name, const ViewScope& scope) {
-  for (const Preset& each : kPresets) {
-    if (name != each.name) continue;
-    ViewSettings result = initial;
-    each.apply(result);
-    ContactSettings& feel = result.feel;
-    feel.stiffness = std::min(feel.stiffness, scope.stiffest);
-    feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
-    return result;
+  ViewSettings result = initial;
+  ContactSettings& feel = result.feel;
+  const auto material = std::ranges::find(kMaterials, name, &Material::name);
+  if (material != kMaterials.end()) {
+    make_of(*material, scope.scale, feel);
+  } else if (name == "paper") {
+    make_paper(result);
+  } else if (name != "default") {
+    throw Error(fmt::format("unknown preset '{}'", name));
   }
-  throw Error(fmt::format("unknown preset '{}'", name));
+  feel.stiffness = std::min(feel.stiffness, scope.stiffest);
+  feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
+  return result;
 }
 
 SourceOptions prepared_by(const ViewSettings::Preparation& wanted,

@@ -40,6 +40,7 @@ struct ViewSettings {
 struct ViewScope {
   double stiffest = 2000;      ///< N/m, in the world
   double deepest_texture = 0;  ///< amplitude, m
+  double scale = 1;            ///< world metres of a metre of the hand
   double spacing = 0;          ///< of the clouds that stand still as they were read, the widest, m
   bool lives = false;          ///< frames or clouds follow one another in time
   bool depth = false;          ///< ... and are depth images

@@ -43,9 +43,9 @@ ViewSettings initial_settings(const Run& run) {
 // No stiffer than every hand's device bears.
 ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   ViewScope scope;
-  double scale = 0;
-  for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
-  scope.stiffest = kSteadyStiffness / scale;
+  scope.scale = 0;
+  for (const Hand& hand : run.hands) scope.scale = std::max(scope.scale, hand.workspace.scale);
+  scope.stiffest = kSteadyStiffness / scope.scale;
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
   }

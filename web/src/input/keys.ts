@@ -17,6 +17,7 @@ export interface Actions {
   turnUpright(): void;
   help(): void;
   freeze(): void;
+  togglePanels(): void;
   sayForce(): void;
 }
 
@@ -53,6 +54,7 @@ export class Keys {
       c: () => actions.follow(),
       u: () => actions.turnUpright(),
       h: () => actions.freeze(),
+      a: () => actions.togglePanels(),
       s: () => actions.sayForce(),
       "?": () => actions.help(),
     };

@@ -1,4 +1,4 @@
-// Shows in some seconds what there is to feel: presses, strokes, and two other materials. Ends at once when the
+// Shows in some seconds what there is to feel: presses, strokes, and two of the presets' materials. Ends at once when the
 // person does anything.
 
 import { Vector2 } from "three";
@@ -21,8 +21,8 @@ const kReaches = 6; // of what is looked at around a pointer, so that a hand fol
 const kParts: readonly Part[] = [
   { words: "The red hand presses. The black proxy stays on the surface: the spring between them is the force.", seconds: 5, wide: 0 },
   { words: "It strokes: the proxy follows the surface, and the force turns with it.", seconds: 6, wide: 1 },
-  { words: "Soft: the same force goes deeper.", seconds: 5, wide: 0.5, stiffer: 0.3 },
-  { words: "Glass: stiff and smooth.", seconds: 5, wide: 0.5, stiffer: 2.4, friction: 0 },
+  { words: "Fur: the same force goes deeper, and a stroke is held back.", seconds: 5, wide: 0.5, stiffer: 0.3, friction: 0.5 },
+  { words: "Ice: stiff and slippery.", seconds: 5, wide: 0.5, stiffer: 2.4, friction: 0.02 },
 ];
 const kLast = "Now you: press on the surface, and use the wheel for more force.";
 const kLastSeconds = 5;

@@ -1,4 +1,4 @@
-// The bar: pause, reset, record, open, sound, picture, link, help.
+// The bar: pause, reset, record, open, sound, picture, link, help. Which panels are shown is panels.ts's.
 
 import type { Session } from "../model/session";
 import { writeLink } from "../protocol/link";
@@ -9,6 +9,7 @@ import { byId, icon, say } from "./dom";
 import type { Notices } from "./notices";
 import { whole } from "./numbers";
 import { Opening } from "./opening";
+import type { Panels } from "./panels";
 
 const kKept = 0.95; // of its best rate, below which the servo is late
 
@@ -23,6 +24,7 @@ export class Bar {
     private readonly world: World,
     private readonly sound: Sound,
     private readonly notices: Notices,
+    private readonly panels: Panels,
     private readonly token: string,
     private readonly send: (message: ToProgram) => void,
   ) {
@@ -53,6 +55,9 @@ export class Bar {
   update(): void {
     const paused = this.session.tool?.has("paused") ?? false;
     this.press("pause", paused, paused ? "play" : "pause", paused ? "Resume" : "Pause");
+    const takeable = this.session.welcome?.devices[this.session.device]?.takeable ?? true;
+    byId("pause").classList.toggle("needed", paused || !takeable); // on the simple page
+    byId("reset").classList.toggle("needed", this.session.tool?.has("fault") ?? false);
     byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";
     const rate = this.session.tool?.latest?.rate;
@@ -65,7 +70,8 @@ export class Bar {
   private showRate(rate: number): void {
     this.best = Math.max(this.best, rate);
     const late = rate < kKept * this.best;
-    say(byId("link-words"), `${whole(rate)} steps/s${late ? ": late" : ""}`);
+    const simple = !this.panels.all && !late;
+    say(byId("link-words"), simple ? "connected" : `${whole(rate)} steps/s${late ? ": late" : ""}`);
     byId("link-state").classList.toggle("late", late);
   }
 

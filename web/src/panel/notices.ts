@@ -26,6 +26,9 @@ function kindOf(text: string): string {
 export class Notices {
   private shown: Notice[] = [];
 
+  /** `brief`: what is neither a warning nor work under way is listed only. */
+  constructor(private readonly brief: () => boolean) {}
+
   /** What work was under way is not the next run's. */
   begin(): void {
     for (const notice of this.shown) if (notice.share !== undefined) this.remove(notice);
@@ -34,6 +37,7 @@ export class Notices {
   /** share: of work that takes a while, 0 to 1. One such notice is shown, until that is 1. calm: warnings are listed only. */
   add(level: NoticeLevel, text: string, share?: number, calm = false): void {
     if (calm && level === "warning") return this.log(this.makeNotice(level, text).entry);
+    if (level === "info" && share === undefined && this.brief()) return this.list(text);
     if (share === undefined) return this.put(level, text);
     const work = this.shown.find((notice) => notice.share !== undefined);
     if (share >= 1) {
@@ -75,6 +79,11 @@ export class Notices {
     const notice: Notice = { level, text, times: 1, card, entry, timer: 0, share: undefined };
     close.addEventListener("click", () => this.remove(notice));
     return notice;
+  }
+
+  private list(text: string): void {
+    this.log(this.makeNotice("info", text).entry);
+    say(byId("polite"), text);
   }
 
   private showShare(notice: Notice, share: number): void {

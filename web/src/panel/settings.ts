@@ -12,6 +12,10 @@ export class SettingsPanel {
   private readonly rows = new Map<string, FieldRow>();
   private readonly softer = make("p", { class: "soft", role: "status" });
   private until = 0;
+  private readonly buttons = new Map<string, HTMLElement>(); // of presets
+  private asked: string | undefined; // the preset whose values are still to come
+  private chosen: string | undefined; // the preset whose values hold
+  private held = ""; // these values
 
   constructor(
     private readonly set: (key: string, value: SettingValue) => void,
@@ -25,11 +29,13 @@ export class SettingsPanel {
     }
     this.rows.get("stiffness")?.row.append(this.softer);
     byId("settings").replaceChildren(...[...this.rows.values()].map(({ row }) => row));
-    byId("presets").replaceChildren(
-      ...presets.map((name) =>
-        make("button", { type: "button", class: "button", click: () => this.preset(name) }, name),
-      ),
-    );
+    this.buttons.clear();
+    for (const name of presets) {
+      const choose = () => this.preset((this.asked = name));
+      this.buttons.set(name, make("button", { type: "button", class: "button", "aria-pressed": "false", click: choose }, name));
+    }
+    this.asked = this.chosen = undefined;
+    byId("presets").replaceChildren(...this.buttons.values());
   }
 
   /** Says where what is asked for is not felt yet. */
@@ -40,5 +46,15 @@ export class SettingsPanel {
 
   show(values: ReadonlyMap<string, SettingValue>): void {
     for (const [key, value] of values) this.rows.get(key)?.show(value);
+    this.markPreset(JSON.stringify([...values]));
+  }
+
+  /** A preset is chosen until a value is no longer as it set it. */
+  private markPreset(values: string): void {
+    if (this.asked !== undefined) this.chosen = this.asked;
+    else if (values !== this.held) this.chosen = undefined;
+    this.asked = undefined;
+    this.held = values;
+    for (const [name, button] of this.buttons) button.setAttribute("aria-pressed", String(name === this.chosen));
   }
 }

@@ -4,6 +4,7 @@ import type { Link } from "../protocol/connection";
 import { byId, say } from "./dom";
 
 const kNeedProgram = ["pause", "reset", "record"];
+const kSet = ["panel-settings", "presets"]; // the second stands in the picture on the simple page
 
 export class Status {
   private timer = 0;
@@ -23,7 +24,7 @@ export class Status {
   show(link: Link): void {
     clearInterval(this.timer);
     for (const id of kNeedProgram) byId<HTMLButtonElement>(id).disabled = link.phase !== "open";
-    byId("panel-settings").inert = link.phase !== "open";
+    for (const id of kSet) byId(id).inert = link.phase !== "open";
     byId("link-state").dataset["phase"] = link.phase;
     if (link.phase === "open") {
       if (this.everOpen) say(byId("polite"), "Reconnected.");

@@ -38,9 +38,16 @@ export async function soon(condition, patience = 2000) {
   return false;
 }
 
-/** A page that remembers what went wrong on it; `before` is run in it before its own scripts. */
-export async function openPage(browser, address, options, before) {
+/** Runs in a page before its scripts: the browser remembers that all panels were asked for. */
+function askForAll() {
+  const key = "palpate.panels";
+  if (location.protocol === "http:" && localStorage.getItem(key) === null) localStorage.setItem(key, '"all"');
+}
+
+/** A page that remembers what went wrong on it; `before` is run in it before its own scripts. `first`: it is a first visit. */
+export async function openPage(browser, address, options, before, first = false) {
   const context = await browser.newContext(options);
+  if (!first) await context.addInitScript(askForAll);
   if (before !== undefined) await context.addInitScript(before);
   const page = await context.newPage();
   page.troubles = [];

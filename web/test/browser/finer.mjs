@@ -11,7 +11,7 @@ import { browser, hands, kPhone, kSmall, sent, text, withPage } from "./with_pag
 
 test("letters act while a switch or a slider has the focus, and not while one writes", () =>
   withPage(kSmall, async (page, program) => {
-    await page.getByRole("switch", { name: "Texture" }).focus();
+    await page.getByRole("switch", { name: "Grain" }).focus();
     await page.keyboard.press("p");
     await until("paused", async () => (await text(page, "#flags")).includes("paused"));
     await page.getByRole("slider", { name: /Stiffness/ }).focus();
@@ -19,7 +19,7 @@ test("letters act while a switch or a slider has the focus, and not while one wr
     await until("goes on", () => !program.servo.paused);
     await page.getByRole("spinbutton", { name: "Stiffness" }).focus();
     await page.keyboard.press("p");
-    await page.getByRole("switch", { name: "Texture" }).focus();
+    await page.getByRole("switch", { name: "Grain" }).focus();
     await page.keyboard.press("r");
     await until("reset", () => sent(program, "reset").length === 1);
     assert.equal(sent(program, "pause").length, 2, "a letter that was written is no command");
@@ -267,7 +267,7 @@ test("a tour takes the tool and presses; Escape ends it, and the settings are as
     await page.click("#tour-start");
     await until("says what it does", async () => /presses/.test(await text(page, "#tour")));
     await until("presses", () => hands(program).at(-1)?.force === 1);
-    await until("shows a soft material", () => stiffness() === 240);
+    await until("shows fur", () => stiffness() === 240);
     await page.keyboard.press("Escape");
     await until("released", () => !program.servo.taken);
     await until("as before", () => stiffness() === 800);

@@ -51,6 +51,8 @@ const kPictures = [
   ["silent_phone", kPhone, "light", (page) => page.selectOption("#device", "1")],
   ["desktop_lift", kDesktop, "light", () => trip()],
   ["phone_lift", kPhone, "dark", () => trip()],
+  ["simple_light", kDesktop, "light"],
+  ["simple_phone", kPhone, "dark"],
   ["desktop_help", kDesktop, "light", (page) => page.click("#help")],
 ];
 
@@ -68,7 +70,7 @@ const browser = await openBrowser();
 for (const [name, options, scheme, act] of kPictures) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   const of = name.startsWith("still") ? still : name.startsWith("silent") ? silent : server;
-  const page = await openPage(browser, of.address, { ...options, colorScheme: scheme });
+  const page = await openPage(browser, of.address, { ...options, colorScheme: scheme }, undefined, name.startsWith("simple"));
   await page.waitForTimeout(6500);
   await act?.(page);
   await page.waitForTimeout(1800);

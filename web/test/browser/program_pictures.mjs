@@ -17,6 +17,7 @@ const closeBy = async (page) => {
 };
 const kPictures = [
   ["page", "desk", "60 000", nearer, { viewport: { width: 1440, height: 900 } }],
+  ["page-simple", "scan", "60 000", (page) => page.locator("#presets").getByText("wood").click(), { viewport: { width: 1440, height: 900 } }],
   ["page-phone", "scan", "30 000", closeBy, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true }],
 ];
 const kTouch = 1; // N
@@ -61,7 +62,7 @@ const browser = await openBrowser();
 for (const [name, scene, points, look, options] of kPictures) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   const program = await startProgram(["demo", scene, "--headless", "--port", "0"]);
-  const page = await openPage(browser, program.address, { ...options, reducedMotion: "reduce" }, listen);
+  const page = await openPage(browser, program.address, { ...options, reducedMotion: "reduce" }, listen, name === "page-simple");
   await until("the page is connected", () => page.locator("#take").isEnabled());
   await choose(page, "Maximum points", points);
   await look(page);

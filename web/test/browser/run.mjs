@@ -9,6 +9,8 @@ import { dark } from "./pixels.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./finer.mjs";
 import "./first_hour.mjs";
+import "./simple.mjs";
+import "./sounds.mjs";
 import "./time_line.mjs";
 
 test("shows the scene and its force, and the browser has nothing to complain of", () =>
@@ -16,7 +18,7 @@ test("shows the scene and its force, and the browser has nothing to complain of"
     assert.equal(await text(page, "#scene"), "table with a ball");
     await until("force", async () => Number(await text(page, "#force")) > 0);
     await until("sources", async () => /left[\s\S]*running/.test(await text(page, "#sources")));
-    assert.equal(await page.locator("#settings .field").count(), 6);
+    assert.equal(await page.locator("#settings .field").count(), 8);
   }));
 
 test("clouds that stand still, without colours and normals, show too", async () => {
@@ -154,9 +156,9 @@ test("settings, presets and buttons reach the program", () =>
     await until("set", () => stiffness() === 800);
     await page.getByRole("slider", { name: /Stiffness/ }).press("ArrowRight");
     await until("slid", () => stiffness() > 800 && stiffness() % 10 === 0);
-    await page.getByRole("button", { name: "hard" }).click();
-    await until("shown", async () => (await page.getByRole("spinbutton", { name: "Stiffness" }).inputValue()) === "1500");
-    await page.getByRole("switch", { name: "Texture" }).click();
+    await page.getByRole("button", { name: "ice" }).click();
+    await until("shown", async () => (await page.getByRole("spinbutton", { name: "Stiffness" }).inputValue()) === "1200");
+    await page.getByRole("switch", { name: "Grain" }).click();
     await until("switched", () => program.servo.texture === 1);
     await page.click("#pause");
     await until("paused", async () => program.servo.paused && (await text(page, "#flags")).includes("paused"));
@@ -195,16 +197,16 @@ test("a picture is saved that says what is felt", () =>
 
 test("a link brings its settings, says what it cannot, and a link gives them back", async () => {
   const server = await serve({ points: 1000 });
-  const page = await openPage(browser, `${server.address}&stiffness=900&texture=true&weather=fine`, kSmall);
+  const page = await openPage(browser, `${server.address}&stiffness=900&grain=true&weather=fine`, kSmall);
   await ready(page);
   const value = (key) => server.program.settings.find((one) => one.key === key).value;
-  await until("set", () => value("stiffness") === 900 && value("texture") === true);
+  await until("set", () => value("stiffness") === 900 && value("grain") === true);
   await until("says so", async () => /weather = fine/.test(await text(page, "#notices")));
   assert.equal(await page.evaluate(() => location.href), server.address, "not again when it is loaded again");
   await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
   await page.click("#share");
   const link = await page.inputValue("#share-link");
-  assert.ok(link.startsWith(`${server.address}&stiffness=900`) && link.includes("texture=true"));
+  assert.ok(link.startsWith(`${server.address}&stiffness=900`) && link.includes("grain=true"));
   await page.context().close();
   await server.close();
 });

@@ -20,9 +20,10 @@ after(async () => {
 export const text = (page, selector) => page.locator(selector).innerText();
 export const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());
 
-export async function withPage(options, act, points = 4000) {
+/** Unless it is a `first` visit, all panels are shown. */
+export async function withPage(options, act, points = 4000, first = false) {
   const server = await serve({ points });
-  const page = await openPage(browser, server.address, options);
+  const page = await openPage(browser, server.address, options, undefined, first);
   try {
     await ready(page);
     await act(page, server.program, server);

@@ -10,15 +10,25 @@ const kCloudHz = 10;
 const kClouds = 4; // frames that are played in turn
 const kOther = [0.1, 0.1, 0.08]; // where the second hand stands, m
 
-const settings = () => [
+export const settings = () => [
   { key: "stiffness", label: "Stiffness", unit: "N/m", kind: "number", least: 10, most: 2000, step: 10, value: 500 },
   { key: "friction", label: "Friction", unit: "", kind: "number", least: 0, most: 1, step: 0.05, value: 0.2 },
   { key: "bound", label: "Force, at most", unit: "N", kind: "number", least: 0.5, most: 20, step: 0.1, value: 6 },
   { key: "field", label: "Surface", unit: "", kind: "choice", choices: ["balanced", "pointset", "metaball"], value: "balanced" },
   { key: "policy", label: "Time", unit: "", kind: "choice", choices: ["morph", "replace", "average", "crossfade"], value: "morph" },
-  { key: "texture", label: "Texture", unit: "", kind: "switch", value: false },
+  { key: "texture", label: "Texture", unit: "mm", kind: "number", least: 0, most: 1, step: 0.01, value: 0 },
+  { key: "wavelength", label: "Wavelength", unit: "mm", kind: "number", least: 0.1, most: 10, step: 0.1, value: 4 },
+  { key: "grain", label: "Grain", unit: "", kind: "switch", value: false }, // shakes the force
 ];
-const kPresets = { default: { stiffness: 500, field: "balanced", texture: false }, paper: { stiffness: 300, field: "pointset", policy: "average" }, hard: { stiffness: 1500 } };
+/** As palpate has them, of a run that begins with 500 N/m. */
+export const kPresets = {
+  default: { stiffness: 500, friction: 0.2, field: "balanced", texture: 0, grain: false },
+  paper: { stiffness: 300, field: "pointset", policy: "average" },
+  fur: { stiffness: 150, friction: 0.5, texture: 0.03, wavelength: 3 },
+  wood: { stiffness: 600, friction: 0.35, texture: 0.06, wavelength: 2 },
+  ice: { stiffness: 1200, friction: 0.02, texture: 0 },
+  rubber: { stiffness: 200, friction: 1, texture: 0 },
+};
 
 export class FakeProgram {
   clients = new Set();
@@ -156,7 +166,7 @@ export class FakeProgram {
     setting.value = value;
     this.servo.stiffness = this.settings.find((one) => one.key === "stiffness").value;
     this.servo.bound = this.settings.find((one) => one.key === "bound").value;
-    this.servo.texture = this.settings.find((one) => one.key === "texture").value ? 1 : 0;
+    this.servo.texture = this.settings.find((one) => one.key === "grain").value ? 1 : 0;
     return undefined;
   }
 
