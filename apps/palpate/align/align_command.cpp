@@ -221,7 +221,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
     report.push_back(part.data);
   }
   write_whole(json, text_of(report));
-  write_whole(output, setup_text(command, options, sources));
+  if (output) write_whole(output, setup_text(command, options, sources));
   if (picture) draw_alignment(loaded, aligned, plan.outputs.picture, *picture);
 }
 
