@@ -51,6 +51,7 @@ TEST_F(ReadCloud, SaysWhyAPathCannotBeRead) {
   EXPECT_THAT(refusal_of("/dev/zero"), HasSubstr("is a device"));
   EXPECT_THAT(refusal_of(write("empty.ply", "")), HasSubstr("empty.ply: the file is empty"));
   EXPECT_THAT(refusal_of(write("a", "1 2 3\n") / "b"), HasSubstr("cannot be opened"));
+  EXPECT_THAT(refusal_of(folder_ / std::string(300, 'a')), HasSubstr("cannot be opened"));
 }
 
 TEST_F(ReadCloud, SaysWhenPermissionIsMissing) {

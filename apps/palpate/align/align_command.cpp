@@ -170,7 +170,8 @@ void check_outputs(const std::string& output, const OutputPlan& others) {
   if (output.empty()) return;
   check_distinct({},
                  {{"--output", output}, {"--json", others.json}, {"--picture", others.picture}});
-  if (output == "-" || !fs::exists(output)) return;
+  std::error_code unknown;
+  if (output == "-" || !fs::exists(output, unknown)) return;
   throw UsageError(fmt::format(
       "--output {} already exists and is not overwritten; name another file or remove it", output));
 }

@@ -105,7 +105,8 @@ void tell(const BagCommand& command) {
 }
 
 void recover(const BagCommand& command) {
-  if (std::filesystem::exists(command.output)) {
+  std::error_code unknown;
+  if (std::filesystem::exists(command.output, unknown)) {
     throw UsageError(
         fmt::format("{} already exists and is not overwritten; name another file or remove it",
                     command.output));
