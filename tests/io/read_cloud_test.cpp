@@ -54,6 +54,14 @@ TEST_F(ReadCloud, SaysWhyAPathCannotBeRead) {
   EXPECT_THAT(refusal_of(folder_ / std::string(300, 'a')), HasSubstr("cannot be opened"));
 }
 
+TEST_F(ReadCloud, SaysWhatAFolderHolds) {
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("Give a file in it."));
+  write("run.mcap", "");
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("bag:" + folder_.string()));
+  write("sequence.json", "{}");
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("sequence:" + folder_.string()));
+}
+
 TEST_F(ReadCloud, SaysWhenPermissionIsMissing) {
   if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
   const auto path = write("secret.xyz", "1 2 3\n");
