@@ -32,6 +32,7 @@ TEST(Usage, HelpAndVersionSucceed) {
 
 TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
+  shell.write("two.toml", "[left]\nmass = 1\n[right]\nmass = 2\n");
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
       {"",
@@ -72,6 +73,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"tile a.las", "--out is required"},
       {"tile --out b", "clouds is required"},
       {"zwidth --picture a.pdf", "name it a.png"},
+      {"zwidth --profiles two.toml", "two.toml has left, right; say which by --device-profile"},
       {"paper fig5 --picture -", "--picture"},
       {"touch synthetic:torus --stiffness 1e308", "at most 1e9"},
       {"touch synthetic:torus --texture-amplitude 1", "--texture-amplitude"},
