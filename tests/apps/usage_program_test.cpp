@@ -74,6 +74,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"tile --out b", "clouds is required"},
       {"zwidth --picture a.pdf", "name it a.png"},
       {"zwidth --profiles two.toml", "two.toml has left, right; say which by --device-profile"},
+      {"touch synthetic:torus --seed 1 --seed 2", "--seed is given 2 times; give it once"},
       {"paper fig5 --picture -", "--picture"},
       {"touch synthetic:torus --stiffness 1e308", "at most 1e9"},
       {"touch synthetic:torus --texture-amplitude 1", "--texture-amplitude"},
