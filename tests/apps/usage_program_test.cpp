@@ -137,6 +137,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
   shell.write("empty.ply", "");
   shell.write("text.ply", "this is no cloud\n");
   shell.write("plane.xyz", plane_xyz());
+  shell.write("grey.pgm", "P5\n2 2\n255\nabcd");
   shell.write("bad.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0,1,1,1\n");
   shell.write("far.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1,1e10,1,1\n");
   const std::pair<const char*, const char*> cases[] = {
@@ -156,6 +157,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"touch plane.xyz --log nowhere/log.csv", "nowhere/log.csv"},
       {"touch plane.xyz --duration 0.1 --picture nowhere/a.png", "nowhere/a.png"},
       {"info missing.ply", "missing.ply"},
+      {"touch grey.pgm", "values up to 255"},
   };
   for (const auto& [arguments, word] : cases) {
     const Outcome outcome = shell.run(arguments);
