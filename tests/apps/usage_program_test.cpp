@@ -158,6 +158,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"touch plane.xyz --duration 0.1 --picture nowhere/a.png", "nowhere/a.png"},
       {"info missing.ply", "missing.ply"},
       {"touch grey.pgm", "values up to 255"},
+      {"touch camera:simulated,noise=a", "write simulated:table,noise=a"},
   };
   for (const auto& [arguments, word] : cases) {
     const Outcome outcome = shell.run(arguments);
