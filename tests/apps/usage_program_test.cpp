@@ -159,6 +159,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"info missing.ply", "missing.ply"},
       {"touch grey.pgm", "values up to 255"},
       {"touch camera:simulated,noise=a", "write simulated:table,noise=a"},
+      {"touch --setup .", ".: is no file"},
   };
   for (const auto& [arguments, word] : cases) {
     const Outcome outcome = shell.run(arguments);
