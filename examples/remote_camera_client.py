@@ -38,6 +38,8 @@ class Link:
 
 
 def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     path, seconds = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else math.inf
     width, height = 320, 240
     lens = (285.0, 285.0, 159.5, 119.5)

@@ -33,6 +33,8 @@ def newest_force(link, seen):
 
 
 def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     path, seconds = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 2
     mine = tempfile.mktemp(prefix="palpate-client-")
     link = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -61,6 +63,8 @@ def main():
                                        0, 0, 0, 0, 0), path)
             except BlockingIOError:  # it does not read just now: the next state will do
                 pass
+            except OSError as error:
+                sys.exit(f"{path}: {error}; palpate touch CLOUD --device remote:{path} makes it")
             time.sleep(1e-3)
     finally:
         os.unlink(mine)

@@ -8,7 +8,14 @@
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 fresh=yes
-if [ "${1:-}" = --no-fresh-root ]; then fresh=no; fi
+case "${1:-}" in
+  --no-fresh-root) fresh=no ;;
+  "" | --soak) ;;
+  *)
+    sed -n '2,7s/^# \{0,1\}//p' "$0"
+    exit
+    ;;
+esac
 started=$SECONDS
 status=0
 

@@ -3,6 +3,10 @@
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 
+if [ $# -gt 0 ]; then
+  sed -n '2s/^# //p' "$0"
+  exit
+fi
 need_packages build picture
 if [ ! -f build/release/CMakeCache.txt ]; then configure release -DPALPATE_BUILD_TESTS=OFF; fi
 build release palpate_app

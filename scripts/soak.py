@@ -83,6 +83,8 @@ def tell(run, growth, samples):
 
 
 def main():
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
     if len(sys.argv) < 2:
         print(__doc__)
         return 2

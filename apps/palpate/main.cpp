@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/palpate/align/align_command.hpp"
@@ -142,9 +143,15 @@ std::vector<std::string> arguments(const CLI::App& program, int argc, char** arg
   return words;
 }
 
-// CLI11 names what it did not expect in reverse.
+// CLI11 names what it did not expect in reverse, and has own words for what is given twice.
 std::string reason(const CLI::ParseError& error, const CLI::App& program) {
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return error.what();
+  constexpr std::string_view kTwice = ": At Most 1 required but received ";
+  const std::string words = error.what();
+  if (const std::size_t end = words.find(kTwice); end != std::string::npos) {
+    return fmt::format("{} is given {} times; give it once", words.substr(0, end),
+                       words.substr(end + kTwice.size()));
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) return words;
   return fmt::format("not expected: {}", fmt::join(program.remaining(true), " "));
 }
 

@@ -74,6 +74,11 @@ py::array readable(const py::object& given, const std::string& what,
     refuse(what, fmt::format("holds {}", words(array.dtype())),
            fmt::format("{}.astype(np.{})", what, first));
   }
+  if (py::hasattr(array, "mask")) {
+    const bool rows = shape.front() < 0;
+    refuse(what, "is a masked array, whose mask would not be read",
+           fmt::format(fmt::runtime(rows ? "np.ma.compress_rows({})" : "{}.filled(0)"), what));
+  }
   if (!fits(array, shape)) {
     refuse(what, fmt::format("has shape {}", words(array.attr("shape"))),
            fmt::format("shape {}, such as {}", in_words(shape), reshaped(what, array, shape)));
@@ -105,6 +110,13 @@ py::array view_of(std::span<const Eigen::Vector3f> column, const py::handle& own
 Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix) {
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw Error("a pose's last row is not 0, 0, 0, 1; give a (4, 4) matrix from sensor to world");
+  }
+  constexpr double kRounded = 0.01;  // as far as people round numbers
+  const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
+  if (!(turn * turn.transpose()).isIdentity(kRounded) || turn.determinant() < 0) {
+    throw Error(
+        "a pose is not finite, scales, shears or mirrors; give a rotation and a shift, and scale "
+        "the data");
   }
   Eigen::Isometry3d pose;
   pose.matrix() = matrix;

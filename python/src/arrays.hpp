@@ -83,7 +83,7 @@ class Away {
   std::scoped_lock<Mutexes...> locks_;
 };
 
-/// A rigid motion of a (4, 4) matrix. @throws Error when its last row is not 0, 0, 0, 1.
+/// A rigid motion of a (4, 4) matrix. @throws Error when it is none.
 [[nodiscard]] Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix);
 
 }  // namespace palpate::python

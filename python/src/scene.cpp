@@ -60,6 +60,17 @@ std::shared_ptr<CloudStream> add_stream(const ScenePointer& scene, const std::st
   return added<CloudStream>(scene, name, options);
 }
 
+std::array<double, 4> lens_of(const py::object& K) {
+  try {
+    return K.cast<std::array<double, 4>>();
+  } catch (const py::cast_error&) {
+    const bool matrix = py::isinstance<py::array>(K) && K.cast<py::array>().size() == 9;
+    throw py::type_error(matrix ? "K has shape (3, 3); give (K[0, 0], K[1, 1], K[0, 2], K[1, 2])"
+                                : fmt::format("K is {}; give (fx, fy, cx, cy), pixels",
+                                              py::repr(K).cast<std::string>()));
+  }
+}
+
 CameraModel model_of(const std::array<double, 4>& K, const std::array<int, 2>& size,
                      const std::array<double, 5>& lens) {
   CameraModel model{size[0], size[1], {K[0], K[1], K[2], K[3]}, {}};
@@ -68,7 +79,7 @@ CameraModel model_of(const std::array<double, 4>& K, const std::array<int, 2>& s
 }
 
 std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string& name,
-                                   const std::array<double, 4>& K, const std::array<int, 2>& size,
+                                   const py::object& K, const std::array<int, 2>& size,
                                    const Eigen::Matrix4d& pose, double unit,
                                    const std::array<double, 5>& distortion,
                                    const py::kwargs& given) {
@@ -79,8 +90,9 @@ std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string&
   take(keywords, options.policy);
   take(keywords, options.depth);
   keywords.finish();
+  const std::array<double, 4> lens = lens_of(K);
   auto camera = added<Camera>(scene, name, options);
-  camera->model = model_of(K, size, distortion);
+  camera->model = model_of(lens, size, distortion);
   camera->unit = unit;
   return camera;
 }

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,6 +26,26 @@ bool is_over(std::uint64_t span, std::uint64_t since, std::uint64_t now) {
   return now > since && now - since >= span;
 }
 
+[[noreturn]] void refuse_to_create(const std::string& path) {
+  throw Error(fmt::format("{}: cannot be created: {}; name a file in a folder that can be written",
+                          path, std::strerror(errno)));
+}
+
+// An empty file; of two programs that write to one, the second is refused.
+int open_empty(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) refuse_to_create(path);
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(file);
+    throw Error(fmt::format("{}: another program records to it; name another file", path));
+  }
+  if (::ftruncate(file, 0) == 0 || errno == EINVAL) return file;  // a device has no length
+  const int why = errno;
+  ::close(file);
+  errno = why;
+  refuse_to_create(path);
+}
+
 }  // namespace
 
 std::string offered_qos(const message::Quality& quality) {
@@ -37,13 +58,7 @@ std::string offered_qos(const message::Quality& quality) {
 }
 
 McapWriter::McapWriter(std::string path, const Options& options)
-    : path_(std::move(path)), options_(options) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file_ < 0) {
-    throw Error(
-        fmt::format("{}: cannot be created: {}; name a file in a folder that can be written", path_,
-                    std::strerror(errno)));
-  }
+    : path_(std::move(path)), options_(options), file_(open_empty(path_)) {
   Bytes data(kMagic.begin(), kMagic.end());
   Record(data, Op::header).text(options_.profile).text("palpate");
   try {

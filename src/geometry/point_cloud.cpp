@@ -97,7 +97,7 @@ Lattice make_lattice(const PointCloud& cloud, double leaf) {
     if (!(cubes <= kMaxCubes)) {
       const double length = static_cast<double>(upper[axis]) - static_cast<double>(lower[axis]);
       throw Error(
-          fmt::format("voxel filter: a leaf size of {} m divides a cloud of {} m into {:.3g} "
+          fmt::format("voxel filter: a leaf size of {} m divides a cloud of {:.3g} m into {:.3g} "
                       "voxels along one axis, more than {}; give {:.3g} m or more",
                       leaf, length, cubes, kMaxCubes, 1.01 * length / kMaxCubes));
     }

@@ -38,12 +38,13 @@ class Descriptor {
 
 [[noreturn]] void fail_open(const std::string& name, int error) {
   if (error == ENOENT) {
-    throw Error(name + ": no such file. Check the path; relative ones start at " +
-                std::filesystem::current_path().string() + ".");
+    std::error_code gone;
+    const std::string folder = std::filesystem::current_path(gone).string();
+    throw Error(fmt::format("{}: no such file. Check the path; relative ones start at {}.", name,
+                            gone ? "a folder that is there no more" : folder));
   }
   if (error == EACCES) {
-    throw Error(name +
-                ": no permission to read it. Try: chmod u+r on the file (and u+x on its "
+    throw Error(name + ": no permission to read it. Try: chmod u+r on the file (and u+x on its " +
                 "folders), or run as its owner.");
   }
   throw Error(

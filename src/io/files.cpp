@@ -132,7 +132,7 @@ CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& 
     if (is_potree(path) || std::filesystem::is_directory(path, unknown)) {
       return read_potree({{}, path.string(), options});
     }
-    const bool is_file = std::filesystem::exists(path);
+    const bool is_file = std::filesystem::exists(path, unknown);
     const Bytes bytes = read_bytes(is_file ? path.string() : split_scan(path.string()).file);
     if (piped) return read_cloud_bytes(bytes.span(), "standard input", options);
     return read_input({bytes.span(), path.string(), options, path.parent_path() / "."});

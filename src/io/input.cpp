@@ -105,7 +105,9 @@ constexpr Refused kRefused[] = {
     {"OFF", "an OFF model", kExport},
     {"Kaydara FBX", "an FBX model", kExport},
     {"#ROSBAG", "a ROS bag", "Export one cloud from it as PCD"},
-    {"\x89MCAP", "an MCAP recording", "Touch what it recorded: palpate touch bag:{}"},
+    {"\x89MCAP", "an MCAP recording",
+     "Touch what a camera recorded: palpate touch bag:{0}; see a recorded run: palpate replay {0} "
+     "--view"},
     {"%PDF", "a PDF document", kReadable},
     {"\x7f"
      "ELF",
@@ -152,6 +154,10 @@ FileKind text_kind(const Input& input, std::string_view word) {
 
 void refuse_known(const Input& input) {
   if (is_utf16(input.text())) fail(input, "this is UTF-16 text", "Save it as UTF-8");
+  if (extension(input.name) == ".toml") {
+    fail(input, "this is a set-up file, not a point cloud",
+         fmt::format("Give it as one: palpate touch --setup {}", input.name));
+  }
   for (const Refused& entry : kRefused) {
     if (input.text().starts_with(entry.start)) {
       fail(input, fmt::format("this is {}, not a supported point cloud", entry.what),

@@ -65,6 +65,11 @@ bool has_decimal_commas(std::string_view line) {
   return line.find(';') != std::string_view::npos && line.find(',') != std::string_view::npos;
 }
 
+// "5 2", a cell of "1,5 2,5": two numbers that a blank divides.
+bool is_of_decimal_commas(std::string_view cell) {
+  return parse_number(take_word(cell)).has_value() && parse_number(trim(cell)).has_value();
+}
+
 using Rows = std::vector<std::array<double, kMostTextColumns>>;
 
 // "X[m]", "\"x\"", "//X" all mean x.
@@ -214,7 +219,7 @@ class XyzReader {
     Rows rows;
     std::size_t count = 0;
     while (rows.size() < kSample && next_cells()) {
-      if (count == 0) refuse_decimal_commas();
+      if (count == 0) refuse_decimal_commas(has_decimal_commas(line_));
       if (count == 0) count = cells_.count;
       if (cells_.count != count) break;  // told with its line when it is read
       rows.emplace_back();
@@ -230,7 +235,7 @@ class XyzReader {
   bool read_row(Row& row) {
     if (!next_cells()) return false;
     if (cells_.count != roles_.size()) {
-      refuse_decimal_commas();
+      refuse_decimal_commas(has_decimal_commas(line_));
       fail_at_line(input_, line_begin_,
                    fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
                                roles_.size(), excerpt(line_)),
@@ -249,21 +254,19 @@ class XyzReader {
                  "Export fewer: x y z and, if it has them, normals, colours or intensities");
   }
 
-  void refuse_decimal_commas() const {
-    if (!has_decimal_commas(line_)) return;
+  void refuse_decimal_commas(bool there_are) const {
+    if (!there_are) return;
     fail_at_line(input_, line_begin_, "commas inside numbers",
-                 "Use decimal points: sed 's/,/./g' does this if semicolons separate the columns");
+                 "Use decimal points: sed 's/,/./g' does this if no commas separate the columns");
   }
 
   // An empty cell is a missing value.
   double cell_number(std::string_view cell) const {
     if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const std::optional<double> number = parse_number(cell);
-    if (!number) {
-      fail_at_line(input_, line_begin_, fmt::format("\"{}\" is not a number", excerpt(cell)),
-                   kRemedy);
-    }
-    return *number;
+    if (const std::optional<double> number = parse_number(cell)) return *number;
+    refuse_decimal_commas(is_of_decimal_commas(cell));
+    fail_at_line(input_, line_begin_, fmt::format("\"{}\" is not a number", excerpt(cell)),
+                 kRemedy);
   }
 
   std::size_t expected() const {

@@ -55,9 +55,11 @@ void check_pose(const Eigen::Isometry3d& pose) {
     throw Error("the pose is not finite: give a finite rotation and translation");
   const Eigen::Matrix3d turn = pose.linear();
   const double off = (turn.transpose() * turn - Eigen::Matrix3d::Identity()).norm();
-  if (off < kRigid && turn.determinant() > 0) return;
+  const bool mirrors = turn.determinant() < 0;
+  if (off < kRigid && mirrors) throw Error("the pose mirrors: reverse one of its axes");
+  if (off < kRigid) return;
   throw Error(
-      fmt::format("the pose scales, shears or mirrors (its rotation is off by {:.3g}): give a "
+      fmt::format("the pose scales or shears (its rotation is off by {:.3g}): give a "
                   "rigid pose and scale the cloud itself",
                   off));
 }

@@ -42,6 +42,10 @@ std::unique_ptr<DepthCamera> open_camera(const std::string& name, const CameraOp
   if (driver == "ros") return open_ros(device, options);
   if (driver == "remote") return open_remote(device, options);
   if (name.ends_with(".oni")) return open_openni2(name, options);
+  if (name.starts_with("simulated,")) {
+    throw Error(fmt::format("{}: keys follow a scene; write simulated:table{}", name,
+                            name.substr(name.find(','))));
+  }
   throw Error(fmt::format(
       "{}: no such camera. Cameras are simulated[:SCENE], sequence:DIR, bag:FILE, openni2[:URI], "
       "FILE.oni, freenect[:NUMBER], ros:TOPIC and remote[:PATH]; 'palpate cameras' lists those "

@@ -272,8 +272,10 @@ DriverInfo openni2_driver() {
 std::unique_ptr<DepthCamera> open_openni2(const std::string& device, const CameraOptions& options) {
   const std::string name = device.empty() ? "openni2" : "openni2:" + device;
   const bool recording = is_recording(device);
-  if (recording && !std::filesystem::exists(device)) {
-    throw Error(name + ": no such file. Check the path.");
+  std::error_code unknown;
+  if (recording && !std::filesystem::exists(device, unknown)) {
+    throw Error(unknown ? fmt::format("{}: cannot be read: {}", name, unknown.message())
+                        : name + ": no such file. Check the path.");
   }
   const char* silence = recording ? "OpenNI2 cannot play recordings without camera properties "
                                     "(made with its dummy device); record it again from a camera."

@@ -73,7 +73,11 @@ void set_noise(SimulatedNoiseOptions& noise, const std::string& text) {
 }
 
 // The same view with other pixels.
-void set_width(CameraModel& camera, int width) {
+void set_width(CameraModel& camera, const std::string& text) {
+  constexpr double kNarrowest = 8;  // pixels; six rows, which the depth filter needs
+  constexpr double kWidest = 4096;  // pixels; as much as a remote camera may send (judgement)
+  (void)within(text, kNarrowest, kWidest);
+  const int width = whole(text);
   const double scale = static_cast<double>(width) / camera.width;
   camera.width = width;
   camera.height = static_cast<int>(std::lround(camera.height * scale));
@@ -123,7 +127,7 @@ constexpr std::array<Key, 21> kKeys = {{
     {"loop", [](SimulatedSetup& s, Text v) { s.camera.loop = whole(v); }},
     {"view", [](SimulatedSetup& s, Text v) { turn_about_vertical(s, kDegree * number(v)); }},
     {"tilt", [](SimulatedSetup& s, Text v) { tilt(s, kDegree * within(v, 0, 90)); }},
-    {"width", [](SimulatedSetup& s, Text v) { set_width(s.camera.camera, whole(v)); }},
+    {"width", [](SimulatedSetup& s, Text v) { set_width(s.camera.camera, v); }},
     {"error",
      [](SimulatedSetup& s, Text v) {
        // 1 mm goes with 1/6 degree, as 3 mm with 0.5 degrees.

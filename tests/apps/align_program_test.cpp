@@ -23,6 +23,16 @@ pose = [0.06, -0.05, 0.03,  0.0, 0.05, 0.03, 0.9983]
 seed = 4
 )";
 
+// Three walls of 9 x 9 cm that meet at right angles.
+std::string corner_xyz() {
+  std::string corner;
+  for (int i = 0; i < 900; ++i) {
+    const double a = 0.003 * (i % 30), b = 0.003 * (i / 30);
+    corner += fmt::format("0 {0} {1}\n{0} 0 {1}\n{0} {1} 0\n", a + 0.003, b + 0.003);
+  }
+  return corner;
+}
+
 // The frames tell their true poses: aligned, the recording's frame is the world again.
 TEST(AlignProgram, WritesASetupWhosePosesAreRight) {
   Shell shell;
@@ -54,18 +64,22 @@ TEST(AlignProgram, NamesFilesFromTheSetupsFolder) {
   Shell shell;
   ASSERT_EQ(std::filesystem::create_directory(shell.path("setups")), true);
   std::filesystem::create_directory(shell.path("clouds"));
-  std::string corner;
-  for (int i = 0; i < 900; ++i) {
-    const double a = 0.003 * (i % 30), b = 0.003 * (i / 30);
-    corner += fmt::format("0 {0} {1}\n{0} 0 {1}\n{0} {1} 0\n", a + 0.003, b + 0.003);
-  }
-  shell.write("clouds/a.xyz", corner);
-  shell.write("clouds/b.xyz", corner);
+  shell.write("clouds/a.xyz", corner_xyz());
+  shell.write("clouds/b.xyz", corner_xyz());
   const Outcome outcome = shell.run(
       "align clouds/a.xyz clouds/b.xyz --pose b=0.01,0.01,0,0,0,0,1 --output setups/desk.toml");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(shell.read("setups/desk.toml").find("../clouds/a.xyz"), std::string::npos);
   EXPECT_EQ(shell.run("touch --setup setups/desk.toml --duration 0.1").code, 0);
+}
+
+TEST(AlignProgram, TellsThePosesOfFilesWithoutASetup) {
+  Shell shell;
+  shell.write("corner.xyz", corner_xyz());
+  const Outcome outcome = shell.run("align a=corner.xyz b=corner.xyz --pose b=0.01,0.01,0,0,0,0,1");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.find("palpate:"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("--pose b="), std::string::npos) << outcome.out;
 }
 
 TEST(AlignProgram, RefusesWhatHoldsNoAnswer) {

@@ -199,6 +199,23 @@ TEST(Output, LinksAndDevicesAreWrittenThrough) {
   EXPECT_EQ(shell.read("real.csv").find("t,hip_x"), 0u);
 }
 
+// Folders that may not be entered are like this, too; the superuser may enter all.
+TEST(Output, WhatCannotBeLookedForIsToldInWords) {
+  Shell shell;
+  const std::string name(300, 'a');
+  shell.write("x.xyz", plane_xyz());
+  for (const std::string& command :
+       {"touch " + name + ".ply", "touch " + name + ".oni", "bag recover x.mcap " + name + ".mcap",
+        "align x.xyz x.xyz --output " + name + ".toml", "tile x.xyz --out " + name,
+        "touch x.xyz --duration 0.1 --record " + name + ".mcap",
+        "touch x.xyz --duration 0.1 --log " + name + ".csv"}) {
+    const Outcome outcome = shell.run(command);
+    EXPECT_EQ(outcome.code, 1) << command;
+    EXPECT_EQ(outcome.err.find("filesystem error"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("palpate: "), std::string::npos) << command;
+  }
+}
+
 TEST(Output, ProtectedFileIsNotReplaced) {
   if (access("/", W_OK) == 0) GTEST_SKIP() << "the superuser may write everything";
   Shell shell;

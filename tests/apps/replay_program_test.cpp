@@ -112,6 +112,15 @@ TEST(ReplayProgram, TwoHandsInRealTime) {
   EXPECT_EQ(report["hands"].size(), 2u);
 }
 
+TEST(ReplayProgram, ARecordingThatIsCutBeforeItsSetupSaysSo) {
+  Shell shell;
+  ASSERT_EQ(shell.run("touch synthetic:sphere --duration 0.1 --record run.mcap").code, 0);
+  shell.write("cut.mcap", shell.read("run.mcap").substr(0, 1000));
+  const Outcome outcome = shell.run("replay cut.mcap");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_TRUE(contains(outcome.err, "are lost: a record is cut or damaged")) << outcome.err;
+}
+
 // run.mcap again as other.mcap; `change` may change the set-up, `keeps` leave out messages.
 void copy_bag(const Shell& shell, const std::function<void(Json&)>& change,
               const std::function<bool(const bag::Channel&, bag::View)>& keeps) {

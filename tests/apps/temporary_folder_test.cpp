@@ -7,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "palpate/base/error.hpp"
+
 namespace palpate::app {
 namespace {
 
@@ -26,6 +28,16 @@ TEST(TemporaryFolder, ALentFileIsReadByItsPathButHasNoBytesInTheFolder) {
   // What a killed program would leave is a link to nothing.
   EXPECT_TRUE(fs::is_symlink(path));
   EXPECT_EQ(fs::hard_link_count(path), 0U);
+}
+
+TEST(TemporaryFolder, WhatCannotBeWrittenLeadsToTMPDIR) {
+  const TemporaryFolder folder;
+  try {
+    (void)folder.write("absent/cloud.xyz", "1 2 3\n");
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("set TMPDIR"), std::string::npos) << error.what();
+  }
 }
 
 TEST(TemporaryFolder, VanishesWithWhatIsInIt) {

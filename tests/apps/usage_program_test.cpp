@@ -32,6 +32,7 @@ TEST(Usage, HelpAndVersionSucceed) {
 
 TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
   Shell shell;
+  shell.write("two.toml", "[left]\nmass = 1\n[right]\nmass = 2\n");
   shell.write("long.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1e300,0,0,0\n");
   const std::pair<const char*, const char*> cases[] = {
       {"",
@@ -72,6 +73,8 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
       {"tile a.las", "--out is required"},
       {"tile --out b", "clouds is required"},
       {"zwidth --picture a.pdf", "name it a.png"},
+      {"zwidth --profiles two.toml", "two.toml has left, right; say which by --device-profile"},
+      {"touch synthetic:torus --seed 1 --seed 2", "--seed is given 2 times; give it once"},
       {"paper fig5 --picture -", "--picture"},
       {"touch synthetic:torus --stiffness 1e308", "at most 1e9"},
       {"touch synthetic:torus --texture-amplitude 1", "--texture-amplitude"},
@@ -134,6 +137,7 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
   shell.write("empty.ply", "");
   shell.write("text.ply", "this is no cloud\n");
   shell.write("plane.xyz", plane_xyz());
+  shell.write("grey.pgm", "P5\n2 2\n255\nabcd");
   shell.write("bad.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0,1,1,1\n");
   shell.write("far.csv", "t,hip_x,hip_y,hip_z\n0,0,0,0\n1,1e10,1,1\n");
   const std::pair<const char*, const char*> cases[] = {
@@ -153,6 +157,9 @@ TEST(Usage, InputAtFaultEndsWithOneAndNamesIt) {
       {"touch plane.xyz --log nowhere/log.csv", "nowhere/log.csv"},
       {"touch plane.xyz --duration 0.1 --picture nowhere/a.png", "nowhere/a.png"},
       {"info missing.ply", "missing.ply"},
+      {"touch grey.pgm", "values up to 255"},
+      {"touch camera:simulated,noise=a", "write simulated:table,noise=a"},
+      {"touch --setup .", ".: is no file"},
   };
   for (const auto& [arguments, word] : cases) {
     const Outcome outcome = shell.run(arguments);

@@ -43,6 +43,17 @@ TEST(BagProgram, InfoTellsTopicsTypesCountsRatesAndDuration) {
   EXPECT_TRUE(facts["losses"].empty());
 }
 
+TEST(BagProgram, CheckFindsADamagedAttachment) {
+  Shell shell;
+  record(shell);
+  std::string damaged = shell.read("run.mcap");
+  damaged[damaged.find(std::string(1234, 'a')) + 7] = 'b';
+  shell.write("damaged.mcap", damaged);
+  const Outcome outcome = shell.run("bag info damaged.mcap --check");
+  EXPECT_TRUE(contains(outcome.out, "the attachment setup.toml is damaged")) << outcome.out;
+  EXPECT_FALSE(contains(outcome.out, "nothing")) << outcome.out;
+}
+
 TEST(BagProgram, RecoverClosesAFileThatWasCutAndLosesOneChunk) {
   Shell shell;
   record(shell);

@@ -86,6 +86,16 @@ class FullDisk {
   sighandler_t handler_;
 };
 
+TEST(McapWriter, ASecondWriterOfAFileIsRefusedAndTheFirstGoesOn) {
+  const test::Folder folder;
+  McapWriter writer(folder / "run.mcap");
+  write_poses(writer, 1, 10);
+  EXPECT_THROW(McapWriter(folder / "run.mcap"), Error);
+  writer.close();
+  EXPECT_EQ(McapReader(folder / "run.mcap").contents().messages, 10u);
+  EXPECT_NO_THROW(McapWriter(folder / "run.mcap")) << "it is free again";
+}
+
 TEST(McapWriter, FullDiskIsToldAndTheFileHoldsWhatWasWrittenBefore) {
   const test::Folder folder;
   const std::string path = folder / "run.mcap";

@@ -68,6 +68,11 @@ TEST(DepthFilter, RefusesFramesThatAreNone) {
   Isometry3d nowhere = Isometry3d::Identity();
   nowhere.translation().x() = std::nan("");
   EXPECT_THROW(filter.filter(exact_frame({}), nowhere), Error);
+  for (const double stretch : {0.0, -1.0, 2.0}) {
+    Isometry3d bent = Isometry3d::Identity();
+    bent.linear()(2, 2) = stretch;
+    EXPECT_THROW(filter.filter(exact_frame({}), bent), Error) << stretch;
+  }
 }
 
 TEST(DepthFilter, MakesNoPointsOfNothing) {

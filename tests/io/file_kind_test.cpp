@@ -37,11 +37,13 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
               HasSubstr("xz -dk"));
   EXPECT_THAT(refusal("(\xb5/\xfd"), HasSubstr("zstd -d"));
   EXPECT_THAT(refusal("\x89MCAP0"), HasSubstr("palpate touch bag:"));
+  EXPECT_THAT(refusal("\x89MCAP0"), HasSubstr("palpate replay "));
   EXPECT_THAT(refusal("PK\x03\x04zip"), HasSubstr("ZIP archive"));
   EXPECT_THAT(refusal("\xff\xd8\xff\xe0 JFIF"), HasSubstr("a JPEG picture"));
   EXPECT_THAT(refusal("\xff\xfe\x30\0"sv), HasSubstr("UTF-16 text"));
   EXPECT_THAT(refusal("\xfe\xff\0\x30"sv), HasSubstr("as UTF-8"));
   EXPECT_THAT(refusal("{\"width\": 640}"), HasSubstr("JSON"));
+  EXPECT_THAT(refusal("[hand]\nseed = 3\n", "a.toml"), HasSubstr("palpate touch --setup a.toml"));
   EXPECT_THAT(refusal("<!DOCTYPE html>"), HasSubstr("web page"));
   EXPECT_THAT(refusal("version https://git-lfs.github.com/spec/v1\n"), HasSubstr("git lfs pull"));
 }

@@ -51,6 +51,15 @@ TEST_F(ReadCloud, SaysWhyAPathCannotBeRead) {
   EXPECT_THAT(refusal_of("/dev/zero"), HasSubstr("is a device"));
   EXPECT_THAT(refusal_of(write("empty.ply", "")), HasSubstr("empty.ply: the file is empty"));
   EXPECT_THAT(refusal_of(write("a", "1 2 3\n") / "b"), HasSubstr("cannot be opened"));
+  EXPECT_THAT(refusal_of(folder_ / std::string(300, 'a')), HasSubstr("cannot be opened"));
+}
+
+TEST_F(ReadCloud, SaysWhatAFolderHolds) {
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("Give a file in it."));
+  write("run.mcap", "");
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("bag:" + folder_.string()));
+  write("sequence.json", "{}");
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("sequence:" + folder_.string()));
 }
 
 TEST_F(ReadCloud, SaysWhenPermissionIsMissing) {

@@ -91,6 +91,8 @@ TEST(Xyz, LinesWithCommasMayEndInOne) {
 
 TEST(Xyz, DecimalCommasAreNotTakenForSeparators) {
   EXPECT_THAT(refusal("1,5;2,5;3,5\n1,5;2,5;3,5\n"), HasSubstr("commas inside numbers"));
+  EXPECT_THAT(refusal("1,5 2,5 3,5\n1,5 2,5 3,5\n"), HasSubstr("commas inside numbers"));
+  EXPECT_THAT(refusal("1,5\t2,5\t3,5\n"), HasSubstr("commas inside numbers"));
 }
 
 TEST(Xyz, DoesNotDependOnTheLocale) {

@@ -58,6 +58,28 @@ class Refused(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, words):
                 camera.push(image, 0.0)
 
+    def test_poses(self):
+        for pose, words in ((np.diag([1, 1, -1, 1.0]), "mirrors"), (np.diag([2, 2, 2, 1.0]), "scales"),
+                            (np.zeros((4, 4)), "last row"), (np.diag([0, 0, 0, 1.0]), "scales")):
+            with self.assertRaisesRegex(pp.Error, words):
+                pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48), pose=pose)
+            with self.assertRaisesRegex(pp.Error, words):
+                pp.Scene().add("cloud", np.random.default_rng(0).normal(size=(50, 3)), pose=pose)
+
+    def test_lens_as_a_matrix(self):
+        for K, words in ((np.eye(3), r"K\[0, 0\], K\[1, 1\]"), ((500, 500), r"\(500, 500\); give \(fx, fy, cx, cy\)")):
+            with self.assertRaisesRegex(TypeError, words):
+                pp.Scene().add_camera("desk", K=K, size=(64, 48))
+
+    def test_masks(self):
+        points = np.ma.masked_array(np.zeros((5, 3)))
+        points[2] = np.ma.masked
+        with self.assertRaisesRegex(TypeError, r"np.ma.compress_rows\(points\)"):
+            pp.Scene().add("cloud", points)
+        camera = pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48))
+        with self.assertRaisesRegex(TypeError, r"depth.filled\(0\)"):
+            camera.push(np.ma.masked_greater(np.full((48, 64), 700, np.uint16), 500), 0.0)
+
     def test_words(self):
         with self.assertRaisesRegex(TypeError, "voxel"):
             pp.prepare(np.zeros((5, 3)), voxle=1)

@@ -43,9 +43,9 @@ TEST(SimulatedKeys, ChangeWhatIsSeen) {
 }
 
 TEST(SimulatedKeys, SayWhichValuesMakeNoSense) {
-  for (const char* wrong :
-       {"sigma=-0.001", "sigma=0.2", "terraces=-1", "terraces=9", "curl=0.2", "mixed=3",
-        "pattern=-1", "holes=1", "repeat=1", "repeat=-1", "jump=-1", "tilt=91", "noise=laser"}) {
+  for (const char* wrong : {"sigma=-0.001", "sigma=0.2", "terraces=-1", "terraces=9", "curl=0.2",
+                            "mixed=3", "pattern=-1", "holes=1", "repeat=1", "repeat=-1", "jump=-1",
+                            "tilt=91", "noise=laser", "width=4", "width=5000", "width=20.5"}) {
     EXPECT_THROW((void)open_simulated(std::string("table,") + wrong, nullptr), Error) << wrong;
   }
 }

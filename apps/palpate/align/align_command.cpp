@@ -170,7 +170,8 @@ void check_outputs(const std::string& output, const OutputPlan& others) {
   if (output.empty()) return;
   check_distinct({},
                  {{"--output", output}, {"--json", others.json}, {"--picture", others.picture}});
-  if (output == "-" || !fs::exists(output)) return;
+  std::error_code unknown;
+  if (output == "-" || !fs::exists(output, unknown)) return;
   throw UsageError(fmt::format(
       "--output {} already exists and is not overwritten; name another file or remove it", output));
 }
@@ -221,7 +222,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
     report.push_back(part.data);
   }
   write_whole(json, text_of(report));
-  write_whole(output, setup_text(command, options, sources));
+  if (output) write_whole(output, setup_text(command, options, sources));
   if (picture) draw_alignment(loaded, aligned, plan.outputs.picture, *picture);
 }
 

@@ -49,9 +49,27 @@ double rate_of(const bag::Channel& channel, double seconds) {
   return channel.count > 1 && seconds > 0 ? static_cast<double>(channel.count - 1) / seconds : 0;
 }
 
-void add_losses(Report& report, const bag::Contents& contents) {
-  report.data["losses"] = contents.losses;
-  for (const std::string& loss : contents.losses) report.note({"damaged", Mark::warning}, loss);
+using Losses = std::vector<std::string>;  // in words
+
+void add_losses(Report& report, const Losses& losses) {
+  report.data["losses"] = losses;
+  for (const std::string& loss : losses) report.note({"damaged", Mark::warning}, loss);
+}
+
+Losses with(Losses losses, const Losses& more) {
+  losses.insert(losses.end(), more.begin(), more.end());
+  return losses;
+}
+
+// None: it is damaged, which `losses` tell.
+std::optional<bag::Attachment> attachment_of(const bag::McapReader& reader, std::size_t index,
+                                             Losses& losses) {
+  try {
+    return reader.attachment(index);
+  } catch (const Error& error) {
+    losses.emplace_back(error.what());
+    return std::nullopt;
+  }
 }
 
 void add_topics(Report& report, const bag::Contents& contents) {
@@ -65,7 +83,8 @@ void add_topics(Report& report, const bag::Contents& contents) {
   }
 }
 
-Report report_of(const std::string& path, const bag::Contents& contents, bool checked) {
+Report report_of(const std::string& path, const bag::Contents& contents, const Losses& losses,
+                 bool checked) {
   const bool any = contents.messages > 0;
   Report report(path, fmt::format("MCAP, profile '{}', written by {}", contents.profile,
                                   contents.library.empty() ? "?" : contents.library));
@@ -83,9 +102,9 @@ Report report_of(const std::string& path, const bag::Contents& contents, bool ch
   for (const bag::AttachmentPlace& place : contents.attachments) {
     report.item("attachments", "attached", "{name}, {bytes} bytes", place.head.name, place.size);
   }
-  add_losses(report, contents);
-  if (contents.losses.empty()) {
-    report.note("damaged", checked ? "nothing" : "nothing seen; --check reads all messages");
+  add_losses(report, losses);
+  if (losses.empty()) {
+    report.note("damaged", checked ? "nothing" : "nothing seen; --check reads all of it");
   }
   return report;
 }
@@ -95,17 +114,24 @@ void tell(const BagCommand& command) {
   std::optional<OutputFile> json;
   if (!command.json.empty()) json.emplace(command.json);
   bag::McapReader reader(command.input);
+  Losses unread;
   if (command.check) {
     const Waiting waiting("reading " + command.input);
     for (bag::Message message; reader.next(message);) continue;
+    for (std::size_t i = 0; i < reader.contents().attachments.size(); ++i) {
+      (void)attachment_of(reader, i, unread);
+    }
   }
-  const Report report = report_of(command.input, reader.contents(), command.check);
+  const bag::Contents& contents = reader.contents();
+  const Report report =
+      report_of(command.input, contents, with(contents.losses, unread), command.check);
   report.print(command.json == "-" ? stderr : stdout);
   write_whole(json, text_of(report.data));
 }
 
 void recover(const BagCommand& command) {
-  if (std::filesystem::exists(command.output)) {
+  std::error_code unknown;
+  if (std::filesystem::exists(command.output, unknown)) {
     throw UsageError(
         fmt::format("{} already exists and is not overwritten; name another file or remove it",
                     command.output));
@@ -122,20 +148,15 @@ void recover(const BagCommand& command) {
   for (bag::Message message; reader.next(message); ++messages) {
     writer.write(numbers.at(message.channel), message.stamp, message.data);
   }
-  std::vector<std::string> unread;
+  Losses unread;
   for (std::size_t i = 0; i < contents.attachments.size(); ++i) {
-    try {
-      writer.attach(reader.attachment(i));
-    } catch (const Error& error) {
-      unread.emplace_back(error.what());
-    }
+    if (const auto attachment = attachment_of(reader, i, unread)) writer.attach(*attachment);
   }
   for (const bag::Metadata& each : contents.metadata) writer.add(each);
   writer.close();
   Report report(command.output, "");
   report.note("messages", grouped(messages));
-  add_losses(report, contents);
-  for (const std::string& each : unread) report.note({"damaged", Mark::warning}, each);
+  add_losses(report, with(contents.losses, unread));
   report.print(stdout);
 }
 
@@ -150,7 +171,8 @@ void add_bag_options(CLI::App& command, BagCommand& bag) {
   for (CLI::App* each : {bag.info, bag.recover}) {
     each->add_option("file", bag.input, "an MCAP file")->required()->type_name("FILE");
   }
-  bag.info->add_flag("--check", bag.check, "read all messages and check their CRCs");
+  bag.info->add_flag("--check", bag.check,
+                     "read all messages and attachments and check their CRCs");
   add_json_option(*bag.info, bag.json);
   bag.recover->add_option("output", bag.output, "the new file; never overwrites one")
       ->required()

@@ -93,8 +93,8 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count,
     rest.remove_prefix(end + 1);
   }
   if (count > 0 && values.size() != count) {
-    throw UsageError(fmt::format("{}: '{}' has {} numbers instead of {}; write {}", option, text,
-                                 values.size(), count, form));
+    throw UsageError(fmt::format("{}: '{}' has {} number{} instead of {}; write {}", option, text,
+                                 values.size(), values.size() == 1 ? "" : "s", count, form));
   }
   return values;
 }

@@ -23,18 +23,23 @@ bool as_it_is(const std::string& path) {
   return path == "-" || (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored));
 }
 
-std::string where_links_lead(const std::string& path) {
+// The absolute path, with links followed; empty where there is none, as in a removed folder.
+fs::path whole_path(const std::string& path) {
   std::error_code failed;
-  const fs::path place = fs::weakly_canonical(fs::absolute(path), failed);
-  return failed ? path : place.string();
+  const fs::path whole = fs::absolute(path, failed);
+  const fs::path place = failed ? fs::path() : fs::weakly_canonical(whole, failed);
+  return failed ? fs::path() : place;
+}
+
+std::string where_links_lead(const std::string& path) {
+  const fs::path place = whole_path(path);
+  return place.empty() ? path : place.string();
 }
 
 // A file that may not be written must not be replaced either.
 bool protects_itself(const std::string& place) {
   return access(place.c_str(), F_OK) == 0 && access(place.c_str(), W_OK) != 0;
 }
-
-namespace fs = std::filesystem;
 
 bool is_plain(const std::string& path) {
   std::error_code ignored;
@@ -45,9 +50,8 @@ bool is_plain(const std::string& path) {
 bool same_place(const std::string& a, const std::string& b) {
   std::error_code failed;
   if (fs::equivalent(a, b, failed) && !failed) return true;  // two names of one file
-  const fs::path place = fs::weakly_canonical(fs::absolute(a), failed);
-  if (failed) return a == b;
-  return place == fs::weakly_canonical(fs::absolute(b), failed) && !failed;
+  const fs::path place = whole_path(a);
+  return place.empty() ? a == b : place == whole_path(b);
 }
 
 }  // namespace

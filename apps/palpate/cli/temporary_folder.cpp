@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 
-#include "apps/palpate/cli/output.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {
@@ -39,10 +41,13 @@ TemporaryFolder::~TemporaryFolder() {
 
 std::string TemporaryFolder::write(const std::string& name, std::string_view bytes) const {
   std::string path = file(name);
-  OutputFile out(path);
-  out.write(bytes);
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  return path;
+  if (out.good()) return path;
+  throw Error(
+      fmt::format("{} cannot be written, a temporary file: {}; set TMPDIR to a folder with room",
+                  path, std::strerror(errno)));
 }
 
 std::string TemporaryFolder::lend(const std::string& name, std::string_view bytes) {

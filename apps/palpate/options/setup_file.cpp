@@ -74,9 +74,13 @@ void SetupFile::fail(const toml::source_region& place, const std::string& what) 
 }
 
 toml::table SetupFile::parse() const {
-  std::error_code ignored;
-  if (!fs::is_regular_file(path_, ignored)) {
-    throw Error(fmt::format("{}: no such file; --setup takes a TOML file", path_));
+  std::error_code failed;
+  const fs::file_status status = fs::status(path_, failed);
+  if (!fs::is_regular_file(status)) {
+    const std::string why = fs::exists(status)         ? "is no file"
+                            : fs::status_known(status) ? "no such file"
+                                                       : "cannot be read: " + failed.message();
+    throw Error(fmt::format("{}: {}; --setup takes a TOML file", path_, why));
   }
   try {
     return toml::parse_file(path_);

@@ -32,7 +32,9 @@ std::string free_name() {
   const std::string stem =
       fmt::format("palpate-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
   std::string name = stem + ".mcap";
-  for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}.mcap", stem, i);
+  std::error_code unknown;
+  for (int i = 2; std::filesystem::exists(name, unknown); ++i)
+    name = fmt::format("{}-{}.mcap", stem, i);
   return name;
 }
 
@@ -43,7 +45,8 @@ Recorder::Recorder(const std::string& path) : orders_(path) {
   present_.report.path = path;
   takes_frames_ = true;
   // A run that fails to begin must not overwrite an older recording.
-  if (!std::filesystem::is_regular_file(path))
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown))
     present_.file = std::make_unique<RecordingFile>(path);
 }
 

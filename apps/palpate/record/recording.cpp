@@ -89,8 +89,10 @@ bag::Attachment Recording::attachment(const std::string& name) const {
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].head.name == name) return reader_.attachment(i);
   }
-  throw Error(
-      fmt::format("there is no '{}' in it; give a file that palpate touch --record wrote", name));
+  const std::vector<std::string>& losses = reader_.contents().losses;
+  throw Error(fmt::format(
+      "there is no '{}' in it; {}", name,
+      losses.empty() ? "give a file that palpate touch --record wrote" : losses.front()));
 }
 
 // ns since 1970; 0 for a time before 1970.

@@ -124,6 +124,10 @@ void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options) {
 }
 
 DepthFrame load_depth_image(const std::string& path, const ReadOptions& options) {
+  ReadDepthOptions read;
+  read.camera.pinhole = options.intrinsics.value_or(Pinhole{.fx = 1, .fy = 1, .cx = 0, .cy = 0});
+  read.depth_unit = options.depth_unit * options.scale;
+  DepthFrame frame = read_depth_frame(path, read);  // first of all it has to be a depth image
   if (!options.intrinsics) {
     throw Error(
         fmt::format("{} is a depth image without camera intrinsics; give them in pixels "
@@ -131,10 +135,7 @@ DepthFrame load_depth_image(const std::string& path, const ReadOptions& options)
                     "image) and the metres per depth unit (--depth-unit)",
                     path));
   }
-  ReadDepthOptions read;
-  read.camera.pinhole = *options.intrinsics;
-  read.depth_unit = options.depth_unit * options.scale;
-  return read_depth_frame(path, read);
+  return frame;
 }
 
 std::unique_ptr<DepthCamera> open_stream(const SourcePlan& source, const Clock* clock) {

@@ -42,7 +42,8 @@ double middle_depth(const DepthFrame& frame) {
 }
 
 // Refuses a frame that measured something, and nothing in range: its unit may be another one.
-void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
+void check_range(const CloudArgument& source, const DepthFrame& frame,
+                 const DepthFilterOptions& range) {
   const auto out = [&](float z) {
     return !(static_cast<double>(z) >= range.nearest && static_cast<double>(z) <= range.farthest);
   };
@@ -50,10 +51,10 @@ void check_range(const DepthFrame& frame, const DepthFilterOptions& range) {
   const double middle = middle_depth(frame);
   if (middle == 0) return;
   throw Error(
-      fmt::format("all depths are nearer than {} m or farther than {} m (median {:.4g} m); widen "
-                  "the range (--nearest, --farthest), or correct the unit (depth_unit_m of a "
+      fmt::format("{}: all depths are nearer than {} m or farther than {} m (median {:.4g} m); "
+                  "widen the range (--nearest, --farthest), or correct the unit (depth_unit_m of a "
                   "recording, --depth-unit of an image)",
-                  range.nearest, range.farthest, middle));
+                  source.path, range.nearest, range.farthest, middle));
 }
 
 // Farther away the proxy would fault in every step.
@@ -154,7 +155,7 @@ void add_depth_image(Scene& scene, bool keep, LoadedSource& result) {
   const Waiting waiting(fmt::format("preparing {}", plan.argument.name));
   const auto start = WallClock::now();
   Source& source = scene.add(plan.argument.name, plan.options);
-  check_range(frame, plan.options.depth);
+  check_range(plan.argument, frame, plan.options.depth);
   source.set(frame);
   check_felt(source, result);
   result.prepare_seconds = seconds_since(start);
@@ -278,7 +279,7 @@ void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft) {
 void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
                 const Source::StartTime& start) {
   if (!from.plan.as_cloud && !frame.cloud) {
-    check_range(frame, from.plan.options.depth);
+    check_range(from.plan.argument, frame, from.plan.options.depth);
     to.push(frame, start);
     return;
   }

@@ -38,10 +38,21 @@ struct ZWidthMap {
   std::vector<ZWidthRow> rows;
 };
 
+// The name of a profile for which none was asked.
+std::string usual_profile(const std::string& file, const std::vector<DeviceProfile>& among) {
+  if (file.empty()) return "simulated";
+  if (among.size() == 1) return among.front().name;
+  std::string names;
+  for (const DeviceProfile& each : among) names += (names.empty() ? "" : ", ") + each.name;
+  throw UsageError(fmt::format("--profiles {} has {}; say which by --device-profile", file, names));
+}
+
 DeviceProfile find_profile(const ZWidthOptions& options) {
   const std::vector<DeviceProfile> among =
       options.profiles.empty() ? device_profiles() : read_device_profiles(options.profiles);
-  return suggesting(options.profile, among, [&] { return device_profile(options.profile, among); });
+  const std::string name =
+      options.profile.empty() ? usual_profile(options.profiles, among) : options.profile;
+  return suggesting(name, among, [&] { return device_profile(name, among); });
 }
 
 SimulatedDeviceOptions device_of(const DeviceProfile& profile) {

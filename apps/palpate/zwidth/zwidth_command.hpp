@@ -14,12 +14,12 @@ namespace palpate::app {
 
 /// Parameters of a map of walls; empty ones get defaults.
 struct ZWidthOptions {
-  std::string profile = "simulated";  ///< a name that is known
-  std::string profiles;               ///< file that has it; empty: what comes with palpate
-  std::vector<double> rates;          ///< Hz
-  std::vector<int> delays;            ///< steps
-  std::vector<double> dampings;       ///< of the device, N s/m
-  double wall_damping = 0;            ///< B of the guard's damper, N s/m
+  std::string profile;           ///< a name; empty: simulated, or the only one of `profiles`
+  std::string profiles;          ///< file that has it; empty: what comes with palpate
+  std::vector<double> rates;     ///< Hz
+  std::vector<int> delays;       ///< steps
+  std::vector<double> dampings;  ///< of the device, N s/m
+  double wall_damping = 0;       ///< B of the guard's damper, N s/m
   std::string csv;
   std::string json;
   std::string picture;

@@ -118,6 +118,21 @@ class PotreeStore final : public PointStore {
   ColorRule colors_;  // 0: without
 };
 
+// What to do with a folder that is no store.
+std::string instead_of(const fs::path& folder) {
+  std::error_code unknown;
+  for (const char* const list : {"sequence.json", "depth.txt", "associations.txt"}) {
+    if (!fs::exists(folder / list, unknown)) continue;
+    return fmt::format("Its recorded frames are sequence:{}.", folder.string());
+  }
+  for (const auto& each : fs::directory_iterator(folder, unknown)) {
+    if (each.path().extension() != ".mcap") continue;
+    return fmt::format("What was recorded in it is bag:{}.", folder.string());
+  }
+  if (unknown) return fmt::format("It cannot be listed: {}.", unknown.message());
+  return "Give a file in it.";
+}
+
 }  // namespace
 
 bool is_potree(const fs::path& path) {
@@ -130,9 +145,9 @@ std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale
   const fs::path folder = path.filename() == kMetadata ? path.parent_path() : path;
   std::error_code unknown;
   if (!fs::is_regular_file(folder / kMetadata, unknown)) {
-    throw Error(fmt::format(
-        "{}: is a folder and holds no metadata.json, so it is no Potree store. Give a file in it.",
-        folder.string()));
+    throw Error(
+        fmt::format("{}: is a folder and holds no metadata.json, so it is no Potree store. {}",
+                    folder.string(), instead_of(folder)));
   }
   const ReadOptions options;
   const auto input_of = [&](const Bytes& bytes, const char* name) {

@@ -63,10 +63,11 @@ class Tiler {
 
  private:
   void make_folder() const {
-    if (fs::exists(out_ / kMetadata) && !fs::exists(work_ / kJob) && !options_.force) {
+    std::error_code error;
+    const bool complete = fs::exists(out_ / kMetadata, error) && !fs::exists(work_ / kJob, error);
+    if (complete && !options_.force) {
       throw Error(out_.string() + " is complete; --force replaces it.");
     }
-    std::error_code error;
     fs::create_directories(work_, error);
     if (error) {
       throw Error(fmt::format("{}: cannot be made ({}). Name another folder.", work_.string(),

@@ -73,7 +73,7 @@ export class Navigation {
       }
       target.addScaledVector(right, ((left + most) / 2) * distance);
       target.addScaledVector(upward, ((low + high) / 2) * distance);
-      distance = needed;
+      distance = Math.max(needed, 0.1 * bounds.radius); // all may be at one place
     }
     distance = kStep ** Math.ceil(Math.log(distance) / Math.log(kStep));
     target.addScaledVector(upward, -foot * half * distance);

@@ -31,6 +31,7 @@ export interface Look {
 
 const kClose = 12; // support radii
 const kDropInterval = 100; // ms between two searches for what a tool hovers above
+const kLonePoint = 5e-3; // m, two R of a cloud whose points are all at one place
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
 
@@ -87,7 +88,7 @@ export class World {
     this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
     const chosen = recall<unknown>(this.upKey, undefined);
     this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
-    this.radius = welcome.radius;
+    this.radius = welcome.radius > 0 ? welcome.radius : kLonePoint;
     this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
     this.navigation.setUp(this.up);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
@@ -143,7 +144,9 @@ export class World {
   }
 
   fit(): void {
-    const bounds = boundsOf(this.samples.flat()) ?? { samples: [], centre: new Vector3(), radius: this.radius };
+    const samples = this.samples.flat();
+    const centre = samples[0]?.place.clone() ?? new Vector3();
+    const bounds = boundsOf(samples) ?? { samples: [], centre, radius: this.radius };
     const towards = this.cameras.length > 0 ? this.cameras : this.eye.map((place) => place.clone().sub(bounds.centre));
     this.navigation.frame(bounds, firstDirection(this.up, towards, bounds));
   }
