@@ -86,8 +86,8 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// Writes states, places, normals, deviations and spacings of a row from its fits. A block that a fit
-// puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
+// Writes states, places, normals, deviations and spacings of a row from its fits. A block that a
+// fit puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
 void write_row(const BlockFits& fits, int row, const DepthFilterOptions& range,
                FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;

@@ -156,7 +156,7 @@ void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region) {
   }
 }
 
-/// Those of the region's blocks in a row.
+/// The columns of the region's blocks in a row.
 std::span<const std::int32_t> WindowFits::columns_of(const BlockRange& range, int row) const {
   if (!range.has_row(row)) return {};
   const auto r = static_cast<std::size_t>(row - range.first_row);
