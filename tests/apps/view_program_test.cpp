@@ -13,8 +13,9 @@ namespace {
 
 TEST(ViewProgram, TheDemoSaysWhereItsPageIsAndEndsWhenItIsTold) {
   Shell shell;
-  const Outcome outcome = shell.run("demo --headless --duration 1 --port 0");
+  const Outcome outcome = shell.run("demo --headless --duration 1 --port 0 --record demo.mcap");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(shell.run("replay demo.mcap").code, 0);
   EXPECT_NE(outcome.err.find("page: http://127.0.0.1:"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.out.find("camera:simulated:desk"), std::string::npos) << outcome.out;
 }

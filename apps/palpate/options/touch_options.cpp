@@ -166,10 +166,7 @@ void add_output_options(OptionTable& table, OutputPlan& outputs) {
   table.add("--json", outputs.json, "FILE", "the report as JSON; - is standard output");
   table.add("--picture", outputs.picture, "FILE.png",
             "cloud, path, proxy and force as PNG (needs python3-matplotlib)");
-  table.add(
-      "--record", outputs.record, "FILE.mcap",
-      "the whole run as an MCAP bag: steps, frames and all that 'palpate replay' does it again "
-      "from (docs/bags.md)");
+  add_record_option(table, outputs);
 }
 
 constexpr const char* kTouchFooter = R"(Examples:
@@ -257,8 +254,16 @@ void add_live_options(OptionTable& table, TimePlan& time) {
   table.add_key("--lock-memory", realtime.lock_memory);
 }
 
+void add_record_option(OptionTable& table, OutputPlan& outputs) {
+  table.add(
+      "--record", outputs.record, "FILE.mcap",
+      "the whole run as an MCAP bag: steps, frames and all that 'palpate replay' does it again "
+      "from (docs/bags.md)");
+}
+
 void add_page_options(OptionTable& table, PagePlan& page) {
   table.under("Page");
+  table.add_flag("--headless", page.headless, "do not open a browser").only_for(kPage);
   table
       .add("--listen", page.address, "ADDRESS", parsed_by(check_address),
            "address to serve the page on (127.0.0.1: this machine only); anyone who knows the "

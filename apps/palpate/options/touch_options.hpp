@@ -38,7 +38,10 @@ void add_placed_sources(OptionTable& table, TouchChoices& choices);
 /// Registers what runs in real time are held to.
 void add_live_options(OptionTable& table, TimePlan& time);
 
-/// Registers where the page is.
+/// Registers the recording of the run.
+void add_record_option(OptionTable& table, OutputPlan& outputs);
+
+/// Registers where the page is, and whether it opens a browser.
 void add_page_options(OptionTable& table, PagePlan& page);
 
 /// Registers every option of `palpate touch` and every key of a set-up file.

@@ -188,6 +188,7 @@ TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
   check_material(plan.surface, plan.motion.trajectory.empty());
   plan.time.real_time = in_real_time(plan, choices.simulated_time);
   plan.page.served = plan.time.real_time && is_watched(choices);
+  if (!plan.page.wanted) plan.page.headless = true;  // nobody asked for a page: it is only told of
   const RunFacts facts = facts_of(plan, choices);
   check_scopes(table, given, facts);
   check_scopes(table, described, facts);

@@ -65,7 +65,7 @@ struct TimePlan {
 struct PagePlan {
   bool wanted = false;  ///< the run goes on in real time until it is ended
   bool served = false;  ///< it is there
-  bool open_browser = false;
+  bool headless = false;  ///< opens no browser
   std::string address = {};                ///< empty: this machine alone
   std::string token = {};                  ///< who knows it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on

@@ -76,7 +76,6 @@ void add_replay_options(CLI::App& command, ReplayCommand& replay) {
   table.under("Page");
   table.add_flag("--view", replay.page.wanted,
                  "show what was recorded on a page in a browser, with a time line, until Ctrl-C");
-  table.add_flag("--headless", replay.headless, "do not open a browser");
   add_page_options(table, replay.page);
 }
 
@@ -88,7 +87,7 @@ void check(const ReplayCommand& command) {
   if (page.wanted && !(command.json.empty() && command.log.empty())) {
     throw UsageError("--view does nothing again; remove --json and --log, or --view");
   }
-  if (!page.wanted && (command.headless || page.port || !page.address.empty())) {
+  if (!page.wanted && (page.headless || page.port || !page.address.empty())) {
     throw UsageError("--headless, --listen and --port apply only to the page; add --view");
   }
 }
@@ -98,9 +97,7 @@ void check(const ReplayCommand& command) {
 int replay(const ReplayCommand& command) {
   check(command);
   if (command.page.wanted) {
-    PagePlan page = command.page;
-    page.open_browser = !command.headless;
-    view_recording(command.input, page);
+    view_recording(command.input, command.page);
     return kSuccess;
   }
   const Replay run(command.input);

@@ -16,7 +16,6 @@ struct ReplayCommand {
   std::string json;
   std::string log;
   PagePlan page;
-  bool headless = false;  ///< opens no browser
 };
 
 void add_replay_options(CLI::App& command, ReplayCommand& replay);

@@ -56,7 +56,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
   const Interruption interruption;
   tell_page(viewer.url(), page.address);
   std::optional<Browser> browser;
-  if (page.open_browser) browser.emplace(viewer.url());
+  if (!page.headless) browser.emplace(viewer.url());
   while (!interruption.asked()) std::this_thread::sleep_for(kLook);
   playback.stop();  // what it tells, it tells the viewer
 }

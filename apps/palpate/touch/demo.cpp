@@ -67,7 +67,7 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
   table.add("--duration", plan.motion.duration, "SECONDS",
             number("from 0.1 to 86400 s", [](double x) { return x >= 0.1 && x <= 86'400; }),
             "stop after this time (default: at Ctrl-C)");
-  table.add_flag("--headless", o.headless, "do not open a browser");
+  add_record_option(table, plan.outputs);
   table.under("Hand, time and page");
   add_device_option(table, plan.devices);
   add_live_options(table, plan.time);
@@ -78,7 +78,6 @@ void demo(const CLI::App& command, const DemoOptions& options) {
   TouchChoices choices = options.touch;
   choices.sources = sources_of(options.scene);
   choices.plan.page.wanted = true;
-  choices.plan.page.open_browser = !options.headless;
   touch(plan_touch(command, choices));
 }
 

@@ -20,7 +20,6 @@ void touch(const TouchPlan& plan);
 
 struct DemoOptions {
   std::string scene = "desk";
-  bool headless = false;    ///< opens no browser
   TouchChoices touch = {};  ///< but for its sources
 };
 

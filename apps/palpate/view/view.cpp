@@ -212,7 +212,7 @@ struct View::Parts {
   [[nodiscard]] PagePlan next_page() const {
     PagePlan page = run.page;
     page.wanted = true;
-    page.open_browser = false;
+    page.headless = true;
     page.port = viewer.port();
     page.token = token_of(viewer.url());
     page.paused = servos.front()->state().paused;
@@ -254,7 +254,7 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed, const Ros
     if (run.page.paused) servo->pause(true);
   }
   if (run.page.token.empty()) tell_page(parts_->viewer.url(), run.page.address);
-  if (run.page.open_browser) parts_->browser.emplace(parts_->viewer.url());
+  if (!run.page.headless) parts_->browser.emplace(parts_->viewer.url());
 }
 
 View::~View() = default;

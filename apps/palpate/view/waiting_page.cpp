@@ -36,8 +36,8 @@ struct WaitingPage::Parts {
     viewer.emplace(scene, std::vector<Servo*>{}, options);
     const std::string url = viewer->url();
     tell_page(url, page.address);
-    if (page.open_browser) browser.emplace(url);
-    page.open_browser = false;
+    if (!page.headless) browser.emplace(url);
+    page.headless = true;
     page.port = viewer->port();
     page.token = token_of(url);
   }
