@@ -41,9 +41,6 @@ void add_live_options(OptionTable& table, TimePlan& time);
 /// Registers the recording of the run.
 void add_record_option(OptionTable& table, OutputPlan& outputs);
 
-/// Registers where the page is, and whether it opens a browser.
-void add_page_options(OptionTable& table, PagePlan& page);
-
 /// Registers every option of `palpate touch` and every key of a set-up file.
 void add_touch_options(OptionTable& table, TouchChoices& choices);
 

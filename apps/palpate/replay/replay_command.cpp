@@ -10,7 +10,7 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/options/touch_options.hpp"
+#include "apps/palpate/options/page_options.hpp"
 #include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/replay/replay_view.hpp"
 #include "apps/palpate/report/log.hpp"
