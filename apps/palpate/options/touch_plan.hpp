@@ -63,9 +63,9 @@ struct TimePlan {
 
 /// The page on which a run is seen, touched and set.
 struct PagePlan {
-  bool wanted = false;  ///< the run goes on in real time until it is ended
-  bool served = false;  ///< it is there
-  bool headless = false;  ///< opens no browser
+  bool wanted = false;                     ///< the run goes on in real time until it is ended
+  bool served = false;                     ///< it is there
+  bool headless = false;                   ///< opens no browser
   std::string address = {};                ///< empty: this machine alone
   std::string token = {};                  ///< who knows it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
