@@ -15,6 +15,7 @@ say "build"
 configure release -DPALPATE_BUILD_BENCH=ON
 build release geometry_bench field_bench depth_bench accuracy_bench streams_bench events_bench robot_bench any_cloud_bench four_cameras_bench viewer_bench device_bench palpate_app
 programs=build/release
+commit=$(git rev-parse --short HEAD)  # which may be another one hours later
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
@@ -78,7 +79,7 @@ say "any cloud"
   cat <<EOF
 # Results
 
-$(date +%Y-%m-%d), commit $(git rev-parse --short HEAD), $(nproc) cores ($(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)), load
+$(date +%Y-%m-%d), commit $commit, $(nproc) cores ($(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)), load
 $load after the timed parts, $(g++ --version | head -n 1), Release. What the rows mean and what was settled: [README.md](README.md).
 All of it in one run of
 

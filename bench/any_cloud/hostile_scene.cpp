@@ -60,9 +60,12 @@ HostileScene make_scene(const Row& row, std::uint64_t seed) {
   return scene;
 }
 
+Distance true_surface(const HostileScene& scene, const Vector3d& x) {
+  return scene.truth(scene.T_world_draft.inverse() * x / scene.spacing);
+}
+
 double true_distance(const HostileScene& scene, const Vector3d& x) {
-  const Vector3d local = scene.T_world_draft.inverse() * x / scene.spacing;
-  return scene.truth(local).value;
+  return true_surface(scene, x).value;
 }
 
 }  // namespace palpate::any_cloud

@@ -36,7 +36,10 @@ struct Row {
 /// millimetres or feet, or in metres with coordinates as of a survey.
 [[nodiscard]] HostileScene make_scene(const Row& row, std::uint64_t seed);
 
-/// Distance of the truth at a place in the world, in spacings.
+/// The truth at a place in the world: distance in spacings, gradient in the draft's frame.
+[[nodiscard]] Distance true_surface(const HostileScene& scene, const Eigen::Vector3d& x);
+
+/// The distance alone.
 [[nodiscard]] double true_distance(const HostileScene& scene, const Eigen::Vector3d& x);
 
 }  // namespace palpate::any_cloud

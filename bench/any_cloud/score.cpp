@@ -191,8 +191,7 @@ class Comparison {
 
   // Has the proxy passed the true surface, or does that hold it from the other side?
   [[nodiscard]] bool is_within(std::size_t i) const {
-    const Distance at =
-        scene_.truth(scene_.T_world_draft.inverse() * trace_.proxy[i] / scene_.spacing);
+    const Distance at = true_surface(scene_, trace_.proxy[i]);
     const Vector3d force = scene_.T_world_draft.linear().transpose() * trace_.force[i];
     return at.value < -kInside ||
            at.gradient.dot(force) < kAgainst * at.gradient.norm() * force.norm();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "geometry/rotation.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::python {
@@ -111,9 +112,7 @@ Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix) {
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw Error("a pose's last row is not 0, 0, 0, 1; give a (4, 4) matrix from sensor to world");
   }
-  constexpr double kRounded = 0.01;  // as far as people round numbers
-  const Eigen::Matrix3d turn = matrix.topLeftCorner<3, 3>();
-  if (!(turn * turn.transpose()).isIdentity(kRounded) || turn.determinant() < 0) {
+  if (!is_rotation(matrix.topLeftCorner<3, 3>())) {
     throw Error(
         "a pose is not finite, scales, shears or mirrors; give a rotation and a shift, and scale "
         "the data");

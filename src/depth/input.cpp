@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "depth/blocks.hpp"
+#include "geometry/rotation.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::depth {
@@ -84,9 +85,7 @@ void check(const Eigen::Isometry3d& T_world_sensor) {
   if (!T_world_sensor.matrix().allFinite()) {
     throw Error("depth filter: the sensor pose is not finite; give a finite one");
   }
-  constexpr double kRounded = 0.01;  // as far as people round numbers
-  const Eigen::Matrix3d turn = T_world_sensor.linear();
-  if ((turn * turn.transpose()).isIdentity(kRounded) && turn.determinant() > 0) return;
+  if (is_rotation(T_world_sensor.linear())) return;
   throw Error("depth filter: the sensor pose scales, shears or mirrors; give a rigid one");
 }
 

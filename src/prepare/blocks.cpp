@@ -255,26 +255,22 @@ class Joining {
   std::vector<Vector3f> positions_;
 };
 
-std::size_t points_of(std::span<const Piece* const> pieces) {
-  std::size_t points = 0;
-  for (const Piece* const piece : pieces) points += piece->positions.size();
-  return points;
-}
-
 }  // namespace
 
 Prepared join(std::span<const Piece* const> pieces, const CloudFacts& facts, const Vector3d& origin,
               Kernel kernel) {
-  Joining joining(points_of(pieces));
+  std::size_t points = 0;
+  for (const Piece* const piece : pieces) points += piece->positions.size();
+  Joining joining(points);
   for (const Piece* const piece : pieces) joining.add(*piece);
   return joining.end(facts, origin, kernel);
 }
 
 Prepared join(std::vector<Piece> pieces, const CloudFacts& facts, const Vector3d& origin,
               Kernel kernel) {
-  std::vector<const Piece*> all;
-  for (const Piece& piece : pieces) all.push_back(&piece);
-  Joining joining(points_of(all));
+  std::size_t points = 0;
+  for (const Piece& piece : pieces) points += piece.positions.size();
+  Joining joining(points);
   std::size_t freed = 0;  // points, since memory went back to the system
   for (Piece& piece : pieces) {
     joining.add(piece);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "geometry/rotation.hpp"
 
 namespace palpate::app {
 
@@ -14,7 +15,6 @@ namespace palpate::app {
 /// @throws UsageError when it is no rotation and translation; `what` goes into the message.
 [[nodiscard]] inline Eigen::Isometry3d pose_of_matrix(const std::vector<double>& v,
                                                       const std::string& what) {
-  constexpr double kRounded = 0.01;  // as far as people round numbers
   const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> rows(v.data());
   const Eigen::Matrix3d turn = rows.leftCols<3>();
   if (v.size() == 16 && (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1)) {
@@ -23,8 +23,7 @@ namespace palpate::app {
         "by row)",
         what, v[12], v[13], v[14], v[15]));
   }
-  const Eigen::Matrix3d gram = turn * turn.transpose();
-  if (!gram.isIdentity(kRounded)) {
+  if (!is_orthogonal(turn)) {
     throw UsageError(
         fmt::format("{}: the matrix is no rotation: the first three numbers of its rows must have "
                     "length 1 and stand at right angles to one another",
