@@ -62,14 +62,15 @@ void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& 
   });
 }
 
-void fit_plain(const Blocks& blocks, const NoiseModel& noise, int row, BlockFits& fits) {
+void fit_plain(const Blocks& blocks, const NoiseModel& noise, int row, int first, int count,
+               BlockFits& fits) {
   const simd::BlockLimits limits = limits_of(noise, blocks.grid);
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
   const auto per_x = static_cast<float>(1 / blocks.grid.step_x);
   const auto per_y = static_cast<float>(1 / blocks.grid.step_y);
-  const std::size_t from = blocks.at(0, row);
-  simd::best_plain().fit(blocks.rho.data() + from, blocks.counts.data() + from, stride,
-                         blocks.grid.columns, limits, per_x, per_y, fits.row(row));
+  const std::size_t from = blocks.at(first, row);
+  simd::best_plain().fit(blocks.rho.data() + from, blocks.counts.data() + from, stride, count,
+                         limits, per_x, per_y, fits.row(row, first));
 }
 
 namespace {

@@ -166,9 +166,9 @@ struct BlockFits {
     }
   }
 
-  /// Pointers to the start of a row in each column.
-  [[nodiscard]] simd::FitRow row(int row) {
-    const std::size_t i = grid.index(0, row);
+  /// Pointers to a block of a row in each column.
+  [[nodiscard]] simd::FitRow row(int row, int column = 0) {
+    const std::size_t i = grid.index(column, row);
     return {reinterpret_cast<std::uint8_t*>(&states[i]),
             &rho[i],
             &variance[i],
@@ -201,9 +201,10 @@ struct SameSurface {
 /// `scratch` is kept for its memory.
 void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch);
 
-/// Plain fits of a row: each block's own mean, its slopes by least squares over those of its eight
-/// neighbours that show the same surface.
-void fit_plain(const Blocks& blocks, const NoiseModel& noise, int row, BlockFits& fits);
+/// Plain fits of some blocks of a row: each block's own mean, its slopes by least squares over
+/// those of its eight neighbours that show the same surface.
+void fit_plain(const Blocks& blocks, const NoiseModel& noise, int row, int first, int count,
+               BlockFits& fits);
 
 inline constexpr int kLongestGap = 3;  ///< blocks (docs/method.md 6.3)
 

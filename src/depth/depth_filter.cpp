@@ -11,6 +11,7 @@
 #include "depth/blocks.hpp"
 #include "depth/input.hpp"
 #include "depth/noise_tracker.hpp"
+#include "depth/still_tiles.hpp"
 #include "depth/temporal_filter.hpp"
 #include "depth/window_fits.hpp"
 #include "palpate/base/error.hpp"
@@ -29,7 +30,7 @@ constexpr double kBeyond = 0.25;
 
 // Outputs of some blocks of a row, in columns so that the compiler can vectorise.
 struct Part {
-  static constexpr int kMost = 64;  // blocks (judgement)
+  static constexpr int kMost = KeptTiles::kTogether;  // blocks
   float x[kMost], z[kMost], normal_x[kMost], normal_y[kMost], normal_z[kMost];
 };
 
@@ -86,30 +87,27 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// Writes states, places, normals, deviations and spacings of a row from its fits. A block that a
+// Writes states, places, normals, deviations and spacings of blocks from their fits. A block that a
 // fit puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
-void write_row(const BlockFits& fits, int row, const DepthFilterOptions& range,
-               FilteredDepth& out) {
+void write(const BlockFits& fits, int row, int first, int count, const DepthFilterOptions& range,
+           FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
   const auto farthest = static_cast<float>(1 / ((1 + kBeyond) * range.farthest));
   const auto nearest = static_cast<float>((1 + kBeyond) / range.nearest);
   const Rays rays{static_cast<float>(grid.y(row)), static_cast<float>(grid.step_x),
                   static_cast<float>(grid.step_y), static_cast<float>(out.pitch)};
   Part part;
-  for (int first = 0; first < grid.columns; first += Part::kMost) {
-    const int count = std::min(Part::kMost, grid.columns - first);
-    std::size_t i = grid.index(first, row);
-    for (int k = 0; k < count; ++k) part.x[k] = static_cast<float>(grid.x(first + k));
-    rays.follow(fits, i, count, part, out);
-    for (int k = 0; k < count; ++k, ++i) {
-      const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
-      out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
-      out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
-      const bool known = fits.confidences[i] > 0;
-      const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);
-      out.normals[i] = known ? normal : Vector3f(Vector3f::Zero());
-      out.confidences[i] = fits.confidences[i];
-    }
+  std::size_t i = grid.index(first, row);
+  for (int k = 0; k < count; ++k) part.x[k] = static_cast<float>(grid.x(first + k));
+  rays.follow(fits, i, count, part, out);
+  for (int k = 0; k < count; ++k, ++i) {
+    const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
+    out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
+    out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
+    const bool known = fits.confidences[i] > 0;
+    const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);
+    out.normals[i] = known ? normal : Vector3f(Vector3f::Zero());
+    out.confidences[i] = fits.confidences[i];
   }
 }
 
@@ -131,6 +129,7 @@ struct DepthFilter::State {
   depth::WindowFits window_fits;
   depth::NoiseTracker tracker;
   depth::TemporalFilter temporal;
+  depth::StillTiles tiles;
   FilteredDepth out;
   DepthFrame last;
   std::vector<float> scratch;
@@ -166,12 +165,11 @@ struct DepthFilter::State {
                            static_cast<float>(options.farthest)});
   }
 
-  // Fits a frame without regard to earlier ones: the rows of the answer; others are averaged alone.
-  depth::BlockRange fit(const DepthFrame& frame) {
+  // Averages the blocks of a frame without regard to earlier ones.
+  void average(const DepthFrame& frame) {
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
     depth::reject_flying(out.noise, blocks, scratch);
-    return window_fits.fit(blocks, out.noise, options.normal_error, region, fits);
   }
 
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
@@ -181,22 +179,35 @@ struct DepthFilter::State {
     out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
-    last_region = region;
-    if (out.duplicate && same_view) return out;
+    if (out.duplicate && same_view) return keep_all();
     out.noise = noise(frame);
     return points(frame);
   }
 
-  // Fits a frame in its own view and averages it with what is remembered.
+  const FilteredDepth& keep_all() {
+    std::ranges::fill(out.kept.flags, 1);
+    return out;
+  }
+
+  // Fits what does not stand still in its own view and averages it with what is remembered.
   const FilteredDepth& points(const DepthFrame& frame) {
-    const depth::BlockRange fitted = fit(frame);
+    average(frame);
+    if (!temporal.begin(fits.grid, out.T_world_sensor)) tiles.forget(fits.grid);
+    tiles.find(blocks, out.noise, region.change_from(last_region), options.memory, out.kept);
+    last_region = region;
+    const depth::BlockRange fitted =
+        window_fits.fit(blocks, out.noise, options.normal_error, region, out.kept, fits);
     const depth::TemporalOptions in_time =
         depth::temporal_options(options.memory, out.noise.correlation, options.normal_error);
-    temporal.begin(fits.grid, out.T_world_sensor);
-    depth::for_rows(fits.grid, [&](int row) {  // all of it while the processor's cache holds it
-      if (!fitted.has_row(row)) depth::fit_plain(blocks, out.noise, row, fits);
-      temporal.filter_row(in_time, row, fits);
-      depth::write_row(fits, row, options, out);
+    depth::for_rows(fits.grid, [&](int row) {
+      // All of it while the processor's cache holds it.
+      out.kept.each_other(row, [&](int first, int count) {
+        std::uint8_t settled[KeptTiles::kTogether];
+        if (!fitted.has_row(row)) depth::fit_plain(blocks, out.noise, row, first, count, fits);
+        temporal.filter(in_time, row, first, count, fits, settled);
+        depth::write(fits, row, first, count, options, out);
+        tiles.remember(blocks, row, first, count, settled);
+      });
     });
     return out;
   }
@@ -231,12 +242,13 @@ const FilteredDepth* DepthFilter::fit_all() {
   State& state = *state_;
   if (!state.seen) return nullptr;
   state.region.set(depth::block_grid(state.last.camera));
-  if (std::exchange(state.last_region, state.region) == state.region) return &state.out;
+  if (state.last_region == state.region) return &state.keep_all();
   return &state.points(state.last);
 }
 
 void DepthFilter::reset() {
   state_->temporal.reset();
+  state_->tiles.forget(state_->fits.grid);
   state_->tracker.reset();
   state_->seen = false;
 }

@@ -179,10 +179,11 @@ struct FaceFits::Search {
 };
 
 void FaceFits::find(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
-                    const BlockFits& fits, int tile_row) {
+                    const KeptTiles& kept, const BlockFits& fits, int tile_row) {
   const int row = std::min(tile_row * kTile + kTile / 2, fits.grid.rows - 1);
   for (int tile = 0; tile < tiles_; ++tile) {
     const int column = std::min(tile * kTile + kTile / 2, fits.grid.columns - 1);
+    if (kept.at(column, row)) continue;
     Face& face = faces_[static_cast<std::size_t>(tile_row) * tiles_ + tile];
     face.count = 0;
     face.found = false;
@@ -219,10 +220,11 @@ void FaceFits::give(std::span<const Face* const> faces, float rho, float sigma, 
   }
 }
 
-void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, int tile_row,
-                     BlockFits& fits) const {
+void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
+                     int tile_row, BlockFits& fits) const {
   const int bottom = std::min(tile_row + kAround, end_ - 1);
   for (int tile = 0; tile < tiles_; ++tile) {
+    if (kept.at(tile * kTile, tile_row * kTile)) continue;
     const Face* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
     const int right = std::min(tile + kAround, tiles_ - 1);
@@ -245,7 +247,7 @@ void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, int t
 }
 
 void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
-                     BlockFits& fits) {
+                     const KeptTiles& kept, BlockFits& fits) {
   tiles_ = (fits.grid.columns + kTile - 1) / kTile;
   first_ = input.table.first_row / kTile;
   end_ = (input.table.first_row + input.table.rows + kTile - 1) / kTile;
@@ -253,10 +255,10 @@ void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const No
   constexpr std::size_t kAtATime = 4;  // rows of tiles that a thread takes at once (judgement)
   const auto rows = static_cast<std::size_t>(end_ - first_);
   detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
-    find(input, filled, noise, fits, first_ + static_cast<int>(row));
+    find(input, filled, noise, kept, fits, first_ + static_cast<int>(row));
   });
   detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
-    share(input, noise, first_ + static_cast<int>(row), fits);
+    share(input, noise, kept, first_ + static_cast<int>(row), fits);
   });
 }
 

@@ -104,13 +104,14 @@ int remembered(const TemporalOptions& options, const BlockMemory& m) {
   return std::min(255, static_cast<int>(longer * static_cast<float>(options.memory)));
 }
 
-void average(const Measured& now, int memory, BlockMemory& m) {
+bool average(const Measured& now, int memory, BlockMemory& m) {
   m.count = static_cast<std::uint8_t>(std::min(memory, m.count + 1));
   const float share = 1 / static_cast<float>(m.count);
   m.rho += share * (now.rho - m.rho);
   m.variance += share * (now.variance - m.variance);
   m.extra *= squared(1 - share);
   average_slopes(now, share, m);
+  return m.count == memory;
 }
 
 // Takes the frame as it is, since a hand feels whatever lags behind what moves.
@@ -126,8 +127,8 @@ void follow(const Measured& now, float gate2, BlockMemory& m) {
   if (calm_frames >= kCalmFrames) m.moving = false;
 }
 
-/// Takes in a measured block.
-void step(Measured now, const TemporalOptions& options, float gate2, BlockMemory& m) {
+/// Takes in a measured block. Has its mean as many frames as it will have?
+bool step(Measured now, const TemporalOptions& options, float gate2, BlockMemory& m) {
   m.missed = 0;
   learn_scatter(now, m);
   const float d = now.rho - m.rho;
@@ -143,21 +144,24 @@ void step(Measured now, const TemporalOptions& options, float gate2, BlockMemory
   } else if (m.moving) {
     follow(now, gate2, m);
   } else if (agrees(now, m, gate2)) {
-    average(now, remembered(options, m), m);
+    return average(now, remembered(options, m), m);
   } else {
     m.moving = true;
     restart(now, m);
     m.calm_since = now.rho;
   }
+  return false;
 }
 
-void miss(int hold, BlockMemory& m) {
+/// Nothing was measured. Is nothing remembered, either?
+bool miss(int hold, BlockMemory& m) {
   if (m.count > 0 && m.missed < std::min(hold, 255)) {
     ++m.missed;
     m.moving = false;
-  } else {
-    m = {};
+    return false;
   }
+  m = {};
+  return true;
 }
 
 void write(const BlockMemory& m, std::size_t i, BlockFits& fits) {
@@ -185,27 +189,30 @@ void TemporalFilter::reset() {
   std::fill(memory_.begin(), memory_.end(), BlockMemory{});
 }
 
-void TemporalFilter::begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
+bool TemporalFilter::begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor) {
+  const bool same = grid == grid_ && T_world_sensor.matrix() == T_world_sensor_.matrix();
   if (grid != grid_) {
     grid_ = grid;
     memory_.assign(grid.size(), {});
     warp_.resize(grid.size());
-  } else if (T_world_sensor.matrix() != T_world_sensor_.matrix()) {
+  } else if (!same) {
     warp_.warp(grid, T_world_sensor.inverse() * T_world_sensor_, memory_);
   }
   T_world_sensor_ = T_world_sensor;
+  return same;
 }
 
-void TemporalFilter::filter_row(const TemporalOptions& options, int row, BlockFits& fits) {
+void TemporalFilter::filter(const TemporalOptions& options, int row, int first, int count,
+                            BlockFits& fits, std::uint8_t* settled) {
   const auto gate2 = static_cast<float>(options.gate * options.gate);
-  const std::size_t first = grid_.index(0, row);
-  for (std::size_t i = first; i < first + static_cast<std::size_t>(grid_.columns); ++i) {
+  const std::size_t begin = grid_.index(first, row);
+  for (std::size_t i = begin; i < begin + static_cast<std::size_t>(count); ++i) {
     BlockMemory& m = memory_[i];
     if (fits.states[i] == FilteredDepth::State::empty) {
-      miss(options.hold, m);
+      *settled++ = miss(options.hold, m) ? 1 : 0;
       continue;
     }
-    step(measured(fits, i), options, gate2, m);
+    *settled++ = step(measured(fits, i), options, gate2, m) ? 1 : 0;
     write(m, i, fits);
   }
 }

@@ -89,13 +89,16 @@ class TemporalFilter {
  public:
   /// Before the rows of a frame. `T_world_sensor` is the pose at the stamp; if it has changed, the
   /// memory is put into the new view.
-  void begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
+  /// @return is the view that of the frame before?
+  bool begin(const BlockGrid& grid, const Eigen::Isometry3d& T_world_sensor);
 
-  /// Takes in one row of the frame and replaces its columns by the filtered ones; several threads
-  /// may take different rows. Empty blocks stay empty, but are remembered for
+  /// Takes in some blocks of a row and replaces their columns by the filtered ones; several
+  /// threads may take different rows. Empty blocks stay empty, but are remembered for
   /// TemporalOptions::hold frames, and continue if they are measured by then. A block whose state
   /// changes between plain and fitted starts again.
-  void filter_row(const TemporalOptions& options, int row, BlockFits& fits);
+  /// `settled`: tells for each whether its mean has as many frames as it will have.
+  void filter(const TemporalOptions& options, int row, int first, int count, BlockFits& fits,
+              std::uint8_t* settled);
 
   void reset();
 

@@ -89,6 +89,10 @@ bool FitRegion::operator==(const FitRegion& other) const {
          std::equal(balls_.begin(), balls_.end(), other.balls_.begin(), other.balls_.end(), same);
 }
 
+BlockRange FitRegion::change_from(const FitRegion& other) const {
+  return *this == other ? BlockRange{} : united(range_, other.range_);
+}
+
 bool FitRegion::contains(const Vector3d& point) const {
   return std::any_of(balls_.begin(), balls_.end(), [&](const Ball& ball) {
     return (point - ball.center).squaredNorm() <= ball.radius * ball.radius;
@@ -145,13 +149,17 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
           .growth = std::min(2.0, std::sqrt(noise.correlation))};
 }
 
-void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region) {
+void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region,
+                              const KeptTiles& kept) {
   columns_.clear();
   row_begin_.clear();
   row_begin_.push_back(0);
   const BlockRange& range = region.range();
   for (int row = range.first_row; row < range.first_row + range.rows; ++row) {
     region.columns(blocks, row, columns_);
+    const auto first = columns_.begin() + static_cast<std::ptrdiff_t>(row_begin_.back());
+    const auto stays = [&](std::int32_t column) { return kept.at(column, row); };
+    columns_.erase(std::remove_if(first, columns_.end(), stays), columns_.end());
     row_begin_.push_back(columns_.size());
   }
 }
@@ -164,7 +172,7 @@ std::span<const std::int32_t> WindowFits::columns_of(const BlockRange& range, in
 }
 
 BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
-                           const FitRegion& region, BlockFits& fits) {
+                           const FitRegion& region, const KeptTiles& kept, BlockFits& fits) {
   const BlockGrid& grid = blocks.grid;
   if (filled_.grid != grid) {
     table_.resize(static_cast<std::size_t>(grid.columns + 1) * (grid.rows + 1));
@@ -176,10 +184,12 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
   fill_gaps(blocks, noise, range, filled_);
   const simd::FitInput in = input(blocks, noise, normal_error, range);
   functions_->table(in.table, rows_of(filled_));
-  list_columns(blocks, region);
+  list_columns(blocks, region, kept);
   detail::parallel_each(static_cast<std::size_t>(range.rows), kRowsAtATime, [&](std::size_t r) {
     const int row = range.first_row + static_cast<int>(r);
-    fit_plain(blocks, noise, row, fits);
+    kept.each_other(row, [&](int first_column, int count) {
+      fit_plain(blocks, noise, row, first_column, count, fits);
+    });
     const auto columns = columns_of(region.range(), row);
     functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
     const std::size_t first = grid.index(0, row);
@@ -187,7 +197,7 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
       fits.states[first + static_cast<std::size_t>(column)] = FilteredDepth::State::fitted;
     }
   });
-  faces_.refit(in, filled_, noise, fits);
+  faces_.refit(in, filled_, noise, kept, fits);
   return range;
 }
 

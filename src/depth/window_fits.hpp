@@ -65,9 +65,10 @@ struct FacePlane {
 /// rows; results do not depend on how.
 class FaceFits {
  public:
-  /// `input`: what the fits were made from; `filled`: the blocks that its table sums.
+  /// `input`: what the fits were made from; `filled`: the blocks that its table sums. Faces and
+  /// fits of kept tiles stay.
   void refit(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
-             BlockFits& fits);
+             const KeptTiles& kept, BlockFits& fits);
 
  private:
   struct Face {
@@ -83,9 +84,9 @@ class FaceFits {
   struct Search;
 
   void find(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
-            const BlockFits& fits, int tile_row);
-  void share(const simd::FitInput& input, const NoiseModel& noise, int tile_row,
-             BlockFits& fits) const;
+            const KeptTiles& kept, const BlockFits& fits, int tile_row);
+  void share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
+             int tile_row, BlockFits& fits) const;
   static void give(std::span<const Face* const> faces, float rho, float sigma, int column, int row,
                    BlockFits& fits);
 
@@ -105,6 +106,9 @@ class FitRegion {
            std::span<const Ball> balls);
 
   [[nodiscard]] bool operator==(const FitRegion& other) const;
+
+  /// A block outside of the range is in both regions or in neither.
+  [[nodiscard]] BlockRange change_from(const FitRegion& other) const;
 
   /// Blocks outside of it are outside of the region.
   [[nodiscard]] const BlockRange& range() const { return range_; }
@@ -127,11 +131,11 @@ class WindowFits {
   explicit WindowFits(const simd::FitFunctions& functions = simd::best_fits())
       : functions_(&functions) {}
 
-  /// Fits all blocks of the rows that windows of the region reach: the region's where a window
-  /// fits, the others plainly.
+  /// Fits all blocks of the rows that windows of the region reach, but those that are kept: the
+  /// region's where a window fits, the others plainly.
   /// @return a range with these rows; other rows of `fits` are as they were.
   [[nodiscard]] BlockRange fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
-                               const FitRegion& region, BlockFits& fits);
+                               const FitRegion& region, const KeptTiles& kept, BlockFits& fits);
 
  private:
   struct alignas(64) Place {
@@ -140,7 +144,7 @@ class WindowFits {
 
   [[nodiscard]] simd::FitInput input(const Blocks& blocks, const NoiseModel& noise,
                                      double normal_error, const BlockRange& range);
-  void list_columns(const Blocks& blocks, const FitRegion& region);
+  void list_columns(const Blocks& blocks, const FitRegion& region, const KeptTiles& kept);
   [[nodiscard]] std::span<const std::int32_t> columns_of(const BlockRange& range, int row) const;
   const simd::FitFunctions* functions_;
   Blocks filled_;

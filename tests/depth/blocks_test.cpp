@@ -114,7 +114,9 @@ TEST(PlainFits, AreExactOnPlanes) {
   const depth::Blocks blocks = blocks_of(exact_frame({plane({0, 0, 0.7}, normal)}), fine);
   depth::BlockFits fits;
   fits.resize(blocks.grid);
-  depth::for_rows(blocks.grid, [&](int row) { depth::fit_plain(blocks, fine, row, fits); });
+  depth::for_rows(blocks.grid, [&](int row) {
+    depth::fit_plain(blocks, fine, row, 0, blocks.grid.columns, fits);
+  });
   const Vector3d exact = normal / normal.dot(Vector3d(0, 0, 0.7));
   for (std::size_t i = 0; i < fits.size(); ++i) {
     ASSERT_EQ(fits.states[i], FilteredDepth::State::plain);
@@ -133,7 +135,9 @@ TEST(PlainFits, HaveNoNormalWhereNothingIsNear) {
   const depth::Blocks blocks = blocks_of(frame, kMillimetre);
   depth::BlockFits fits;
   fits.resize(blocks.grid);
-  depth::for_rows(blocks.grid, [&](int row) { depth::fit_plain(blocks, kMillimetre, row, fits); });
+  depth::for_rows(blocks.grid, [&](int row) {
+    depth::fit_plain(blocks, kMillimetre, row, 0, blocks.grid.columns, fits);
+  });
   const std::size_t middle = blocks.grid.index(30, 15);
   EXPECT_EQ(fits.states[middle], FilteredDepth::State::plain);
   EXPECT_EQ(fits.confidences[middle], 0);

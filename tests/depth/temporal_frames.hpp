@@ -13,7 +13,10 @@ namespace palpate::test {
 inline void filter(depth::TemporalFilter& filter, const depth::TemporalOptions& options,
                    const Eigen::Isometry3d& T_world_sensor, depth::BlockFits& fits) {
   filter.begin(fits.grid, T_world_sensor);
-  for (int row = 0; row < fits.grid.rows; ++row) filter.filter_row(options, row, fits);
+  std::vector<std::uint8_t> settled(fits.size());
+  for (int row = 0; row < fits.grid.rows; ++row) {
+    filter.filter(options, row, 0, fits.grid.columns, fits, &settled[fits.grid.index(0, row)]);
+  }
 }
 
 /// A camera of 160 x 120 blocks whose blocks are as wide as the Kinect's.

@@ -19,7 +19,8 @@ inline depth::BlockFits fit_all(const depth::Blocks& blocks, const NoiseModel& n
   depth::FitRegion region;
   region.set(blocks.grid);
   depth::WindowFits windows(functions);
-  (void)windows.fit(blocks, noise, 0.0035, region, fits);  // all of it
+  const KeptTiles none{.columns = blocks.grid.columns, .flags = {}};
+  (void)windows.fit(blocks, noise, 0.0035, region, none, fits);  // all of it
   return fits;
 }
 

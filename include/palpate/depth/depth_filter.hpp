@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,37 @@ struct NoiseModel {
 /// metre, so that a fit smooths too much rather than too little.
 [[nodiscard]] NoiseModel unknown_sensor_noise();
 
+/// The tiles of 4x4 blocks of which a filter's answer is what the one before was.
+struct KeptTiles {
+  /// Blocks: a tile's mean is four times as sure as one of them, and few tiles see a rim.
+  static constexpr int kSide = 4;
+  static constexpr int kTogether = 64;  ///< blocks (judgement)
+
+  int columns = 0;                  ///< of blocks
+  std::vector<std::uint8_t> flags;  ///< of tiles, row by row: 1 if it is kept; none: none is
+
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    const int tiles = (columns + kSide - 1) / kSide;
+    return static_cast<std::size_t>(row / kSide) * tiles + column / kSide;
+  }
+  [[nodiscard]] bool at(int column, int row) const {
+    return !flags.empty() && flags[index(column, row)] != 0;
+  }
+
+  /// Calls take(first, count) for the blocks of a row that are not kept, at most kTogether at once.
+  template <class Take>
+  void each_other(int row, const Take& take) const {
+    for (int first = 0, end = 0; first < columns; first = end) {
+      while (end < columns && end < first + kTogether && !at(end, row)) end += kSide;
+      if (end > first) {
+        take(first, std::min(end, columns) - first);
+      } else {
+        end += kSide;
+      }
+    }
+  }
+};
+
 /// A depth frame made into points, one a block of 2x2 pixels, row by row. A block's number is its
 /// points' identity from frame to frame as long as the camera stands still. All columns have
 /// columns * rows entries; those of empty blocks mean nothing.
@@ -61,6 +93,7 @@ struct FilteredDepth {
                                 ///< on the same surface, m (grazing rows are far apart)
   NoiseModel noise;             ///< in use for this frame
   bool duplicate = false;       ///< the frame repeats the one before, bit for bit
+  KeptTiles kept;               ///< what shows, within noise, what it showed
 
   [[nodiscard]] std::size_t size() const { return states.size(); }
 };

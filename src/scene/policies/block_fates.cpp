@@ -7,9 +7,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kAhead =
-    64;  // places that are prefetched before they are settled (judgement)
-
 // Share of the blocks around one that have to show the same surface; a line has 2 of 8 (derived).
 constexpr float kVouch = 0.25f;
 
@@ -23,30 +20,42 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
   to.shown.clear();
   to.unseen.clear();
   for (std::size_t place = begin; place < end; place += kLanes) {
-    blocks_.prefetch(place + kAhead);
-    const SeenFour four = blocks_.four_at(place);
+    const std::uint32_t first =
+        place + kLanes <= end ? tracks_.four_at(place) : BlockEntries::kNone;
     FourWays& ways = to.going_on.emplace_back();
-    if (place + kLanes <= end && goes_on(four, ways)) continue;
+    ways.place = static_cast<std::uint32_t>(place);
+    const bool live = first != BlockEntries::kNone && are_live(first, ways);
+    if (live && blocks_.keeps(place) && stay(first, ways)) continue;
+    const SeenFour four = blocks_.four_at(place);
+    if (live && go_on(four, ways)) continue;
     to.going_on.pop_back();
     for (int l = 0; l < kLanes && place + l < end; ++l) settle(four.lane(l), to);
   }
 }
 
-/// Are four live points seen again within R, as they face, beside no edge, alone at their places?
-/// Else there is more to decide. Worth 16 to 29 % of a frame (bench/FINDINGS.md).
-bool BlockFates::goes_on(const SeenFour& seen, FourWays& ways) const {
-  const std::uint32_t first = tracks_.four_at(seen.place);
-  if (first == BlockEntries::kNone) return false;
+/// Are four points live, beside no edge? Says where they are.
+bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
   bool live = true;
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     const Entry& entry = shown_.entries()[first + k];
     live = live & (entry.kind == EntryKind::live);
     ways.variance[k] = entry.variance;
   }
-  const auto old_edges = load<Ints>(&shown_.edges()[first]);
-  if (!live || any(~(seen.edges & old_edges))) return false;
+  if (!live || any(~load<Ints>(&shown_.edges()[first]))) return false;
   ways.from = shown_.four_at(first);
-  ways.place = seen.place;
+  return true;
+}
+
+/// Four live points of which the frame says what the last one said go on to where they were going.
+bool BlockFates::stay(std::uint32_t first, FourWays& ways) const {
+  ways.to = shown_.end_of_four(first);
+  return all(ways.to.presence >= 1);
+}
+
+/// Are four live points seen again within R, as they face, beside no edge? Else there is more to
+/// decide. Worth 16 to 29 % of a frame (bench/FINDINGS.md).
+bool BlockFates::go_on(const SeenFour& seen, FourWays& ways) const {
+  if (any(~seen.edges)) return false;
   const Vectors way = ways.from.position - seen.position;
   const Vectors& normal = ways.from.normal;
   const Ints near = (seen.radius > 0) & (dot(way, way) <= kWithin2 * (seen.radius * seen.radius));

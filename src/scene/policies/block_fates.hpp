@@ -38,7 +38,9 @@ class BlockFates {
   void settle(std::size_t begin, std::size_t end, SettledPlaces& to) const;
 
  private:
-  [[nodiscard]] bool goes_on(const SeenFour& seen, FourWays& ways) const;
+  [[nodiscard]] bool are_live(std::uint32_t first, FourWays& ways) const;
+  [[nodiscard]] bool stay(std::uint32_t first, FourWays& ways) const;
+  [[nodiscard]] bool go_on(const SeenFour& seen, FourWays& ways) const;
   void settle(const SeenPoint& seen, SettledPlaces& to) const;
   [[nodiscard]] bool is_sure(const SeenPoint& seen,
                              const std::optional<BlockTracks::Partner>& partner) const;

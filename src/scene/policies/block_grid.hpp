@@ -17,6 +17,17 @@ void each_row(const FilteredDepth& depth, const Visit& visit) {
                         [&](std::size_t v) { visit(v); });
 }
 
+/// Calls take(row, first, count) for the blocks of a frame that are not kept, or for all of them,
+/// on several threads.
+template <class Take>
+void each_other(const FilteredDepth& depth, bool all, const Take& take) {
+  each_row(depth, [&](std::size_t v) {
+    const int row = static_cast<int>(v);
+    if (all || depth.kept.flags.empty()) return take(row, 0, depth.columns);
+    depth.kept.each_other(row, [&](int first, int count) { take(row, first, count); });
+  });
+}
+
 /// Columns of blocks with a margin of nothing all around, so that neighbours are there without
 /// asking.
 struct BlockGrid {
@@ -37,10 +48,11 @@ struct BlockGrid {
   }
 
   /// Makes room for the columns of a frame, with a margin of so many blocks.
-  void make_room(const FilteredDepth& depth, int blocks);
+  /// @return has all that was there been forgotten?
+  bool make_room(const FilteredDepth& depth, int blocks);
 
-  /// Copies the positions of a row's blocks into the columns.
-  void lay_out_places(const FilteredDepth& depth, std::size_t v);
+  /// Copies the positions of some blocks of a row into the columns.
+  void lay_out_places(const FilteredDepth& depth, int v, int first, int count);
 };
 
 }  // namespace palpate

@@ -25,10 +25,11 @@ class BlockRims {
   BlockRims(Kernel kernel, float minimum_radius)
       : kernel_(kernel), minimum_radius_(minimum_radius) {}
 
-  /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere. `radii`: of all
-  /// blocks, and room for kLanes more; `grid`: where they are.
+  /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere, of those that are
+  /// not kept, or of `all`. `radii`: of all blocks, and room for kLanes more; `grid`: where they
+  /// are.
   void find(const FilteredDepth& depth, std::span<const float> radii, const BlockGrid& grid,
-            std::span<const Ball> balls, Exact exact);
+            std::span<const Ball> balls, Exact exact, bool all);
 
   /// The largest distance to a neighbour that counts, blocks; 0: there is no rim.
   [[nodiscard]] int largest_half() const { return largest_half_; }

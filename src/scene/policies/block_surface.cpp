@@ -53,40 +53,41 @@ void BlockSurface::measure(const FilteredDepth& depth) {
 
 void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> balls,
                            BlockRims::Exact exact) {
-  grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
-  start(depth);
+  for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(depth.size() + kLanes);
+  bool all = grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
+  each_other(depth, all, [&](int v, int first, int count) {
+    grid_.lay_out_places(depth, v, first, count);
+    start(depth, v, first, count);
+  });
   limit_growth(depth);
-  rims_.find(depth, radii_, grid_, balls, exact);
+  rims_.find(depth, radii_, grid_, balls, exact, all);
   if (rims_.largest_half() > grid_.margin) {
-    grid_.make_room(depth, rims_.largest_half());
-    each_row(depth, [&](std::size_t v) { grid_.lay_out_places(depth, v); });
+    all = grid_.make_room(depth, rims_.largest_half());
+    each_row(depth, [&](std::size_t v) {
+      grid_.lay_out_places(depth, static_cast<int>(v), 0, depth.columns);
+    });
   }
-  each_row(depth, [&](std::size_t v) { lay_out(depth, v); });
-  each_row(depth, [&](std::size_t v) { trust_row(depth, v); });
+  each_other(depth, all, [&](int v, int first, int count) { lay_out(depth, v, first, count); });
+  each_other(depth, all, [&](int v, int first, int count) { trust(depth, v, first, count); });
   if (rims_.largest_half() > 0) rims_.weigh(depth, radii_, grid_, areas_);
 }
 
 // Radii by spacing, and areas of a surface that goes on on all sides.
-void BlockSurface::start(const FilteredDepth& depth) {
-  const std::size_t count = depth.size();
-  for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(count + kLanes);
+void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count) {
   const auto pitch = static_cast<float>(depth.pitch);
   const float whole = whole_sum(kernel_);
-  const auto columns = static_cast<std::size_t>(depth.columns);
-  each_row(depth, [&](std::size_t v) {
-    grid_.lay_out_places(depth, v);
-    for (std::size_t b = v * columns; b < (v + 1) * columns; ++b) {
-      if (!present(depth, b)) {
-        radii_[b] = areas_[b] = 0;
-        continue;
-      }
-      const float side = pitch * depth.positions[b].z();
-      const float rows = std::max(side, depth.spacings[b]);
-      const float area = side * rows;
-      radii_[b] = std::max({kSpacings * std::sqrt(area), kRows * rows, minimum_radius_});
-      areas_[b] = area / whole;
+  const std::size_t begin = static_cast<std::size_t>(v) * depth.columns + first;
+  for (std::size_t b = begin; b < begin + static_cast<std::size_t>(count); ++b) {
+    if (!present(depth, b)) {
+      radii_[b] = areas_[b] = 0;
+      continue;
     }
-  });
+    const float side = pitch * depth.positions[b].z();
+    const float rows = std::max(side, depth.spacings[b]);
+    const float area = side * rows;
+    radii_[b] = std::max({kSpacings * std::sqrt(area), kRows * rows, minimum_radius_});
+    areas_[b] = area / whole;
+  }
 }
 
 // Two passes over the image carry a small radius to everywhere (a chamfer transform).
@@ -131,9 +132,9 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
 }
 
 // Puts side by side what sums over neighbours need.
-void BlockSurface::lay_out(const FilteredDepth& depth, std::size_t v) {
-  std::size_t at = grid_.place(0, static_cast<int>(v));
-  std::size_t b = v * static_cast<std::size_t>(depth.columns);
+void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int count) {
+  std::size_t at = grid_.place(first, v);
+  std::size_t b = static_cast<std::size_t>(v) * depth.columns + first;
   const auto take = [&](const auto& radius, const auto& deviation, const auto& area, auto lanes) {
     using Lanes = decltype(lanes);
     const Lanes sure = kSure * radius;
@@ -148,38 +149,38 @@ void BlockSurface::lay_out(const FilteredDepth& depth, std::size_t v) {
     put(grid_.sums, at, there ? (1 < sum ? sum : nothing + 1) : nothing);
   };
   int u = 0;
-  for (; u + kLanes <= depth.columns; u += kLanes, at += kLanes, b += kLanes) {
+  for (; u + kLanes <= count; u += kLanes, at += kLanes, b += kLanes) {
     take(load<Floats>(&radii_[b]), load<Floats>(&depth.deviations[b]), load<Floats>(&areas_[b]),
          Floats{});
   }
-  for (; u < depth.columns; ++u, ++at, ++b) {
+  for (; u < count; ++u, ++at, ++b) {
     take(radii_[b], depth.deviations[b], areas_[b], 0.0f);
   }
 }
 
-void BlockSurface::trust_row(const FilteredDepth& depth, std::size_t v) {
-  const std::size_t first = v * static_cast<std::size_t>(depth.columns);
+void BlockSurface::trust(const FilteredDepth& depth, int v, int first, int count) {
+  const std::size_t row = static_cast<std::size_t>(v) * depth.columns;
   const auto stride = static_cast<std::ptrdiff_t>(grid_.stride);
   const std::ptrdiff_t beside[] = {-stride - 1, -stride,    -stride + 1, -1,
                                    1,           stride - 1, stride,      stride + 1};
-  for (int u = 0; u < depth.columns; u += kLanes) {
-    const float* const z = &grid_.z[grid_.place(u, static_cast<int>(v))];
-    const float* const precisions = &grid_.precisions[grid_.place(u, static_cast<int>(v))];
+  for (int u = first; u < first + count; u += kLanes) {
+    const float* const z = &grid_.z[grid_.place(u, v)];
+    const float* const precisions = &grid_.precisions[grid_.place(u, v)];
     const auto own = load<Floats>(precisions);
-    const auto reach = load<Floats>(&grid_.reaches[grid_.place(u, static_cast<int>(v))]);
-    Floats count{};
+    const auto reach = load<Floats>(&grid_.reaches[grid_.place(u, v)]);
+    Floats same_surface{};
     Floats sum{};
     for (const std::ptrdiff_t by : beside) {
       const auto precision = load<Floats>(precisions + by);
       const Floats apart = load<Floats>(z + by) - load<Floats>(z);
       const Ints same = (precision > 0) & (apart <= reach) & (-apart <= reach);
-      count -= __builtin_convertvector(same, Floats);
+      same_surface -= __builtin_convertvector(same, Floats);
       sum += same ? precision : Floats{};
     }
-    const Floats trust = sum > 0 ? own * count / sum : Floats{} + 1;
+    const Floats trust = sum > 0 ? own * same_surface / sum : Floats{} + 1;
     for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
-      const bool fitted = depth.states[first + u + l] == FilteredDepth::State::fitted;
-      trusts_[first + u + l] = fitted ? std::min(1.0f, trust[l]) : 1.0f;
+      const bool fitted = depth.states[row + u + l] == FilteredDepth::State::fitted;
+      trusts_[row + u + l] = fitted ? std::min(1.0f, trust[l]) : 1.0f;
     }
   }
 }

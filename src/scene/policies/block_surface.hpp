@@ -50,19 +50,14 @@ class BlockSurface {
   [[nodiscard]] const std::vector<float>& radii() const { return radii_; }
   [[nodiscard]] const std::vector<float>& areas() const { return areas_; }
   [[nodiscard]] const std::vector<float>& trusts() const { return trusts_; }
-  void prefetch(std::size_t block) const {
-    __builtin_prefetch(&radii_[block]);
-    __builtin_prefetch(&areas_[block]);
-    __builtin_prefetch(&trusts_[block]);
-  }
 
  private:
   void measure(const FilteredDepth& depth, std::span<const Ball> balls, BlockRims::Exact exact);
-  void start(const FilteredDepth& depth);
+  void start(const FilteredDepth& depth, int v, int first, int count);
   void limit_growth(const FilteredDepth& depth);
   void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
-  void lay_out(const FilteredDepth& depth, std::size_t v);
-  void trust_row(const FilteredDepth& depth, std::size_t v);
+  void lay_out(const FilteredDepth& depth, int v, int first, int count);
+  void trust(const FilteredDepth& depth, int v, int first, int count);
 
   Kernel kernel_;
   float minimum_radius_;
@@ -85,8 +80,6 @@ class EdgeFinder {
 
   /// The number of the edge beside a block; kNone: there is none.
   [[nodiscard]] std::uint32_t number(std::size_t block) const { return of_block_[block]; }
-
-  void prefetch(std::size_t block) const { __builtin_prefetch(&of_block_[block]); }
 
   /// The plane beyond an edge, in the sensor's frame.
   [[nodiscard]] const SurfacePoints::EdgePlane& plane(std::uint32_t number) const {

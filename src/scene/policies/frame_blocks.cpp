@@ -55,6 +55,7 @@ void FrameBlocks::look(const FilteredDepth& depth, std::span<const Ball> reach, 
     order_ = make_block_order(depth.columns, depth.rows);
     resized_ = true;
   }
+  note_kept(depth.kept);
   if (everywhere) {
     surface_.measure(depth);
   } else {
@@ -80,16 +81,14 @@ bool FrameBlocks::put(const FilteredDepth& depth, const Eigen::Vector3d& origin,
   return moved;
 }
 
-void FrameBlocks::prefetch(std::size_t place) const {
-  if (place + kLanes > order_.size()) return;
-  for (std::size_t k = place; k < place + kLanes; k += 2) {  // two stand beside each other
-    const std::size_t block = order_.blocks[k];
-    __builtin_prefetch(&depth_->positions[block]);
-    __builtin_prefetch(&depth_->normals[block]);
-    __builtin_prefetch(&depth_->confidences[block]);
-    __builtin_prefetch(&depth_->deviations[block]);
-    surface_.prefetch(block);
-    edges_.prefetch(block);
+void FrameBlocks::note_kept(const KeptTiles& kept) {
+  kept_.assign(order_.size() == 0 ? 0 : order_.codes.back() / kTile + 1, 0);
+  for (int row = 0; row < order_.rows; row += KeptTiles::kSide) {
+    for (int column = 0; column < order_.columns; column += KeptTiles::kSide) {
+      const std::uint32_t first =
+          order_.places[static_cast<std::size_t>(row * order_.columns + column)];
+      kept_[order_.codes[first] / kTile] = kept.at(column, row) ? 1 : 0;
+    }
   }
 }
 

@@ -76,11 +76,14 @@ class FrameBlocks {
 
   [[nodiscard]] const BlockOrder& order() const { return order_; }
 
+  /// Does the frame show at the blocks of four places what the frame before showed?
+  [[nodiscard]] bool keeps(std::size_t place) const {
+    const std::size_t last = std::min(place + kLanes, order_.size()) - 1;
+    return kept_[order_.codes[place] / kTile] != 0 && kept_[order_.codes[last] / kTile] != 0;
+  }
+
   /// What four places show that follow one another; the last place stands for those beyond it.
   [[nodiscard]] SeenFour four_at(std::size_t place) const;
-
-  /// Fetches for four_at() ahead of time.
-  void prefetch(std::size_t place) const;
 
   /// The share of blocks around one that show the same surface: what flies between two has few.
   [[nodiscard]] float vouching(std::size_t place) const;
@@ -98,6 +101,10 @@ class FrameBlocks {
   [[nodiscard]] SurfacePoints::EdgePlane edge_of(const SeenPoint& seen) const;
 
  private:
+  static constexpr std::uint32_t kTile = KeptTiles::kSide * KeptTiles::kSide;  // blocks
+
+  void note_kept(const KeptTiles& kept);
+
   BlockOrder order_;
   BlockSurface surface_;
   EdgeFinder edges_;
@@ -106,6 +113,7 @@ class FrameBlocks {
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
+  std::vector<std::uint8_t> kept_;  // of tiles along the curve
   bool streams_ = false;
   bool resized_ = false;  // the image, since the frame before was put
 };

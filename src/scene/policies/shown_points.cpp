@@ -12,8 +12,6 @@ namespace {
 
 constexpr float kNoLength = 1e-6f;  // of the sum of two unit normals: they cancel (judgement)
 
-constexpr std::uint32_t kPrefetched = 96;  // points ahead (judgement)
-
 Eigen::Vector3f mix(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float u) {
   return a + u * (b - a);
 }
@@ -78,35 +76,30 @@ PointState ShownPoints::at(std::uint32_t i) const {
           fades ? between(p.presences[i], p.end_presences[i]) : 1.0f};
 }
 
-PointStates ShownPoints::four_at(std::uint32_t i) const {
+PointStates ShownPoints::end_of_four(std::uint32_t i) const {
   const SurfacePoints& p = *points_;
-  const Vectors shift = all_lanes(shift_);
-  const bool fades = !p.presences.empty();
-  const Floats whole = Floats{} + 1.0f;
-  const auto end = [i](const auto& column) {
-    __builtin_prefetch(&column[i] + kPrefetched);
-    return load<Floats>(&column[i]);
-  };
-  __builtin_prefetch(&p.end_positions[i] + kPrefetched);
-  __builtin_prefetch(&p.end_normals[i] + kPrefetched);
-  if (progress_ >= 1) {
-    return {load(&p.end_positions[i]) + shift,
-            load(&p.end_normals[i]),
-            end(p.end_density_weights),
-            end(p.end_radii),
-            end(p.end_confidences),
-            fades ? end(p.end_presences) : whole};
-  }
+  const auto end = [i](const auto& column) { return load<Floats>(&column[i]); };
+  return {load(&p.end_positions[i]) + all_lanes(shift_),
+          load(&p.end_normals[i]),
+          end(p.end_density_weights),
+          end(p.end_radii),
+          end(p.end_confidences),
+          p.presences.empty() ? Floats{} + 1.0f : end(p.end_presences)};
+}
+
+PointStates ShownPoints::four_at(std::uint32_t i) const {
+  if (progress_ >= 1) return end_of_four(i);
+  const SurfacePoints& p = *points_;
   const auto u = static_cast<float>(progress_);
   const auto between = [i, u](const auto& a, const auto& b) {
     return mix(load<Floats>(&a[i]), load<Floats>(&b[i]), u);
   };
-  return {mix(load(&p.grid.points()[i]), load(&p.end_positions[i]), u) + shift,
+  return {mix(load(&p.grid.points()[i]), load(&p.end_positions[i]), u) + all_lanes(shift_),
           mix_normals(load(&p.normals[i]), load(&p.end_normals[i]), u),
           between(p.density_weights, p.end_density_weights),
           between(p.radii, p.end_radii),
           between(p.confidences, p.end_confidences),
-          fades ? between(p.presences, p.end_presences) : whole};
+          p.presences.empty() ? Floats{} + 1.0f : between(p.presences, p.end_presences)};
 }
 
 float ShownPoints::speed_of(std::uint32_t i) const {

@@ -38,6 +38,8 @@ class ShownPoints {
   [[nodiscard]] PointState at(std::uint32_t i) const;
   /// The same of four that follow one another.
   [[nodiscard]] PointStates four_at(std::uint32_t i) const;
+  /// The same of where they are at the end.
+  [[nodiscard]] PointStates end_of_four(std::uint32_t i) const;
 
   /// Where a point's weight goes.
   [[nodiscard]] float end_weight(std::uint32_t i) const { return points_->end_density_weights[i]; }
