@@ -179,14 +179,9 @@ struct DepthFilter::State {
     out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
-    if (out.duplicate && same_view) return keep_all();
+    if (out.duplicate && same_view) return out;
     out.noise = noise(frame);
     return points(frame);
-  }
-
-  const FilteredDepth& keep_all() {
-    std::ranges::fill(out.kept.flags, 1);
-    return out;
   }
 
   // Fits what does not stand still in its own view and averages it with what is remembered.
@@ -242,7 +237,7 @@ const FilteredDepth* DepthFilter::fit_all() {
   State& state = *state_;
   if (!state.seen) return nullptr;
   state.region.set(depth::block_grid(state.last.camera));
-  if (state.last_region == state.region) return &state.keep_all();
+  if (state.last_region == state.region) return &state.out;
   return &state.points(state.last);
 }
 

@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kTile = 4;  // blocks to a side; one in the middle looks (docs/method.md 6.4)
+static_assert(KeptTiles::kSide % kTile == 0);
 constexpr int kWays[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
 constexpr int kAround = 2;  // tiles to each side that share faces: ten blocks (docs/method.md 6.4)
 constexpr int kBehind = 4;  // blocks from a face's end to one that shows what is beyond (judgement)
@@ -183,7 +184,7 @@ void FaceFits::find(const simd::FitInput& input, const Blocks& filled, const Noi
   const int row = std::min(tile_row * kTile + kTile / 2, fits.grid.rows - 1);
   for (int tile = 0; tile < tiles_; ++tile) {
     const int column = std::min(tile * kTile + kTile / 2, fits.grid.columns - 1);
-    if (kept.at(column, row)) continue;
+    if (kept.at(column, row) && is_flat(fits, column, row)) continue;  // it was fitted last time
     Face& face = faces_[static_cast<std::size_t>(tile_row) * tiles_ + tile];
     face.count = 0;
     face.found = false;

@@ -2,7 +2,6 @@
 #include "depth/still_tiles.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace palpate::depth {
 namespace {
@@ -22,6 +21,7 @@ constexpr int kInTurn = 8;
 void StillTiles::forget(const BlockGrid& grid) {
   grid_ = grid;
   tiles_ = (grid.columns + kSide - 1) / kSide;
+  frame_ = 0;
   rho_.resize(grid.size());
   settled_.assign(static_cast<std::size_t>(tiles_) * grid.rows, 0);
 }
@@ -46,22 +46,23 @@ StillTiles::Change StillTiles::change_of(const Blocks& blocks, const NoiseModel&
       const float sigma = before[k] > 0 ? block_sigma(noise, before[k]) : 0;
       const float both = 2 * sigma * sigma;
       const float off = now[k] - before[k];
-      near = near & (off * off <= kBlock * both);
+      near = near & ((now[k] > 0) == (before[k] > 0)) & (off * off <= kBlock * both);
       change.sum += off;
       change.variance += both;
     }
     if (!near) return {};
   }
-  change.variance = std::max(change.variance, std::numeric_limits<float>::min());
+  change.still = true;
   return change;
 }
 
 /// Is a tile where it was, and so are the tiles around it together, which tell smaller changes?
-/// `most`: squared deviations.
-bool StillTiles::stays(int tile, int row, float most) const {
+/// `shared`: by how much a tile's mean varies more than if its blocks erred alone. The tiles around
+/// it are not granted that: some are filtered for nothing, but what creeps is followed.
+bool StillTiles::stays(int tile, int row, float shared) const {
   const auto at = [&](int t, int r) { return changes_[static_cast<std::size_t>(r) * tiles_ + t]; };
   const Change own = at(tile, row);
-  if (!(own.variance > 0) || own.sum * own.sum > most * own.variance) return false;
+  if (!own.still || own.sum * own.sum > kMean * shared * own.variance) return false;
   const int last = static_cast<int>(changes_.size()) / tiles_ - 1;
   Change around;
   for (int r = std::max(row - 1, 0); r <= std::min(row + 1, last); ++r) {
@@ -70,7 +71,7 @@ bool StillTiles::stays(int tile, int row, float most) const {
       around.variance += at(t, r).variance;
     }
   }
-  return around.sum * around.sum <= most * around.variance;
+  return around.sum * around.sum <= kMean * around.variance;
 }
 
 void StillTiles::find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change,
@@ -92,11 +93,11 @@ void StillTiles::find(const Blocks& blocks, const NoiseModel& noise, const Block
       changes_[kept.index(column, row)] = may ? change_of(blocks, noise, column, row) : Change();
     }
   });
-  const float most = kMean * static_cast<float>(shared_error(noise.correlation));
+  const auto shared = static_cast<float>(shared_error(noise.correlation));
   detail::parallel_each(rows, 1, [&](std::size_t v) {
     const bool turn = (v + frame_) % frames == 0;
     for (int tile = 0; tile < tiles_; ++tile) {
-      const bool still = !turn && stays(tile, static_cast<int>(v), most);
+      const bool still = !turn && stays(tile, static_cast<int>(v), shared);
       kept.flags[v * tiles_ + tile] = still ? 1 : 0;
     }
   });

@@ -33,17 +33,18 @@ class StillTiles {
   /// How far the blocks of a tile are from where they were.
   struct Change {
     float sum = 0;       ///< 1/m
-    float variance = 0;  ///< that noise gives the sum, 1/m^2; 0: the tile does not stand still
+    float variance = 0;  ///< that noise gives the sum, 1/m^2
+    bool still = false;  ///< is no block elsewhere?
   };
 
   [[nodiscard]] bool are_settled(int column, int row);
   [[nodiscard]] Change change_of(const Blocks& blocks, const NoiseModel& noise, int column,
                                  int row) const;
-  [[nodiscard]] bool stays(int tile, int row, float most) const;
+  [[nodiscard]] bool stays(int tile, int row, float shared) const;
 
   BlockGrid grid_;
   int tiles_ = 0;                      // in a row
-  unsigned frame_ = 0;                 // of those that were looked at
+  unsigned frame_ = 0;                 // of those since all was forgotten
   std::vector<std::uint8_t> settled_;  // of a tile's blocks in each row: are all?
   std::vector<float> rho_;             // of blocks when they were filtered last, 1/m
   std::vector<Change> changes_;        // of tiles, row by row

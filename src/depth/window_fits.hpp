@@ -107,7 +107,7 @@ class FitRegion {
 
   [[nodiscard]] bool operator==(const FitRegion& other) const;
 
-  /// A block outside of the range is in both regions or in neither.
+  /// Nothing if both regions are the same; else a range outside of which blocks are in neither.
   [[nodiscard]] BlockRange change_from(const FitRegion& other) const;
 
   /// Blocks outside of it are outside of the region.

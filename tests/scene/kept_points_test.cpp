@@ -19,15 +19,21 @@ using Eigen::Vector3f;
 class KeptPoints : public testing::Test {
  protected:
   void show(const test::DepthOf& depth_of) {
-    DepthFrame frame = test::frame_of(test::small_camera(), ++count_ * kFrame, depth_of);
-    const CameraModel& camera = frame.camera;
-    SimulatedNoise({}).apply(camera.width, camera.height, count_, frame.depth);
-    depth_ = &filter_.filter(frame, test::looking_down());
+    frame_ = test::frame_of(test::small_camera(), 0, depth_of);
+    const CameraModel& camera = frame_.camera;
+    SimulatedNoise({}).apply(camera.width, camera.height, count_, frame_.depth);
+    repeat();
+  }
+
+  // Shows the last frame again.
+  void repeat() {
+    frame_.stamp = ++count_ * interval_;
+    depth_ = &filter_.filter(frame_, test::looking_down());
     before_ = points_;
     points_ = std::make_shared<SurfacePoints>();
-    const MorphInput input{*depth_, camera.pinhole};
+    const MorphInput input{*depth_, frame_.camera.pinhole};
     morph_.look(input);
-    morph_.fill(input, {frame.stamp, frame.stamp, kFrame}, points_);
+    morph_.fill(input, {frame_.stamp, frame_.stamp, interval_}, points_);
   }
 
   void settle() {
@@ -59,7 +65,9 @@ class KeptPoints : public testing::Test {
   Morph morph_{{}};
   std::shared_ptr<SurfacePoints> points_;
   std::shared_ptr<SurfacePoints> before_;
+  DepthFrame frame_;
   std::uint64_t count_ = 0;
+  double interval_ = kFrame;
 };
 
 TEST_F(KeptPoints, StandWhereTheyStood) {
@@ -89,6 +97,29 @@ TEST_F(KeptPoints, LeaveWithWhatTheyShow) {
   std::size_t low = 0;
   for (const Vector3f& end : points_->end_positions) low += points_->origin.z() + end.z() < -0.2;
   EXPECT_NEAR(double(low) / double(points_->size()), 0.5, 0.1);
+}
+
+// A camera of 60 Hz settles on a hole before its points have begun to fade.
+TEST_F(KeptPoints, FadeOverAHole) {
+  interval_ = 1 / 60.0;
+  settle();
+  const std::size_t count = points_->size();
+  const auto with_hole = [](double x, double y) { return std::hypot(x, y) < 0.05 ? 0 : 0.5; };
+  for (int k = 0; k < 120; ++k) show(with_hole);
+  EXPECT_LT(points_->size(), count - 200);
+  for (const Vector3f& end : points_->end_positions) {
+    EXPECT_GT((points_->origin.head<2>() + end.head<2>().cast<double>()).norm(), 0.02);
+  }
+}
+
+// What jumps goes there in several frames, though each says the same.
+TEST_F(KeptPoints, ArriveWhenAFrameComesAgain) {
+  settle();
+  show(test::wall(0.473));
+  for (int k = 0; k < 10; ++k) repeat();
+  double mean = 0;
+  for (const Vector3f& end : points_->end_positions) mean += points_->origin.z() + end.z();
+  EXPECT_NEAR(mean / double(points_->size()), 0.027, 1e-3);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ struct NoiseModel {
 
 /// The tiles of 4x4 blocks of which a filter's answer is what the one before was.
 struct KeptTiles {
-  /// Blocks: a tile's mean is four times as sure as one of them, and few tiles see a rim.
+  /// Blocks. Few tiles see a rim, and the mean of one is about four times as sure as a block.
   static constexpr int kSide = 4;
   static constexpr int kTogether = 64;  ///< blocks (judgement)
 
@@ -93,7 +93,7 @@ struct FilteredDepth {
                                 ///< on the same surface, m (grazing rows are far apart)
   NoiseModel noise;             ///< in use for this frame
   bool duplicate = false;       ///< the frame repeats the one before, bit for bit
-  KeptTiles kept;               ///< what shows, within noise, what it showed
+  KeptTiles kept;               ///< what was not filtered again, since it shows what it showed
 
   [[nodiscard]] std::size_t size() const { return states.size(); }
 };

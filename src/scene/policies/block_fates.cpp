@@ -46,8 +46,12 @@ bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
   return true;
 }
 
-/// Four live points of which the frame says what the last one said go on to where they were going.
+/// Four points that the last frame showed, and of which this one says the same, go on to where they
+/// were going.
 bool BlockFates::stay(std::uint32_t first, FourWays& ways) const {
+  for (std::uint32_t k = 0; k < kLanes; ++k) {
+    if (shown_.entries()[first + k].confirmed != shown_.stamp()) return false;
+  }
   ways.to = shown_.end_of_four(first);
   return all(ways.to.presence >= 1);
 }

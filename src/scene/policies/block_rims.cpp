@@ -71,7 +71,7 @@ bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half
 }
 
 void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
-                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact, bool all) {
+                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact, bool anew) {
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
   mark(depth, radii, grid);
@@ -82,12 +82,12 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
                         load<Floats>(&grid.z[at])};
     const Vectors way = place - all_lanes(ball.center.cast<float>());
     const double reach = 1.001 * ball.radius + 1e-5 * ball.center.norm();
-    return palpate::all(dot(way, way) > static_cast<float>(reach * reach));
+    return all(dot(way, way) > static_cast<float>(reach * reach));
   };
   const auto all_far = [&](std::size_t at) {
     return std::all_of(balls.begin(), balls.end(), [&](const Ball& b) { return far(at, b); });
   };
-  each_other(depth, all, [&](int v, int first, int count) {
+  each_other(depth, anew, [&](int v, int first, int count) {
     const std::size_t row = static_cast<std::size_t>(v) * columns;
     const std::size_t end = row + first + count;
     for (std::size_t b = row + first; b < end; ++b) {

@@ -1,6 +1,7 @@
 // Measures the blocks of a depth frame and reads off what they show.
 #include "scene/policies/frame_blocks.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -73,6 +74,7 @@ bool FrameBlocks::put(const FilteredDepth& depth, const Eigen::Vector3d& origin,
   const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
   const bool resized = std::exchange(resized_, false);
   const bool moved = resized || T_world_sensor.matrix() != T_world_sensor_.matrix();
+  if (moved) std::ranges::fill(kept_, 0);  // a frame may have been lost on the way
   depth_ = &depth;
   streams_ = streams;
   T_world_sensor_ = T_world_sensor;
@@ -82,12 +84,12 @@ bool FrameBlocks::put(const FilteredDepth& depth, const Eigen::Vector3d& origin,
 }
 
 void FrameBlocks::note_kept(const KeptTiles& kept) {
-  kept_.assign(order_.size() == 0 ? 0 : order_.codes.back() / kTile + 1, 0);
+  kept_.assign(order_.size() == 0 ? 0 : order_.codes.back() / kInTile + 1, 0);
   for (int row = 0; row < order_.rows; row += KeptTiles::kSide) {
     for (int column = 0; column < order_.columns; column += KeptTiles::kSide) {
       const std::uint32_t first =
           order_.places[static_cast<std::size_t>(row * order_.columns + column)];
-      kept_[order_.codes[first] / kTile] = kept.at(column, row) ? 1 : 0;
+      kept_[order_.codes[first] / kInTile] = kept.at(column, row) ? 1 : 0;
     }
   }
 }

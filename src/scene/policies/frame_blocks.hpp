@@ -79,7 +79,8 @@ class FrameBlocks {
   /// Does the frame show at the blocks of four places what the frame before showed?
   [[nodiscard]] bool keeps(std::size_t place) const {
     const std::size_t last = std::min(place + kLanes, order_.size()) - 1;
-    return kept_[order_.codes[place] / kTile] != 0 && kept_[order_.codes[last] / kTile] != 0;
+    // Four places are in two tiles at most, but for the last ones of the image's corner.
+    return kept_[order_.codes[place] / kInTile] != 0 && kept_[order_.codes[last] / kInTile] != 0;
   }
 
   /// What four places show that follow one another; the last place stands for those beyond it.
@@ -101,7 +102,7 @@ class FrameBlocks {
   [[nodiscard]] SurfacePoints::EdgePlane edge_of(const SeenPoint& seen) const;
 
  private:
-  static constexpr std::uint32_t kTile = KeptTiles::kSide * KeptTiles::kSide;  // blocks
+  static constexpr std::uint32_t kInTile = KeptTiles::kSide * KeptTiles::kSide;  // blocks
 
   void note_kept(const KeptTiles& kept);
 
