@@ -49,6 +49,11 @@ struct BlockRange {
 
   bool operator==(const BlockRange&) const = default;
   [[nodiscard]] bool empty() const { return columns <= 0 || rows <= 0; }
+  [[nodiscard]] bool overlaps(const BlockRange& other) const {
+    return !empty() && !other.empty() && first_column < other.first_column + other.columns &&
+           other.first_column < first_column + columns &&
+           first_row < other.first_row + other.rows && other.first_row < first_row + rows;
+  }
   [[nodiscard]] bool has_row(int row) const { return row >= first_row && row < first_row + rows; }
   /// Larger by `border` on all sides, as far as the grid goes.
   [[nodiscard]] BlockRange grown(int border, const BlockGrid& grid) const {

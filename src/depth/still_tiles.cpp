@@ -85,11 +85,7 @@ void StillTiles::find(const Blocks& blocks, const NoiseModel& noise, const Block
   detail::parallel_each(rows, 1, [&](std::size_t v) {
     const int row = static_cast<int>(v) * kSide;
     for (int column = 0; column < grid_.columns; column += kSide) {
-      const bool apart = change.empty() || row + kSide <= change.first_row ||
-                         row >= change.first_row + change.rows ||
-                         column + kSide <= change.first_column ||
-                         column >= change.first_column + change.columns;
-      const bool may = apart && are_settled(column, row);
+      const bool may = !change.overlaps({column, row, kSide, kSide}) && are_settled(column, row);
       changes_[kept.index(column, row)] = may ? change_of(blocks, noise, column, row) : Change();
     }
   });

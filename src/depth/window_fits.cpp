@@ -99,11 +99,12 @@ bool FitRegion::contains(const Vector3d& point) const {
   });
 }
 
-void FitRegion::columns(const Blocks& blocks, int row, std::vector<std::int32_t>& columns) const {
+void FitRegion::columns(const Blocks& blocks, const KeptTiles& kept, int row,
+                        std::vector<std::int32_t>& columns) const {
   const double y = blocks.grid.y(row);
   for (int column = range_.first_column; column < range_.first_column + range_.columns; ++column) {
     const float rho = blocks.rho[blocks.at(column, row)];
-    if (!(rho > 0)) continue;
+    if (!(rho > 0) || kept.at(column, row)) continue;
     if (everything_ || contains(Vector3d(blocks.grid.x(column), y, 1) / double(rho))) {
       columns.push_back(column);
     }
@@ -156,10 +157,7 @@ void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region,
   row_begin_.push_back(0);
   const BlockRange& range = region.range();
   for (int row = range.first_row; row < range.first_row + range.rows; ++row) {
-    region.columns(blocks, row, columns_);
-    const auto first = columns_.begin() + static_cast<std::ptrdiff_t>(row_begin_.back());
-    const auto stays = [&](std::int32_t column) { return kept.at(column, row); };
-    columns_.erase(std::remove_if(first, columns_.end(), stays), columns_.end());
+    region.columns(blocks, kept, row, columns_);
     row_begin_.push_back(columns_.size());
   }
 }

@@ -112,8 +112,9 @@ class FitRegion {
 
   /// Blocks outside of it are outside of the region.
   [[nodiscard]] const BlockRange& range() const { return range_; }
-  /// Appends the columns of a row's blocks that are in the region and not empty.
-  void columns(const Blocks& blocks, int row, std::vector<std::int32_t>& columns) const;
+  /// Appends the columns of a row's blocks that are in the region, not empty and not kept.
+  void columns(const Blocks& blocks, const KeptTiles& kept, int row,
+               std::vector<std::int32_t>& columns) const;
 
  private:
   [[nodiscard]] bool contains(const Eigen::Vector3d& point) const;

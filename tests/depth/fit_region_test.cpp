@@ -55,7 +55,7 @@ TEST(FitRegion, HoldsTheBlocksInTheBalls) {
       const depth::BlockRange& range = region.range();
       std::vector<std::int32_t> columns;
       const bool asked = row >= range.first_row && row < range.first_row + range.rows;
-      if (asked && !range.empty()) region.columns(blocks, row, columns);
+      if (asked && !range.empty()) region.columns(blocks, {}, row, columns);
       ASSERT_EQ(columns, expected) << "row " << row << " of repetition " << repeat;
     }
   }
