@@ -20,10 +20,10 @@ void each_row(const FilteredDepth& depth, const Visit& visit) {
 /// Calls take(row, first, count) for the blocks of a frame that are not kept, or for all of them,
 /// on several threads.
 template <class Take>
-void each_other(const FilteredDepth& depth, bool everything, const Take& take) {
+void each_other(const FilteredDepth& depth, bool whole, const Take& take) {
   each_row(depth, [&](std::size_t v) {
     const int row = static_cast<int>(v);
-    if (everything || depth.kept.flags.empty()) return take(row, 0, depth.columns);
+    if (whole || depth.kept.flags.empty()) return take(row, 0, depth.columns);
     depth.kept.each_other(row, [&](int first, int count) { take(row, first, count); });
   });
 }

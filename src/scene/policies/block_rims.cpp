@@ -71,8 +71,7 @@ bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half
 }
 
 void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
-                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact,
-                     bool everything) {
+                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact, bool whole) {
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
   mark(depth, radii, grid);
@@ -88,7 +87,7 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
   const auto all_far = [&](std::size_t at) {
     return std::all_of(balls.begin(), balls.end(), [&](const Ball& b) { return far(at, b); });
   };
-  each_other(depth, everything, [&](int v, int first, int count) {
+  each_other(depth, whole, [&](int v, int first, int count) {
     const std::size_t row = static_cast<std::size_t>(v) * columns;
     const std::size_t end = row + first + count;
     for (std::size_t b = row + first; b < end; ++b) {

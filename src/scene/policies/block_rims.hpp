@@ -26,10 +26,10 @@ class BlockRims {
       : kernel_(kernel), minimum_radius_(minimum_radius) {}
 
   /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere, of those that are
-  /// not kept, or of `everything`. `radii`: of all blocks, and room for kLanes more; `grid`:
+  /// not kept, or of the `whole` image. `radii`: of all blocks, and room for kLanes more; `grid`:
   /// where they are.
   void find(const FilteredDepth& depth, std::span<const float> radii, const BlockGrid& grid,
-            std::span<const Ball> balls, Exact exact, bool everything);
+            std::span<const Ball> balls, Exact exact, bool whole);
 
   /// The largest distance to a neighbour that counts, blocks; 0: there is no rim.
   [[nodiscard]] int largest_half() const { return largest_half_; }

@@ -55,23 +55,21 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
                            BlockRims::Exact exact) {
   for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(depth.size() + kLanes);
   // What tiles around a kept one have changed reaches it when it is filtered again.
-  bool everything = grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
-  each_other(depth, everything, [&](int v, int first, int count) {
+  bool whole = grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
+  each_other(depth, whole, [&](int v, int first, int count) {
     grid_.lay_out_places(depth, v, first, count);
     start(depth, v, first, count);
   });
   limit_growth(depth);
-  rims_.find(depth, radii_, grid_, balls, exact, everything);
+  rims_.find(depth, radii_, grid_, balls, exact, whole);
   if (rims_.largest_half() > grid_.margin) {
-    everything = grid_.make_room(depth, rims_.largest_half());
+    whole = grid_.make_room(depth, rims_.largest_half());
     each_row(depth, [&](std::size_t v) {
       grid_.lay_out_places(depth, static_cast<int>(v), 0, depth.columns);
     });
   }
-  each_other(depth, everything,
-             [&](int v, int first, int count) { lay_out(depth, v, first, count); });
-  each_other(depth, everything,
-             [&](int v, int first, int count) { trust(depth, v, first, count); });
+  each_other(depth, whole, [&](int v, int first, int count) { lay_out(depth, v, first, count); });
+  each_other(depth, whole, [&](int v, int first, int count) { trust(depth, v, first, count); });
   if (rims_.largest_half() > 0) rims_.weigh(depth, radii_, grid_, areas_);
 }
 
