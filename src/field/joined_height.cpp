@@ -14,9 +14,8 @@ using Eigen::Vector3d;
 // leave, B the smooth surface, V = sum v.
 Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
   simd::EdgeSums sums;
-  place.functions->edges(*place.columns, place.columns->begin_of(place.label),
-                         place.columns->begin_of(place.label + 1), place.kernel == Kernel::wendland,
-                         place.x, sums);
+  place.functions->edges(*place.columns, place.near_of(place.label), place.near_of(place.label + 1),
+                         place.kernel == Kernel::wendland, place.x, sums);
   if (!(sums.v > 0)) return smooth;
   const double inverse = 1 / place.sums().v;
   const double gain = inverse * (sums.vh - smooth.f * sums.v);

@@ -28,8 +28,9 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
     double sure = 0;
     for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; ++i) {
       const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
-      const double w =
-          c.weight[i] * evaluate(surface.options.kernel, q.squaredNorm() * c.inverse_r2[i]).w;
+      const double r2 = q.squaredNorm() * c.inverse_r2[i];
+      if (r2 >= 1) continue;
+      const double w = c.weight[i] * evaluate(surface.options.kernel, r2).w;
       by_source[s] += w;
       total += w;
       material += w * patch.material(i);

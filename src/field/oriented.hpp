@@ -62,18 +62,22 @@ struct FieldPlace {
 
   [[nodiscard]] const simd::LabelSums& sums() const noexcept { return all->label[label]; }
 
+  /// Where the groups of a label's points begin that reach here.
+  [[nodiscard]] std::uint32_t near_of(int of_label) const noexcept {
+    return all->near_begin[of_label * columns->sources];
+  }
+
   /// sum grad v_i b_i over the label's points.
   [[nodiscard]] Eigen::Vector3d gradient(const simd::Linear& b) const noexcept {
     Eigen::Vector3d sum;
-    functions->gradient(*columns, columns->begin_of(label), columns->begin_of(label + 1), x, b,
-                        sum.data());
+    functions->gradient(*columns, near_of(label), near_of(label + 1), x, b, sum.data());
     return sum;
   }
   /// The same over one source's.
   [[nodiscard]] Eigen::Vector3d gradient_of_source(int source,
                                                    const simd::Linear& b) const noexcept {
     Eigen::Vector3d sum;
-    const std::uint32_t* const run = columns->run_begin + label * columns->sources + source;
+    const std::uint32_t* const run = all->near_begin + label * columns->sources + source;
     functions->gradient(*columns, run[0], run[1], x, b, sum.data());
     return sum;
   }

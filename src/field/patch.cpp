@@ -26,7 +26,8 @@ Patch::Patch(std::size_t capacity)
       pitch_(capacity_ + kFilling + 2 * kCacheLine),
       data_(kColumns * pitch_, 0.0),
       selection_(capacity_),
-      facing_(capacity_) {
+      facing_(capacity_),
+      near_(pitch_ / simd::kLanes + 1) {
   layers_.reserve(kMostLayers);
   signs_.reserve(capacity_);
   labels_.reserve(capacity_);
@@ -43,6 +44,7 @@ Patch::Patch(std::size_t capacity)
   columns_.edge_height = column(kEdgeHeight);
   columns_.edge_share = column(kEdgeShare);
   columns_.slope = column(kSlope);
+  columns_.near = near_.data();
 }
 
 bool Patch::gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
@@ -162,75 +164,90 @@ void Patch::lay_out() noexcept {
   each([&](std::size_t layer, std::size_t k) { slots_[k] = next[run_of(layer, k)]++; });
 }
 
-/// Brings all columns to what the layers are now.
+/// Brings all columns to what the layers are now. Layers that fade and do not change otherwise get
+/// new weights alone.
 void Patch::fill(std::span<const ActiveLayer> layers) noexcept {
-  const bool moved = any(layers, [](const ActiveLayer& layer) { return layer.rate > 0; });
+  const bool moved = any(layers, moves);
   const bool all = moved != has_motion_;
   has_motion_ = moved;
+  bool filled = false;
   for (std::size_t k = 0; k < layers.size(); ++k) {
     const ActiveLayer& now = layers[k];
     const ActiveLayer before = std::exchange(layers_[k], now);
-    if (all || now.progress != before.progress || now.weight != before.weight ||
-        now.rate != before.rate) {
+    const bool later = now.progress != before.progress || now.rate != before.rate;
+    if (all || (later && has_end(*now.points))) {
       fill_layer(k);
+      filled = true;
+    } else if (now.weight != before.weight) {
+      fill_weights(k);
     }
   }
-  measure();
+  if (filled) measure();
 }
 
 void Patch::fill_all() noexcept {
-  has_motion_ = any(layers_, [](const ActiveLayer& layer) { return layer.rate > 0; });
+  has_motion_ = any(layers_, moves);
   for (std::size_t k = 0; k < layers_.size(); ++k) fill_layer(k);
   measure();
+}
+
+/// Visits a layer's points: place in the layer, place in the columns, sign.
+void Patch::each_of(std::size_t k, const auto& visit) noexcept {
+  std::size_t chosen = selection_.runs()[k].first;
+  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
+    visit(i, slots_[chosen], signs_[chosen]);
+    ++chosen;
+  }
 }
 
 void Patch::fill_layer(std::size_t k) noexcept {
   const ActiveLayer& layer = layers_[k];
   const SurfacePoints& points = *layer.points;
-  std::size_t chosen = selection_.runs()[k].first;
-  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const std::int8_t sign = signs_[chosen];
-    const std::uint32_t at = slots_[chosen++];
+  each_of(k, [&](std::uint32_t i, std::uint32_t at, std::int8_t) {
     const Eigen::Vector3d position = position_now(layer, i, center_);
     for (int axis = 0; axis < 3; ++axis) column(kPosition + axis)[at] = position[axis];
     const double radius = options_.radius > 0 ? options_.radius : radius_now(layer, i);
     column(kRadius)[at] = radius;
-    column(kInverseR2)[at] = inverse_square(radius);
-    column(kWeight)[at] =
-        sign == 0 ? 0 : weight_now(layer, i, options_.raw_weights) * selection_.stride();
+    column(kInverseR2)[at] = 1 / (radius * radius);
     if (has_materials_)
       column(kMaterial)[at] = points.materials.empty() ? 1.0 : points.materials[i];
     if (has_presences_) column(kPresence)[at] = presence_now(layer, i);
-  }
+    if (!has_motion_) return;
+    const Eigen::Vector3d velocity = velocity_now(layer, i);
+    for (int axis = 0; axis < 3; ++axis) column(kVelocity + axis)[at] = velocity[axis];
+  });
+  fill_weights(k);
   if (options_.normals) fill_normals(k);
   if (columns_.edges) fill_edges(k);
-  if (has_motion_) fill_velocities(k);
+}
+
+void Patch::fill_weights(std::size_t k) noexcept {
+  const ActiveLayer& layer = layers_[k];
+  each_of(k, [&](std::uint32_t i, std::uint32_t at, std::int8_t sign) {
+    column(kWeight)[at] =
+        sign == 0 ? 0 : weight_now(layer, i, options_.raw_weights) * selection_.stride();
+  });
 }
 
 void Patch::fill_normals(std::size_t k) noexcept {
   const ActiveLayer& layer = layers_[k];
   const bool has_normals = !layer.points->normals.empty();
-  std::size_t chosen = selection_.runs()[k].first;
-  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const std::uint32_t at = slots_[chosen];
-    const Eigen::Vector3d normal = signs_[chosen++] * normal_now(layer, i);
+  each_of(k, [&](std::uint32_t i, std::uint32_t at, std::int8_t sign) {
+    const Eigen::Vector3d normal = sign * normal_now(layer, i);
     for (int axis = 0; axis < 3; ++axis) column(kNormal + axis)[at] = normal[axis];
     column(kConfidence)[at] = has_normals ? confidence_now(layer, i) : 0.0;
-  }
+  });
 }
 
 void Patch::fill_edges(std::size_t k) noexcept {
-  std::size_t chosen = selection_.runs()[k].first;
-  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const double sign = signs_[chosen];
-    const std::uint32_t at = slots_[chosen++];
+  each_of(k, [&](std::uint32_t i, std::uint32_t at, double sign) {
     const SurfacePoints::EdgePlane edge = edge_now(layers_[k], i);
     for (int axis = 0; axis < 3; ++axis) {
       column(kEdgeNormal + axis)[at] = sign * static_cast<double>(edge.normal[axis]);
     }
     column(kEdgeHeight)[at] = sign * static_cast<double>(edge.height);
     column(kEdgeShare)[at] = sign * static_cast<double>(edge.share);
-  }
+  });
 }
 
 /// Does any of the chosen points lie beside an edge?
@@ -240,15 +257,6 @@ bool Patch::knows_edges() const noexcept {
     if (std::ranges::any_of(selection_.places(selection_.runs()[k]), beside)) return true;
   }
   return false;
-}
-
-void Patch::fill_velocities(std::size_t k) noexcept {
-  const std::uint32_t* slot = slots_.data() + selection_.runs()[k].first;
-  for (const std::uint32_t i : selection_.places(selection_.runs()[k])) {
-    const std::uint32_t at = *slot++;
-    const Eigen::Vector3d velocity = velocity_now(layers_[k], i);
-    for (int axis = 0; axis < 3; ++axis) column(kVelocity + axis)[at] = velocity[axis];
-  }
 }
 
 /// Computes the mean, the smallest and the common radius (0: radii differ).
@@ -264,15 +272,6 @@ void Patch::measure() noexcept {
   }
   columns_.uniform_radius = smallest_radius_ == largest ? largest : 0;
   mean_radius_ = count_ > 0 ? sum / static_cast<double>(count_) : extra_;
-}
-
-/// Neighbours mostly share their radius, and a division is what a gather would spend most time on.
-double Patch::inverse_square(double radius) noexcept {
-  if (radius != last_radius_) {
-    last_radius_ = radius;
-    last_inverse_r2_ = 1 / (radius * radius);
-  }
-  return last_inverse_r2_;
 }
 
 /// Fills up with points that weigh nothing.

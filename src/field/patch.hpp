@@ -124,14 +124,14 @@ class Patch {
   [[nodiscard]] std::size_t followed_by(const ActiveLayer& now) const noexcept;
   void lay_out() noexcept;
   void fill(std::span<const ActiveLayer> layers) noexcept;
+  void each_of(std::size_t k, const auto& visit) noexcept;
   void fill_layer(std::size_t k) noexcept;
   void fill_all() noexcept;
+  void fill_weights(std::size_t k) noexcept;
   void fill_normals(std::size_t k) noexcept;
   void fill_edges(std::size_t k) noexcept;
   [[nodiscard]] bool knows_edges() const noexcept;
-  void fill_velocities(std::size_t k) noexcept;
   void measure() noexcept;
-  [[nodiscard]] double inverse_square(double radius) noexcept;
   void pad(std::uint32_t begin, std::uint32_t end) noexcept;
 
   std::size_t capacity_;
@@ -143,6 +143,7 @@ class Patch {
   std::vector<std::int8_t> signs_;    // of the chosen places, layer by layer
   std::vector<std::uint8_t> labels_;  // of the same
   std::vector<std::uint32_t> slots_;  // where each of them is in the columns
+  std::vector<std::uint32_t> near_;   // scratch of the sums
   simd::Columns columns_{};
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   double extra_ = -1;
@@ -155,8 +156,6 @@ class Patch {
   std::size_t count_ = 0;  // without the padding
   double smallest_radius_ = 0;
   double mean_radius_ = 0;
-  double last_radius_ = 0;
-  double last_inverse_r2_ = 0;
 };
 
 }  // namespace palpate

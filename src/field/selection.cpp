@@ -85,6 +85,13 @@ double presence_now(const ActiveLayer& layer, std::uint32_t i) noexcept {
   return lerp(start, points.end_presences[i], layer.progress);
 }
 
+bool has_end(const SurfacePoints& points) noexcept {
+  return !(points.end_positions.empty() && points.end_normals.empty() &&
+           points.end_density_weights.empty() && points.end_radii.empty() &&
+           points.end_confidences.empty() && points.end_presences.empty() &&
+           points.edges.end.empty());
+}
+
 namespace {
 
 using Eigen::Vector3d;

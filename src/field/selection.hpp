@@ -82,6 +82,13 @@ struct ActiveLayer {
          (points.end_density_weights.empty() || points.end_density_weights[i] <= 0);
 }
 
+/// Are the points others at their end (B) than at their start (A)?
+[[nodiscard]] bool has_end(const SurfacePoints& points) noexcept;
+/// Do a layer's points change their positions now?
+[[nodiscard]] inline bool moves(const ActiveLayer& layer) noexcept {
+  return layer.rate > 0 && !layer.points->end_positions.empty();
+}
+
 /// Do any of the points have a presence of their own?
 [[nodiscard]] inline bool fades(const SurfacePoints& points) noexcept {
   return !points.presences.empty() || !points.end_presences.empty();

@@ -34,7 +34,8 @@ void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const doubl
   Lanes vh = 0;
   Vector grad_v;
   Vector grad_vh;
-  for (std::uint32_t i = begin; i < end; i += kLanes) {
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const std::uint32_t i = c.near[k];
     const Lanes signed_share = load(c.edge_share + i);
     const Lanes share = stdx::abs(signed_share);
     if (!(sum(share) > 0)) continue;
@@ -45,8 +46,8 @@ void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const doubl
     Lanes width = kRoundEdge;
     stdx::where(sign < 0, width) = kRoundCrease;
     width = width * load(c.radius + i) + kNoWidth;
-    const Lanes k = load(c.edge_height + i) - dot(m, q);
-    const Larger both = larger(-sign * dot(n, q), sign * k, width);
+    const Lanes beyond = load(c.edge_height + i) - dot(m, q);
+    const Larger both = larger(-sign * dot(n, q), sign * beyond, width);
     const Lanes height = sign * both.height;
     const Lanes trust = share * load(c.confidence + i);
     const Lanes w = load(c.weight + i) * kernel<kWendland>(dot(q, q) * load(c.inverse_r2 + i)).w;

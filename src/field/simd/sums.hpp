@@ -28,11 +28,11 @@ struct Columns {
   const double* edge_share;               // 0-1; below 0: in a crease
   bool edges;                             // does any point lie beside an edge?
   double* slope;                          // scratch: a_i C_k g_i / R_i^2 of the last call of `all`
+  std::uint32_t* near;                    // scratch: the groups of kLanes points that reach there
   std::uint32_t run_begin[kMaxRuns + 1];  // run of a label l and source s: l * sources + s
   int sources;
   int labels;  // so many, from the first on; the others have no points
 
-  std::uint32_t begin_of(int label) const { return run_begin[label * sources]; }
   std::uint32_t end() const { return run_begin[labels * sources]; }
 };
 
@@ -58,6 +58,7 @@ struct LabelSums : Moments {
 };
 
 struct Sums {
+  std::uint32_t near_begin[kMaxRuns + 1];  // in Columns::near, of each run
   LabelSums label[kLabels];
   double w[kMaxSources];  // sum w_i, for each source
   double grad_w[kMaxSources][3];
@@ -89,14 +90,14 @@ struct Functions {
   void (*weights)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
   // All sums; leaves the slopes in their scratch column.
   void (*all)(const Columns&, bool wendland, const double x[3], Sums&) noexcept;
-  // sum grad v_i b_i over the points [begin, end), with the slopes that `all` left for the same x.
+  // sum grad v_i b_i over the groups [begin, end) of Columns::near that `all` left for the same x.
   void (*gradient)(const Columns&, std::uint32_t begin, std::uint32_t end, const double x[3],
                    const Linear&, double out[3]) noexcept;
   // For each source an upper bound of sum w_i over the ball (x, h).
   void (*bound)(const Columns&, bool wendland, const double x[3], double h,
                 double out[kMaxSources]) noexcept;
 
-  // Over the points [begin, end), with the slopes that `all` left for the same x.
+  // Over the groups [begin, end) of Columns::near that `all` left for the same x.
   void (*edges)(const Columns&, std::uint32_t begin, std::uint32_t end, bool wendland,
                 const double x[3], EdgeSums&) noexcept;
 };

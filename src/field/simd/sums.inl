@@ -180,14 +180,31 @@ inline void clear(LabelSums& out) {
   for (int axis = 0; axis < 3; ++axis) out.grad_v[axis] = out.vq[axis] = out.vn[axis] = 0;
 }
 
+// Lists the groups of points that reach to x. The others would add zeros to all sums; in a patch
+// that is much wider than a support they are most of it.
+inline void find_near(const Columns& c, const double x[3], Sums& out) noexcept {
+  std::uint32_t count = 0;
+  for (int run = 0; run < c.labels * c.sources; ++run) {
+    out.near_begin[run] = count;
+    for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
+      const Vector q = offsets(c, i, x);
+      c.near[count] = i;
+      count += stdx::any_of(dot(q, q) * load(c.inverse_r2 + i) < 1.0) ? 1 : 0;
+    }
+  }
+  out.near_begin[c.labels * c.sources] = count;
+}
+
 template <bool kWendland, bool kUneven>
 void all(const Columns& c, const double x[3], Sums& out) noexcept {
   clear(c, out);
+  find_near(c, x, out);
   for (int label = 0; label < c.labels; ++label) clear(out.label[label]);
   for (int run = 0; run < c.labels * c.sources; ++run) {
     WeightSums<kUneven> sums;
     NormalSums normals;
-    for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
+    for (std::uint32_t g = out.near_begin[run]; g < out.near_begin[run + 1]; ++g) {
+      const std::uint32_t i = c.near[g];
       const Vector q = offsets(c, i, x);
       const Lanes inverse_r2 = load(c.inverse_r2 + i);
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
@@ -208,7 +225,8 @@ void gradient(const Columns& c, std::uint32_t begin, std::uint32_t end, const do
   const Vector alpha{b.alpha[0], b.alpha[1], b.alpha[2]};
   const Vector beta{b.beta[0], b.beta[1], b.beta[2]};
   Vector total;
-  for (std::uint32_t i = begin; i < end; i += kLanes) {
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const std::uint32_t i = c.near[k];
     const Vector q = offsets(c, i, x);
     const Vector n = load3(c.normal, i);
     const Lanes bi = dot(n, alpha) + dot(q, beta) + dot(n, q) * b.gamma + b.delta;
