@@ -122,7 +122,8 @@ bool Patch::follows(const ActiveLayer& now, std::size_t k) const noexcept {
   const Selection::Run& run = selection_.runs()[k];
   const bool same = now.points == layers_[k].points && now.source == layers_[k].source &&
                     now.least_radius == layers_[k].least_radius;
-  const bool on_the_way = now.progress >= run.from && now.progress <= run.until;
+  const bool on_the_way =
+      !has_end(*now.points) || (now.progress >= run.from && now.progress <= run.until);
   return same && on_the_way && (run.counts || !(now.weight > 0));
 }
 

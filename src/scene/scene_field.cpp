@@ -20,11 +20,11 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-// How far a patch reaches beyond what it is gathered for, at rest and where points move, and how
+// How far a patch reaches beyond what it is gathered for, at rest and where points change, and how
 // much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
-constexpr double kMovingMargin = 0.62;  // R
-constexpr double kReserve = 0.1;        // R
+constexpr double kWideMargin = 0.62;
+constexpr double kReserve = 0.1;    // R
 constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
 constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps follow (judgement)
 
@@ -70,7 +70,7 @@ struct SceneField::State {
   void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
   [[nodiscard]] double radius() const noexcept;
-  [[nodiscard]] double margin() const noexcept;
+  [[nodiscard]] double margin(bool wide) const noexcept;
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
@@ -87,7 +87,8 @@ struct SceneField::State {
   double frame_interval = 0;  // the longest of any source
   double now = 0;
   bool other_kernel = false;
-  bool moving = false;
+  bool changing = false;     // do points or weights of the layers change now?
+  bool moving = false;       // do points move?
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
@@ -110,7 +111,7 @@ void SceneField::State::list_layers() noexcept {
   frame_interval = 0;
   cloud_duration = 0;
   other_kernel = false;
-  moving = false;
+  changing = moving = false;
   plain_points = true;
   typical_radius = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < views.size(); ++s) {
@@ -134,8 +135,9 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   layer.last_weight = newest.layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
-  moving = moving || layer.rate > 0;
-  plain_points &= !moving && layer.points->materials.empty() && !fades(*layer.points);
+  changing = changing || layer.rate > 0;
+  moving = moving || moves(layer);
+  plain_points &= !changing && layer.points->materials.empty() && !fades(*layer.points);
   layers[layer_count++] = layer;
 }
 
@@ -158,8 +160,8 @@ double SceneField::State::radius() const noexcept {
 }
 
 /// How far a patch reaches beyond what it is gathered for, m.
-double SceneField::State::margin() const noexcept {
-  return (moving ? kMovingMargin : kMargin) * radius();
+double SceneField::State::margin(bool wide) const noexcept {
+  return (wide ? kWideMargin : kMargin) * radius();
 }
 
 /// Points around the proxy and the first stretch of its way to the hand.
@@ -170,7 +172,7 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
-  const double extra = 0.5 * stretch + margin();
+  const double extra = 0.5 * stretch + margin(moving);
   if (!patches.near_covers(balls, extra)) patches.gather_near(0.5 * (proxy + end), extra);
 }
 
@@ -217,7 +219,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin(state.changing));
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
@@ -228,7 +230,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
-  const Patch* const patch = state.patches.patch_for(ball, state.margin());
+  const Patch* const patch = state.patches.patch_for(ball, state.margin(state.changing));
   return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
@@ -255,7 +257,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
-  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin(state.changing));
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> sure{};
   std::ranges::transform(state.views, sure.begin(), &SourceView::presence);
