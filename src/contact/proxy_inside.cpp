@@ -146,6 +146,7 @@ void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   touching_ = false;
   sliding_ = false;
   cut_short_ = false;
+  looked_ = 0;
   waiting_ = false;
 }
 
@@ -196,7 +197,8 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
       contact.notes |= ContactNote::reanchored;
     }
   }
-  if (!at) at = recover(probe, position_, normal_);
+  if (at) looked_ = 0;
+  if (!at) at = recover(probe, position_, normal_, looked_);
   cut_short_ = false;
   if (at || !(here.value > 0)) return at;
   const Sweep way = first_contact(probe, position_, hip);

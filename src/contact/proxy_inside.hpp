@@ -133,6 +133,7 @@ class Proxy::Inside {
   bool touching_ = false;
   bool sliding_ = false;
   bool cut_short_ = false;  // the last step's search, by its budget
+  int looked_ = 0;          // places that recover() has looked at in steps before
   bool waiting_ = false;    // for a surface that has vanished
   bool fault_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/probe.hpp"
 
@@ -235,7 +236,7 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
                                      const Eigen::Vector3d& normal, double radius) noexcept {
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * radius);
   const Eigen::Vector3d top = position + reach * normal;
-  if (probe.inside(top)) return std::nullopt;
+  if (!(probe.sample_on_sweep(top).value > 0)) return std::nullopt;
   const Sweep way = first_contact(probe, top, position);
   if (way.end != Sweep::End::hit) return std::nullopt;
   const std::optional<SurfacePoint> found = project(probe, way.position);
@@ -243,12 +244,17 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
 }
 
 std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,
-                                    const Eigen::Vector3d& normal) noexcept {
+                                    const Eigen::Vector3d& normal, int& looked) noexcept {
+  const int first = std::exchange(looked, 0);
   if (normal.norm() < kLeastNormal) return std::nullopt;
   const double radius = probe.step_length();
-  for (int k = 1; k <= kRecoverySteps; ++k) {
+  for (int k = first + 1; k <= kRecoverySteps; ++k) {
+    if (probe.swept >= kSweepWork) {
+      looked = k - 1;
+      return std::nullopt;
+    }
     const Eigen::Vector3d place = position + k * kRecoveryStep * radius * normal;
-    const Sample here = probe.sample(place);
+    const Sample here = probe.sample_on_sweep(place);
     if (here.value > 0) return project(probe, place, here);
   }
   return std::nullopt;

@@ -57,8 +57,10 @@ struct Slide {
                                                    double radius) noexcept;
 
 /// Looks for the surface after Newton has failed: from the first free place along the last normal,
-/// up to 2 R away.
+/// up to 2 R away. `looked`: places that have been looked at; a search that the sweeps' budget ends
+/// goes on there in the next step, and one that has come to its end leaves 0.
 [[nodiscard]] std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,
-                                                  const Eigen::Vector3d& normal) noexcept;
+                                                  const Eigen::Vector3d& normal,
+                                                  int& looked) noexcept;
 
 }  // namespace palpate

@@ -11,12 +11,12 @@ using Eigen::Vector3d;
 void PatchCache::set_layers(std::span<const ActiveLayer> layers, int sources, bool same) noexcept {
   layers_ = layers;
   sources_ = sources;
-  if (!same) step_.far.patch.clear();
+  if (!same) clear_far();
   others_ = others_ || !same;
   // Nobody has renewed it: its layers may be gone, and others come to their addresses.
   if (near_.patch.outdated()) near_.patch.clear();
   near_.patch.advance(layers_);
-  step_.far.stale = true;
+  for (Slot& far : step_.far) far.stale = true;
 }
 
 void PatchCache::set_tool(const Vector3d& proxy) noexcept {
@@ -31,9 +31,11 @@ void PatchCache::set_tool(const Vector3d& proxy) noexcept {
   const Ball here{tool_.proxy, 0};
   const bool covered = near_.patch.covers(here);
   // A step that went beyond the near patch knows from which side it came.
-  if (!covered && step_.far.patch.covers(here)) near_.patch.sides().follow(step_.far.patch.sides());
-  step_.far.patch.clear();
-  step_.far.patch.sides().forget();
+  for (Slot& far : step_.far) {
+    if (!covered && far.patch.covers(here)) near_.patch.sides().follow(far.patch.sides());
+    far.patch.sides().forget();
+  }
+  clear_far();
   const bool free =
       !tool_.touches() && (covered ? is_free(*surface_, near_.patch, here) : walk_is_free(here));
   if (free) near_.patch.sides().reopen();
@@ -47,16 +49,20 @@ void PatchCache::face_near() noexcept {
 void PatchCache::forget() noexcept {
   near_.patch.clear();
   near_.patch.sides().forget();
-  step_.far.patch.clear();
+  clear_far();
   radius_ = 0;
+}
+
+void PatchCache::clear_far() noexcept {
+  for (Slot& far : step_.far) far.patch.clear();
 }
 
 void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
   const double before = std::exchange(radius_, 0);
-  const double nearest =
-      gather(step_.far.patch, x, 0, update_visits_) ? step_.far.patch.nearest_radius(x) : 0;
+  Patch& patch = step_.far[0].patch;
+  const double nearest = gather(patch, x, 0, update_visits_) ? patch.nearest_radius(x) : 0;
   radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
-  step_.far.patch.clear();
+  clear_far();
   if (radius_ != before) near_.patch.clear();
 }
 
@@ -92,19 +98,23 @@ const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexce
 
 const Patch* PatchCache::find(const Ball& ball, double margin) const noexcept {
   if (near_.patch.covers(ball)) return &near_.patch;
-  if (step_.far.patch.covers(ball) && (!step_.far.stale || step_.far.patch.advance(layers_))) {
-    step_.far.stale = false;
-    return &step_.far.patch;
+  for (Slot& far : step_.far) {
+    if (!far.patch.covers(ball) || (far.stale && !far.patch.advance(layers_))) continue;
+    far.stale = false;
+    step_.latest = &far;
+    return &far.patch;
   }
-  step_.far.stale = false;
-  if (!step_.running)
-    step_.far.patch.sides().forget();  // what a step has seen once, it sees so to its end
-  step_.far.patch.sides().follow(near_.patch.sides());
+  Slot& oldest = step_.latest == &step_.far[0] ? step_.far[1] : step_.far[0];
+  oldest.stale = false;
+  // What a step has seen once, it sees so to its end.
+  if (step_.running) oldest.patch.sides().follow(step_.latest->patch.sides());
+  if (!step_.running) oldest.patch.sides().forget();
+  oldest.patch.sides().follow(near_.patch.sides());
+  step_.latest = &oldest;
   int alone = kGatherVisits;
   int& left = step_.running ? step_.gather_visits : alone;
-  return gather(step_.far.patch, ball.center, std::max(margin, ball.radius), left)
-             ? &step_.far.patch
-             : nullptr;
+  return gather(oldest.patch, ball.center, std::max(margin, ball.radius), left) ? &oldest.patch
+                                                                                : nullptr;
 }
 
 bool PatchCache::walk_is_free(const Ball& ball) const noexcept {

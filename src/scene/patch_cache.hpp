@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -58,7 +59,8 @@ class PatchCache {
 
   /// Does either patch cover it already?
   [[nodiscard]] bool covers(const Ball& ball) const noexcept {
-    return near_.patch.covers(ball) || step_.far.patch.covers(ball);
+    return near_.patch.covers(ball) || step_.far[0].patch.covers(ball) ||
+           step_.far[1].patch.covers(ball);
   }
 
   /// Is the ball free? Asks the index; false when the visits did not suffice.
@@ -83,17 +85,20 @@ class PatchCache {
     bool stale = false;  // must be looked at before it is used: layers or tool have moved on
   };
 
-  /// All that const calls change: what is left of a step's work, what was done, and the patch for
-  /// samples away from the path, which are rare.
+  /// All that const calls change: what is left of a step's work, what was done, and the patches for
+  /// samples away from the path, which are rare. A search that fails looks at the same places in
+  /// every step, and mostly at two that no single patch covers.
   struct Step {
-    Slot far;
-    Stance last;  // the tool after the last step
+    std::array<Slot, 2> far;
+    Slot* latest = &far[0];  // that was used
+    Stance last;             // the tool after the last step
     bool running = false;
     int gather_visits = kGatherVisits;  // left
     int free_visits = kFreeVisits;      // left
     Work work;
   };
 
+  void clear_far() noexcept;
   [[nodiscard]] const Patch* find(const Ball& ball, double margin) const noexcept;
   bool gather(Patch& patch, const Eigen::Vector3d& center, double extra, int& left) const noexcept;
   void count(const Patch& patch, bool whole, int& left) const noexcept;
