@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <vector>
+
 #include "contact/drive.hpp"
 #include "contact/probe.hpp"
 #include "contact/test_fields.hpp"
@@ -103,6 +106,52 @@ TEST(FindSurface, ThatMovedALittleNeedsNoSweep) {
     const Contact c = proxy.step(sheet, hip, kTick);
     EXPECT_TRUE(has(c.notes, ContactNote::reanchored)) << dz;
     EXPECT_LE(c.evaluations, still + 2) << dz;
+  }
+}
+
+/// Solid up to 12 mm, without a slope that leads out of it from farther below; every sample sums
+/// over 20 000 points.
+class BuriedField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    summed_ += 20000;
+    const double height = x.z() - 0.012;
+    const Vector3d slope = height > -1e-3 ? Vector3d::UnitZ().eval() : Vector3d::Zero().eval();
+    return {.value = height, .gradient = slope, .support = 1, .radius = 0.01};
+  }
+  [[nodiscard]] bool is_free(const Ball&) const noexcept override { return false; }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return {.resolution = 1e-3}; }
+  void begin_step() const noexcept override { summed_ = 0; }
+  [[nodiscard]] int points_summed() const noexcept override { return summed_; }
+
+ private:
+  mutable int summed_ = 0;
+};
+
+TEST(FindSurface, SearchThatTheBudgetEndsGoesOnInTheNextStep) {
+  const BuriedField field;
+  int looked = 0;
+  std::vector<int> ends;
+  std::optional<SurfacePoint> found;
+  while (!found && ends.size() < 10) {
+    Probe probe(field, kNoTexture, 0.01);
+    found = recover(probe, Vector3d::Zero(), Vector3d::UnitZ(), looked);
+    EXPECT_LE(probe.swept, kSweepWork + 20000 + kEvaluationWork);
+    ends.push_back(looked);
+  }
+  EXPECT_EQ(ends, (std::vector<int>{2, 4, 0}));  // the fifth place, R / 4 apart, is free
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->position.z(), 0.012, 1e-6);
+}
+
+TEST(FindSurface, SearchThatFindsNothingBeginsAgain) {
+  const BuriedField field;
+  int looked = 0;
+  for (const int wanted : {2, 4, 6, 0, 2}) {
+    Probe probe(field, kNoTexture, 0.01);
+    EXPECT_FALSE(recover(probe, {0, 0, -0.02}, Vector3d::UnitZ(), looked));
+    EXPECT_EQ(looked, wanted);
   }
 }
 

@@ -126,6 +126,30 @@ TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
   EXPECT_FALSE(patch.advance(std::vector<ActiveLayer>{{points.data(), 0, 1, 0.6, 30}}));
 }
 
+// A layer that fades in one snapshot and goes on in the next begins again at progress 0.
+TEST(PatchAdvance, LayersWhosePointsDoNotChangeMayBeginAgain) {
+  std::vector<TestPoint> sheet;
+  for (int i = -8; i <= 8; ++i) {
+    for (int j = -8; j <= 8; ++j) {
+      sheet.push_back({{4e-3 * i, 4e-3 * j, 0}, Vector3d::UnitZ(), 10e-3, 1});
+    }
+  }
+  const std::vector<SurfacePoints> points = {make_points(sheet), make_points(sheet)};
+  const auto layers = [&](double u, double weight) {
+    return std::vector<ActiveLayer>{{&points[0], 0, weight, u, 30, 1, 0.5},
+                                    {&points[1], 0, 1 - weight, u, 30, 1, 0.5}};
+  };
+  const ImplicitSurface surface{FieldOptions{}};
+  Patch patch(2048);
+  Patch afresh(2048);
+  ASSERT_TRUE(patch.gather(layers(0.5, 0.9), 1, Vector3d::Zero(), 5e-3));
+  for (const double u : {0.8, 0.1, 0.4}) {
+    ASSERT_TRUE(patch.advance(layers(u, 0.9 - 0.5 * u)));
+    ASSERT_TRUE(afresh.gather(layers(u, 0.9 - 0.5 * u), 1, Vector3d::Zero(), 5e-3));
+    expect_same(patch, afresh, surface, {1e-3, 2e-3, 1e-3});
+  }
+}
+
 TEST(PatchRenew, IsAsGatheringAfreshAndLooksAtChangedLayersAlone) {
   std::vector<SurfacePoints> points;
   for (unsigned seed = 1; seed <= 4; ++seed) points.push_back(moving_sheet(seed));

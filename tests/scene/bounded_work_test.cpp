@@ -75,6 +75,22 @@ TEST(BoundedWork, OutsideOfAStepSamplesAreBoundedOneByOne) {
   EXPECT_FALSE(has(field.notes(), FieldNote::work_spent));
 }
 
+TEST(BoundedWork, TwoPlacesAwayFromTheToolAreGatheredOnceEach) {
+  Scene scene;
+  scene.add("plane").publish(test::still(test::plane(0)));
+  SceneField field(scene);
+  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  const std::uint64_t before = field.gathers();
+  for (int step = 0; step < 3; ++step) {
+    field.begin_step();
+    for (int k = 0; k < 10; ++k) {
+      EXPECT_NEAR(field.sample({k % 2 == 0 ? 50e-3 : -50e-3, 0, 2e-3}).value, 2e-3, 1e-6);
+    }
+    field.end_step(Vector3d::Zero(), Vector3d::Zero());
+  }
+  EXPECT_EQ(field.gathers() - before, 2U);
+}
+
 /// A sheet that rises by `rise` from one snapshot to the next.
 std::unique_ptr<Snapshot> rising(double from, double rise, double start, double duration) {
   SurfacePoints points = test::make_points(test::plane(from));
