@@ -32,11 +32,11 @@ void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eige
 }
 
 // Keeps the spring of a contact whose surface was not found in this step, at the place to which the
-// proxy came. It fades after kKeepLost, unless the search had only run out of its budget.
+// proxy came. It fades after kKeepLost, unless a sweep had only run out of its budget.
 void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   contact.normal = normal_;
-  if (!cut_short_) {
+  if (!search_.cut_short) {
     contact.notes |= ContactNote::lost;
     since_.lost += dt;
   }

@@ -72,13 +72,6 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   return sample;
 }
 
-Sample Probe::sample_on_sweep(const Eigen::Vector3d& x) noexcept {
-  const int before = work();
-  const Sample result = sample(x);
-  swept += work() - before;
-  return result;
-}
-
 bool Probe::is_free(const Ball& ball) noexcept {
   ++evaluations_;
   return field_.is_free(ball);

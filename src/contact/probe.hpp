@@ -55,8 +55,6 @@ class Probe {
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) noexcept;
   [[nodiscard]] bool is_free(const Ball& ball) noexcept;
-  /// The same as sample(), paid by the sweeps' budget.
-  [[nodiscard]] Sample sample_on_sweep(const Eigen::Vector3d& x) noexcept;
   [[nodiscard]] bool inside(const Eigen::Vector3d& x) noexcept { return !(sample(x).value > 0); }
 
   [[nodiscard]] const Field& field() const noexcept { return field_; }

@@ -65,7 +65,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   contact.evaluations = probe.evaluations();
   const double jump = unexplained_jump(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
-  if (changed && jump > std::max(probe.traits().reanchor_reach, kFastest * dt)) {
+  if (changed && jump > std::max(probe.traits().step, kFastest * dt)) {
     if (held) fading_.take(before, tank.stiffness());
     take_over(held ? tank : tank_, hip, contact);
   } else if (!held && touching_ && !first && !changed) {
@@ -145,14 +145,13 @@ void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   since_.away = 0;
   touching_ = false;
   sliding_ = false;
-  cut_short_ = false;
-  looked_ = 0;
+  search_ = {};
   waiting_ = false;
 }
 
 // The next step has the whole budget for where this one stopped: it does not re-anchor first.
 void Proxy::Inside::cut_short(Contact& contact) noexcept {
-  cut_short_ = true;
+  search_.cut_short = true;
   contact.notes |= ContactNote::sweep_truncated;
 }
 
@@ -186,20 +185,22 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
                                                         Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
   const bool changed = probe.traits().revision != revision_;
-  const bool moved = !cut_short_ && surface_moved(probe, here, normal_, changed);
+  const bool moved = !search_.cut_short && surface_moved(probe, here, normal_, changed);
   const double radius = probe.step_length();  // at the proxy: Newton may end where it is another
   std::optional<SurfacePoint> at = project(probe, position_, here);
   if (moved) {
     const bool same = at && is_same_place(*at, position_, normal_);
-    const auto found = same ? at : reanchor(probe, position_, normal_, radius);
+    bool cut = false;
+    const auto found = same ? at : reanchor(probe, position_, normal_, radius, cut);
+    if (cut) at.reset();  // another place may be the underside of what the sweep did not come to
     if (found) {
       at = found;
       contact.notes |= ContactNote::reanchored;
     }
   }
-  if (at) looked_ = 0;
-  if (!at) at = recover(probe, position_, normal_, looked_);
-  cut_short_ = false;
+  if (at) search_.looked = 0;
+  if (!at) at = recover(probe, position_, normal_, search_.looked);
+  search_.cut_short = false;
   if (at || !(here.value > 0)) return at;
   const Sweep way = first_contact(probe, position_, hip);
   if (way.end == Sweep::End::hit) return project(probe, way.position);

@@ -93,6 +93,12 @@ class Proxy::Inside {
     double away = 0;  // s that the hand has been in free air, far from the proxy
   };
 
+  /// What the budget left of the last step's search.
+  struct Search {
+    bool cut_short = false;
+    int looked = 0;  // places that recover() has looked at
+  };
+
   [[nodiscard]] bool is_held() const noexcept { return touching_ && !waiting_; }
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
@@ -128,13 +134,12 @@ class Proxy::Inside {
   Eigen::Vector3d pressed_ = Eigen::Vector3d::Zero();  // the hand, when its surface vanished
   double step_length_ = 0;                             // R where it was last known, m
   Times since_;
+  Search search_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;
   bool touching_ = false;
   bool sliding_ = false;
-  bool cut_short_ = false;  // the last step's search, by its budget
-  int looked_ = 0;          // places that recover() has looked at in steps before
-  bool waiting_ = false;    // for a surface that has vanished
+  bool waiting_ = false;  // for a surface that has vanished
   bool fault_ = false;
 };
 

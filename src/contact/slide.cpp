@@ -233,11 +233,13 @@ bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
 }
 
 std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
-                                     const Eigen::Vector3d& normal, double radius) noexcept {
+                                     const Eigen::Vector3d& normal, double radius,
+                                     bool& cut) noexcept {
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * radius);
   const Eigen::Vector3d top = position + reach * normal;
-  if (!(probe.sample_on_sweep(top).value > 0)) return std::nullopt;
+  if (probe.inside(top)) return std::nullopt;
   const Sweep way = first_contact(probe, top, position);
+  cut = way.end == Sweep::End::truncated;
   if (way.end != Sweep::End::hit) return std::nullopt;
   const std::optional<SurfacePoint> found = project(probe, way.position);
   return found && found->normal.dot(normal) > kSameWay ? found : std::nullopt;
@@ -249,12 +251,14 @@ std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& positio
   if (normal.norm() < kLeastNormal) return std::nullopt;
   const double radius = probe.step_length();
   for (int k = first + 1; k <= kRecoverySteps; ++k) {
-    if (probe.swept >= kSweepWork) {
+    if (k > first + 1 && probe.swept >= kSweepWork) {
       looked = k - 1;
       return std::nullopt;
     }
     const Eigen::Vector3d place = position + k * kRecoveryStep * radius * normal;
-    const Sample here = probe.sample_on_sweep(place);
+    const int before = probe.work();
+    const Sample here = probe.sample(place);
+    probe.swept += probe.work() - before;
     if (here.value > 0) return project(probe, place, here);
   }
   return std::nullopt;

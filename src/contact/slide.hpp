@@ -51,14 +51,16 @@ struct Slide {
                                  const Eigen::Vector3d& normal) noexcept;
 
 /// Looks for the surface from above, along the last normal, within the field's re-anchor reach (at
-/// least half of `radius`, R there, m). Empty when there is none that faces the same way.
+/// least half of `radius`, R there, m). Empty when there is none that faces the same way, or the
+/// sweeps' budget ended the look (`cut`).
 [[nodiscard]] std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& position,
-                                                   const Eigen::Vector3d& normal,
-                                                   double radius) noexcept;
+                                                   const Eigen::Vector3d& normal, double radius,
+                                                   bool& cut) noexcept;
 
 /// Looks for the surface after Newton has failed: from the first free place along the last normal,
-/// up to 2 R away. `looked`: places that have been looked at; a search that the sweeps' budget ends
-/// goes on there in the next step, and one that has come to its end leaves 0.
+/// up to 2 R away. `looked`: places that have been looked at; a search that the sweeps' budget
+/// ends, after one place at least, goes on there in the next step. One that has come to its end
+/// leaves 0.
 [[nodiscard]] std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,
                                                   const Eigen::Vector3d& normal,
                                                   int& looked) noexcept;

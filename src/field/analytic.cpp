@@ -52,7 +52,8 @@ Surface AnalyticField::surface(const Eigen::Vector3d&) const noexcept {
 Field::Traits AnalyticField::traits() const noexcept {
   return {.resolution = options_.resolution,
           .revision = revision_,
-          .reanchor_reach = options_.reanchor_reach};
+          .reanchor_reach = options_.reanchor_reach,
+          .step = options_.reanchor_reach};
 }
 
 void AnalyticField::set_pose(const Eigen::Isometry3d& T_world_shape) noexcept {
@@ -157,6 +158,7 @@ Field::Traits UnionField::traits() const noexcept {
     const Field::Traits traits = part->traits();
     all.resolution = std::min(all.resolution, traits.resolution);
     all.reanchor_reach = std::max(all.reanchor_reach, traits.reanchor_reach);
+    all.step = std::max(all.step, traits.step);
     all.revision += traits.revision;
   }
   return all;

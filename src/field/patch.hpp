@@ -40,9 +40,10 @@ class Patch {
   bool gather(std::span<const ActiveLayer> layers, int sources, const Eigen::Vector3d& center,
               double extra, const GatherOptions& options = {}) noexcept;
 
-  /// Moves what was gathered to where it is now. `layers`: the same as then, their progress between
-  /// what it was then and the `until` of then. False when they are others; then the patch covers
-  /// nothing. Layers are compared by address: call clear() before others can come to the same one.
+  /// Moves what was gathered to where it is now. `layers`: the same as then; where their points
+  /// change, their progress between what it was then and the `until` of then. False when they are
+  /// others; then the patch covers nothing. Layers are compared by address: call clear() before
+  /// others can come to the same one.
   bool advance(std::span<const ActiveLayer> layers) noexcept;
 
   /// Turns points to the tool where it is now and sorts them by how their sheets meet.

@@ -11,12 +11,14 @@ using Eigen::Vector3d;
 void PatchCache::set_layers(std::span<const ActiveLayer> layers, int sources, bool same) noexcept {
   layers_ = layers;
   sources_ = sources;
-  if (!same) clear_far();
+  for (Slot& far : step_.far) {
+    if (!same) far.patch.clear();
+    far.stale = true;
+  }
   others_ = others_ || !same;
   // Nobody has renewed it: its layers may be gone, and others come to their addresses.
   if (near_.patch.outdated()) near_.patch.clear();
   near_.patch.advance(layers_);
-  for (Slot& far : step_.far) far.stale = true;
 }
 
 void PatchCache::set_tool(const Vector3d& proxy) noexcept {
@@ -31,9 +33,9 @@ void PatchCache::set_tool(const Vector3d& proxy) noexcept {
   const Ball here{tool_.proxy, 0};
   const bool covered = near_.patch.covers(here);
   // A step that went beyond the near patch knows from which side it came.
-  for (Slot& far : step_.far) {
-    if (!covered && far.patch.covers(here)) near_.patch.sides().follow(far.patch.sides());
-    far.patch.sides().forget();
+  for (const std::size_t k : {1 - step_.latest, step_.latest}) {
+    const Patch& far = step_.far[k].patch;
+    if (!covered && far.covers(here)) near_.patch.sides().follow(far.sides());
   }
   clear_far();
   const bool free =
@@ -54,7 +56,10 @@ void PatchCache::forget() noexcept {
 }
 
 void PatchCache::clear_far() noexcept {
-  for (Slot& far : step_.far) far.patch.clear();
+  for (Slot& far : step_.far) {
+    far.patch.clear();
+    far.patch.sides().forget();
+  }
 }
 
 void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
@@ -62,7 +67,7 @@ void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
   Patch& patch = step_.far[0].patch;
   const double nearest = gather(patch, x, 0, update_visits_) ? patch.nearest_radius(x) : 0;
   radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
-  clear_far();
+  for (Slot& far : step_.far) far.patch.clear();
   if (radius_ != before) near_.patch.clear();
 }
 
@@ -98,21 +103,27 @@ const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexce
 
 const Patch* PatchCache::find(const Ball& ball, double margin) const noexcept {
   if (near_.patch.covers(ball)) return &near_.patch;
-  for (Slot& far : step_.far) {
+  for (const std::size_t k : {step_.latest, 1 - step_.latest}) {
+    Slot& far = step_.far[k];
     if (!far.patch.covers(ball) || (far.stale && !far.patch.advance(layers_))) continue;
     far.stale = false;
-    step_.latest = &far;
+    step_.latest = k;
     return &far.patch;
   }
-  Slot& oldest = step_.latest == &step_.far[0] ? step_.far[1] : step_.far[0];
-  oldest.stale = false;
-  // What a step has seen once, it sees so to its end.
-  if (step_.running) oldest.patch.sides().follow(step_.latest->patch.sides());
-  if (!step_.running) oldest.patch.sides().forget();
-  oldest.patch.sides().follow(near_.patch.sides());
-  step_.latest = &oldest;
   int alone = kGatherVisits;
   int& left = step_.running ? step_.gather_visits : alone;
+  if (left <= 0) {  // the patches that there are stay
+    step_.work.notes = step_.work.notes | FieldNote::work_spent;
+    return nullptr;
+  }
+  const Facing& seen = step_.far[step_.latest].patch.sides();
+  step_.latest = 1 - step_.latest;
+  Slot& oldest = step_.far[step_.latest];
+  oldest.stale = false;
+  // What a step has seen once, it sees so to its end.
+  if (step_.running) oldest.patch.sides().follow(seen);
+  if (!step_.running) oldest.patch.sides().forget();
+  oldest.patch.sides().follow(near_.patch.sides());
   return gather(oldest.patch, ball.center, std::max(margin, ball.radius), left) ? &oldest.patch
                                                                                 : nullptr;
 }

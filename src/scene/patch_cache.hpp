@@ -12,9 +12,10 @@
 
 namespace palpate {
 
-/// Holds what a field has gathered: a patch around the proxy and its path, and one around wherever
-/// else it was asked last. Counts the work and bounds it: of each gather and each walk by itself,
-/// and in an update and in a proxy's step of all of them together. Real-time but for construction.
+/// Holds what a field has gathered: a patch around the proxy and its path, and two around
+/// wherever else it was asked last. Counts the work and bounds it: of each gather and each walk by
+/// itself, and in an update and in a proxy's step of all of them together. Real-time but for
+/// construction.
 class PatchCache {
  public:
   /// The work that was done.
@@ -57,7 +58,7 @@ class PatchCache {
   /// nullptr: the visits did not suffice, so nothing is known.
   [[nodiscard]] const Patch* patch_for(const Ball& ball, double margin) const noexcept;
 
-  /// Does either patch cover it already?
+  /// Does a patch cover it already?
   [[nodiscard]] bool covers(const Ball& ball) const noexcept {
     return near_.patch.covers(ball) || step_.far[0].patch.covers(ball) ||
            step_.far[1].patch.covers(ball);
@@ -90,7 +91,7 @@ class PatchCache {
   /// every step, and mostly at two that no single patch covers.
   struct Step {
     std::array<Slot, 2> far;
-    Slot* latest = &far[0];  // that was used
+    std::size_t latest = 0;  // of these two, that was used
     Stance last;             // the tool after the last step
     bool running = false;
     int gather_visits = kGatherVisits;  // left

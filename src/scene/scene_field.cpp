@@ -23,10 +23,10 @@ using Eigen::Vector3d;
 // How far a patch reaches beyond what it is gathered for, at rest and where points change, and how
 // much of that must be left before the next one is gathered; in R (judgement).
 constexpr double kMargin = 0.35;
-constexpr double kWideMargin = 0.62;
-constexpr double kReserve = 0.1;    // R
-constexpr double kToolShare = 0.3;  // R; the largest tool radius that counts in full (judgement)
-constexpr double kFinest = 0.25;    // mean R; the least radius that sweeps follow (judgement)
+constexpr double kWideMargin = 0.62;  // R; judgement
+constexpr double kReserve = 0.1;      // R
+constexpr double kToolShare = 0.3;    // R; the largest tool radius that counts in full (judgement)
+constexpr double kFinest = 0.25;      // mean R; the least radius that sweeps follow (judgement)
 
 // A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
 constexpr double kFastestCloud = 0.5;
@@ -67,10 +67,14 @@ struct SceneField::State {
   [[nodiscard]] bool same_snapshots() noexcept;
   void list_layers() noexcept;
   void list_layer(std::size_t source, std::size_t k) noexcept;
-  void publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
-  [[nodiscard]] double radius() const noexcept;
-  [[nodiscard]] double margin(bool wide) const noexcept;
+  [[nodiscard]] double radius() const noexcept {
+    return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
+  }
+  /// How far a patch away from the path reaches beyond what it is gathered for, m.
+  [[nodiscard]] double margin() const noexcept {
+    return (moving ? kWideMargin : kMargin) * radius();
+  }
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
@@ -84,11 +88,11 @@ struct SceneField::State {
   std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
   double typical_radius = 0;                                // of the layers
   double cloud_duration = 0;  // of snapshots whose points do not move, or between them, s
+  double step = 0;            // how far surfaces may have stepped since the last tick, m
   double frame_interval = 0;  // the longest of any source
   double now = 0;
   bool other_kernel = false;
-  bool changing = false;     // do points or weights of the layers change now?
-  bool moving = false;       // do points move?
+  bool moving = false;       // do points or their weights change now?
   bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
@@ -100,8 +104,10 @@ struct SceneField::State {
 bool SceneField::State::same_snapshots() noexcept {
   bool same = true;
   for (std::size_t s = 0; s < views.size(); ++s) {
-    const Snapshot* const before = std::exchange(shown[s], views[s].current());
-    same = same && before == shown[s];
+    const Snapshot* const newest = views[s].current();
+    if (std::exchange(shown[s], newest) == newest) continue;
+    same = false;
+    if (newest) step = std::max(step, kFastestCloud * time_stepped(*newest, active()));
   }
   return same;
 }
@@ -111,7 +117,7 @@ void SceneField::State::list_layers() noexcept {
   frame_interval = 0;
   cloud_duration = 0;
   other_kernel = false;
-  changing = moving = false;
+  moving = false;
   plain_points = true;
   typical_radius = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < views.size(); ++s) {
@@ -135,9 +141,8 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   layer.last_weight = newest.layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
-  changing = changing || layer.rate > 0;
-  moving = moving || moves(layer);
-  plain_points &= !changing && layer.points->materials.empty() && !fades(*layer.points);
+  moving = moving || layer.rate > 0;
+  plain_points &= !moving && layer.points->materials.empty() && !fades(*layer.points);
   layers[layer_count++] = layer;
 }
 
@@ -155,15 +160,6 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   return found;
 }
 
-double SceneField::State::radius() const noexcept {
-  return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
-}
-
-/// How far a patch reaches beyond what it is gathered for, m.
-double SceneField::State::margin(bool wide) const noexcept {
-  return (wide ? kWideMargin : kMargin) * radius();
-}
-
 /// Points around the proxy and the first stretch of its way to the hand.
 void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept {
   const double r = radius();
@@ -172,14 +168,9 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
-  const double extra = 0.5 * stretch + margin(moving);
+  const bool wide = std::ranges::any_of(active(), moves);
+  const double extra = 0.5 * stretch + (wide ? kWideMargin : kMargin) * r;
   if (!patches.near_covers(balls, extra)) patches.gather_near(0.5 * (proxy + end), extra);
-}
-
-/// Tells every source where the tool can be.
-void SceneField::State::publish_reach(const Vector3d& hip, const Vector3d& proxy) noexcept {
-  const Reach ball = reach.update(now, hip, proxy, frame_interval, kFelt * radius());
-  for (std::size_t i = 0; i < views.size(); ++i) boards[i]->write(views[i].reader(), ball);
 }
 
 SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::string& name,
@@ -192,6 +183,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   State& state = *state_;
   if (std::isfinite(now)) state.now = now;
   bool changed = false;
+  state.step = 0;
   for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
   if (changed) {
     const bool same = state.same_snapshots();
@@ -205,7 +197,11 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();
-    state.publish_reach(hip, proxy);
+    const Reach ball =
+        state.reach.update(state.now, hip, proxy, state.frame_interval, kFelt * state.radius());
+    for (std::size_t i = 0; i < state.views.size(); ++i) {
+      state.boards[i]->write(state.views[i].reader(), ball);
+    }
     const std::uint32_t stride = state.patches.near().stride();
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
@@ -219,7 +215,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
-  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin(state.changing));
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
 }
@@ -230,7 +226,7 @@ bool SceneField::is_free(const Ball& ball) const noexcept {
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
-  const Patch* const patch = state.patches.patch_for(ball, state.margin(state.changing));
+  const Patch* const patch = state.patches.patch_for(ball, state.margin());
   return patch && palpate::is_free(state.surface, *patch, ball);
 }
 
@@ -257,7 +253,7 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
   if (state.layer_count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
-  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin(state.changing));
+  const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> sure{};
   std::ranges::transform(state.views, sure.begin(), &SourceView::presence);
@@ -277,7 +273,8 @@ Field::Traits SceneField::traits() const noexcept {
                kFinest * state.radius());
   return {.resolution = metaball ? 0.002 * smallest : smallest / 16,
           .revision = state.revision,
-          .reanchor_reach = kFastestCloud * state.cloud_duration};
+          .reanchor_reach = kFastestCloud * state.cloud_duration,
+          .step = state.step};
 }
 
 SceneField::Found SceneField::found() const noexcept {

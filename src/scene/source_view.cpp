@@ -148,6 +148,16 @@ ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
           .least_radius = least_radius_};
 }
 
+double time_stepped(const Snapshot& snapshot, std::span<const ActiveLayer> before) noexcept {
+  const auto is_new = [before](const Snapshot::Layer& layer) {
+    const auto same = [&](const ActiveLayer& shown) { return shown.points == layer.points.get(); };
+    return layer.weight_start > 0 && layer.points->end_positions.empty() &&
+           std::ranges::none_of(before, same);
+  };
+  const double lasts = std::max(snapshot.end - snapshot.start, snapshot.interval);
+  return std::ranges::any_of(snapshot.layers, is_new) ? lasts : 0;
+}
+
 double progress(const Snapshot& snapshot, double time) noexcept {
   const double duration = snapshot.end - snapshot.start;
   if (!(duration > 0)) return time < snapshot.start ? 0 : 1;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 
 #include "field/evaluate.hpp"
@@ -86,6 +87,11 @@ class SourceView {
   double share_ = 0;  // of the weights
   double faded_ = 0;  // time since presence came to 0, s
 };
+
+/// For how long a surface that a snapshot shows may have moved unseen, s: as long as it lasts if it
+/// shows points at once that were not among the layers `before`. 0: it goes on from what was there.
+[[nodiscard]] double time_stepped(const Snapshot& snapshot,
+                                  std::span<const ActiveLayer> before) noexcept;
 
 /// The stiffness and friction factors at a position of a source's surface.
 [[nodiscard]] inline Surface felt_surface(const PatchSurface& mean,

@@ -114,7 +114,7 @@ class HostileField final : public Field {
     return {.stiffness_factor = broken_ && hash(x) > 0.9 ? kNaN : 3 * hash(x) - 1};
   }
   [[nodiscard]] Field::Traits traits() const noexcept override {
-    return {.resolution = 1e-7, .revision = ++revision_, .reanchor_reach = 0.01};
+    return {.resolution = 1e-7, .revision = ++revision_, .reanchor_reach = 0.01, .step = 0.01};
   }
 
  private:

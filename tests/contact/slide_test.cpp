@@ -145,6 +145,18 @@ TEST(FindSurface, SearchThatTheBudgetEndsGoesOnInTheNextStep) {
   EXPECT_NEAR(found->position.z(), 0.012, 1e-6);
 }
 
+// A look from above that takes the whole budget in every step must not keep it from ever beginning.
+TEST(FindSurface, SearchTakesALookEvenWhereTheBudgetIsSpent) {
+  const BuriedField field;
+  int looked = 0;
+  for (const int wanted : {1, 2, 3, 4}) {
+    Probe probe(field, kNoTexture, 0.01);
+    probe.swept = kSweepWork;
+    EXPECT_FALSE(recover(probe, Vector3d::Zero(), Vector3d::UnitZ(), looked));
+    EXPECT_EQ(looked, wanted);
+  }
+}
+
 TEST(FindSurface, SearchThatFindsNothingBeginsAgain) {
   const BuriedField field;
   int looked = 0;

@@ -43,7 +43,7 @@ class SheetField final : public Field {
     return {.source = 0};
   }
   [[nodiscard]] Field::Traits traits() const noexcept override {
-    return {.resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach};
+    return {.resolution = 0.01 / 16, .revision = revision, .reanchor_reach = reach, .step = reach};
   }
 };
 

@@ -24,7 +24,7 @@ class AnalyticField : public Field {
     double step_length = 0.01;        ///< what Sample::radius says everywhere, m
     double resolution = 2e-5;         ///< Field::Traits::resolution, m
     double tool_radius = 0;           ///< radius of the proxy's ball: pushes the surface out, m
-    double reanchor_reach = 0;        ///< Field::Traits::reanchor_reach, m
+    double reanchor_reach = 0;        ///< Field::Traits::reanchor_reach and step, m
     Surface surface = {.source = 0};  ///< what every place is made of
   };
 

@@ -35,7 +35,8 @@ class Field {
   struct Traits {
     double resolution = 0;       ///< sweeps look for solid chords longer than this, m
     std::uint64_t revision = 0;  ///< grows when the surface may have moved since the last tick
-    double reanchor_reach = 0;   ///< how far the surface may have stepped over the proxy, m; a
+    double reanchor_reach = 0;   ///< how far above a proxy a surface that moved is looked for, m
+    double step = 0;             ///< how far the surface may have stepped since the last tick, m; a
                                  ///< spring that it takes farther, and more than 1 m/s, ends
   };
 

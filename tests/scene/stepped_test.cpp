@@ -1,0 +1,84 @@
+// How far a surface may have stepped when a snapshot takes another's place.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "palpate/contact/proxy.hpp"
+#include "scene/source_view.hpp"
+#include "support/snapshots.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLasts = 0.1;  // s
+
+Snapshot snapshot_of(std::vector<Snapshot::Layer> layers) {
+  Snapshot snapshot;
+  snapshot.end = kLasts;
+  snapshot.interval = kLasts;
+  snapshot.layers = std::move(layers);
+  return snapshot;
+}
+
+TEST(TimeStepped, IsThatOfACloudThatIsThereAtOnce) {
+  const auto before = test::share(test::make_points(test::plane(0)));
+  const auto after = test::share(test::make_points(test::plane(0.01)));
+  const std::vector<ActiveLayer> shown{{before.get()}};
+  EXPECT_EQ(time_stepped(snapshot_of({{after, 1, 1}}), shown), kLasts);
+  EXPECT_EQ(time_stepped(snapshot_of({{before, 0.5, 0.5}, {after, 0.5, 0.5}}), shown), kLasts);
+  EXPECT_EQ(time_stepped(snapshot_of({{after, 1, 1}}), {}), kLasts);
+}
+
+TEST(TimeStepped, IsNothingWhereWhatWasThereGoesOnOrFades) {
+  const auto before = test::share(test::make_points(test::plane(0)));
+  const auto after = test::share(test::make_points(test::plane(0.01)));
+  const std::vector<ActiveLayer> shown{{before.get()}};
+  EXPECT_EQ(time_stepped(snapshot_of({{before, 1, 1}}), shown), 0);
+  EXPECT_EQ(time_stepped(snapshot_of({{before, 1, 0}, {after, 0, 1}}), shown), 0);
+  EXPECT_EQ(time_stepped(snapshot_of({}), shown), 0);
+}
+
+/// The largest change of force in a tick, of a hand that presses 3 mm into a plane that fades into
+/// one 12 mm above it.
+double largest_step_while_fading() {
+  Scene scene;
+  Source& source = scene.add("clouds");
+  SceneField field(scene);
+  const auto low = test::share(test::make_points(test::plane(0)));
+  const auto high = test::share(test::make_points(test::plane(12e-3)));
+  Proxy proxy;
+  Vector3d last = Vector3d::Zero();
+  double largest = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double now = 1e-3 * k;
+    if (k % 100 == 0) {
+      auto next = std::make_unique<Snapshot>();
+      next->start = now;
+      next->end = now + kLasts;
+      next->interval = kLasts;
+      if (k < 200) next->layers = {{low, 1, 1}};
+      if (k == 200) next->layers = {{low, 1, 0}, {high, 0, 1}};
+      if (k == 300) next->layers = {{high, 1, 1}};
+      source.publish(std::move(next));
+    }
+    const Vector3d hip(0, 0, std::max(-3e-3, 10e-3 - 0.2e-3 * k));
+    field.update(now, hip, k > 0 ? proxy.position() : hip);
+    const Vector3d force = proxy.step(field, hip, 1e-3).force;
+    if (k > 0) largest = std::max(largest, (force - last).norm());
+    last = force;
+  }
+  EXPECT_GT(proxy.position().z(), 8e-3);  // the upper plane holds it in the end
+  return largest;
+}
+
+TEST(TimeStepped, SurfaceThatFadesInAboveAHandDoesNotPushIt) {
+  EXPECT_LE(largest_step_while_fading(), 0.6);  // K (1 m/s dt + the hand's 2 x 0.2 mm), in N
+}
+
+}  // namespace
+}  // namespace palpate
