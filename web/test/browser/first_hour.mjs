@@ -126,10 +126,14 @@ test("a tool in the air throws a shadow on the cloud below it", async () => {
     await page.waitForTimeout(2000); // and its trail has faded
     return page.locator("#view").screenshot({ timeout: 120_000 });
   };
-  const away = await seenAt([-0.25, 0.2, 0.4]);
-  const above = await seenAt([0.15, -0.1, 0.04]);
+  let pixels = 0;
+  // A processor that draws slowly is late with either of the two.
+  for (let tries = 0; tries < 4 && pixels <= 100; tries += 1) {
+    const away = await seenAt([-0.25, 0.2, 0.4]);
+    const above = await seenAt([0.15, -0.1, 0.04]);
+    pixels = await shaded(page, above, away, [300, 100, 340, 170]); // no words there
+  }
   await picture(page, "shadow");
-  const pixels = await shaded(page, above, away, [300, 100, 340, 170]); // no words there
   assert.ok(pixels > 100, `${pixels} pixels are darker`);
   await page.context().close();
   await server.close();
