@@ -80,5 +80,49 @@ TEST(TimeStepped, SurfaceThatFadesInAboveAHandDoesNotPushIt) {
   EXPECT_LE(largest_step_while_fading(), 0.6);  // K (1 m/s dt + the hand's 2 x 0.2 mm), in N
 }
 
+/// A sheet of points 1 mm apart at a height, R = 10 mm: 577 points around a tool.
+std::unique_ptr<Snapshot> dense_sheet(double height, double start) {
+  constexpr int kHalf = 45;
+  std::vector<Eigen::Vector3f> places;
+  for (int i = -kHalf; i <= kHalf; ++i) {
+    for (int j = -kHalf; j <= kHalf; ++j) {
+      places.push_back(Vector3d(1e-3 * i, 1e-3 * j, height).cast<float>());
+    }
+  }
+  SurfacePoints points;
+  points.grid = CellGrid(places);
+  points.normals.assign(points.size(), Eigen::Vector3f::UnitZ());
+  points.density_weights.assign(points.size(), 0.01f);
+  points.radii.assign(points.size(), 10e-3f);
+  points.confidences.assign(points.size(), 1);
+  finish(points);
+  auto snapshot = std::make_unique<Snapshot>();
+  snapshot->start = snapshot->end = start;
+  snapshot->interval = 0.033;
+  snapshot->layers.push_back({test::share(std::move(points)), 1, 1});
+  return snapshot;
+}
+
+// The look from above costs more than a step has. Its underside, which Newton finds, is no surface
+// for the proxy.
+TEST(TimeStepped, DenseSheetThatStepsUpTakesTheProxyAlong) {
+  for (const double rise : {6e-3, 7e-3, 8e-3}) {
+    Scene scene;
+    Source& source = scene.add("sheet");
+    source.publish(dense_sheet(0, 0));
+    SceneField field(scene);
+    Proxy proxy;
+    Vector3d hip(0.3e-3, 0.4e-3, 0.02);
+    proxy.reset(hip);
+    for (int k = 0; k < 500; ++k) {
+      if (k < 220) hip.z() -= 1e-4;  // 2 mm below the sheet in the end
+      if (k == 220) source.publish(dense_sheet(rise, 0.22));
+      field.update(1e-3 * k, hip, proxy.position());
+      (void)proxy.step(field, hip, 1e-3);
+    }
+    EXPECT_NEAR(proxy.position().z(), rise, 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace palpate
