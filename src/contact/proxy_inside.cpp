@@ -198,8 +198,11 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
       contact.notes |= ContactNote::reanchored;
     }
   }
-  if (at) search_.looked = 0;
-  if (!at) at = recover(probe, position_, normal_, search_.looked);
+  if (at) {
+    search_.looked = 0;
+  } else {
+    at = recover(probe, position_, normal_, search_.looked);
+  }
   search_.cut_short = false;
   if (at || !(here.value > 0)) return at;
   const Sweep way = first_contact(probe, position_, hip);

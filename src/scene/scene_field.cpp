@@ -123,8 +123,7 @@ void SceneField::State::list_layers() noexcept {
   for (std::size_t s = 0; s < views.size(); ++s) {
     const Snapshot* snapshot = views[s].current();
     if (!snapshot) continue;
-    frame_interval =
-        std::max({frame_interval, snapshot->interval, snapshot->end - snapshot->start});
+    frame_interval = std::max(frame_interval, time_shown(*snapshot));
     for (std::size_t k = 0; k < snapshot->layers.size(); ++k) list_layer(s, k);
   }
   if (layer_count == 0) typical_radius = 0;
@@ -136,8 +135,7 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
   const bool still = layer.points->end_positions.empty();
   const Snapshot& newest = *shown[source];
-  const double lasts = std::max(newest.end - newest.start, newest.interval);
-  if (still) cloud_duration = std::max(cloud_duration, lasts);
+  if (still) cloud_duration = std::max(cloud_duration, time_shown(newest));
   layer.last_weight = newest.layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
   typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));

@@ -154,8 +154,7 @@ double time_stepped(const Snapshot& snapshot, std::span<const ActiveLayer> befor
     return layer.weight_start > 0 && layer.points->end_positions.empty() &&
            std::ranges::none_of(before, same);
   };
-  const double lasts = std::max(snapshot.end - snapshot.start, snapshot.interval);
-  return std::ranges::any_of(snapshot.layers, is_new) ? lasts : 0;
+  return std::ranges::any_of(snapshot.layers, is_new) ? time_shown(snapshot) : 0;
 }
 
 double progress(const Snapshot& snapshot, double time) noexcept {

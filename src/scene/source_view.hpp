@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -88,7 +89,12 @@ class SourceView {
   double faded_ = 0;  // time since presence came to 0, s
 };
 
-/// For how long a surface that a snapshot shows may have moved unseen, s: as long as it lasts if it
+/// For how long a snapshot is shown, or the time to the one that follows, s.
+[[nodiscard]] inline double time_shown(const Snapshot& snapshot) noexcept {
+  return std::max(snapshot.end - snapshot.start, snapshot.interval);
+}
+
+/// For how long a surface that a snapshot shows may have moved unseen, s: time_shown() if it
 /// shows points at once that were not among the layers `before`. 0: it goes on from what was there.
 [[nodiscard]] double time_stepped(const Snapshot& snapshot,
                                   std::span<const ActiveLayer> before) noexcept;

@@ -8,6 +8,7 @@
 #include "field/patch.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"
+#include "support/snapshots.hpp"
 
 namespace palpate {
 namespace {
@@ -128,12 +129,7 @@ TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
 
 // A layer that fades in one snapshot and goes on in the next begins again at progress 0.
 TEST(PatchAdvance, LayersWhosePointsDoNotChangeMayBeginAgain) {
-  std::vector<TestPoint> sheet;
-  for (int i = -8; i <= 8; ++i) {
-    for (int j = -8; j <= 8; ++j) {
-      sheet.push_back({{4e-3 * i, 4e-3 * j, 0}, Vector3d::UnitZ(), 10e-3, 1});
-    }
-  }
+  const std::vector<TestPoint> sheet = test::plane(0);
   const std::vector<SurfacePoints> points = {make_points(sheet), make_points(sheet)};
   const auto layers = [&](double u, double weight) {
     return std::vector<ActiveLayer>{{&points[0], 0, weight, u, 30, 1, 0.5},
