@@ -129,7 +129,7 @@ TEST(PatchAdvance, RefusesWhatItDoesNotCover) {
 
 // A layer that fades in one snapshot and goes on in the next begins again at progress 0.
 TEST(PatchAdvance, LayersWhosePointsDoNotChangeMayBeginAgain) {
-  const std::vector<TestPoint> sheet = test::plane(0);
+  const std::vector<test::TestPoint> sheet = test::plane(0);
   const std::vector<SurfacePoints> points = {make_points(sheet), make_points(sheet)};
   const auto layers = [&](double u, double weight) {
     return std::vector<ActiveLayer>{{&points[0], 0, weight, u, 30, 1, 0.5},
