@@ -94,7 +94,8 @@ std::uint8_t* Facing::Table::find(const Key& key) noexcept {
 
 /// The slot of a sheet, which is made if it is new; kMost: there are too many. Parts are never more
 /// than sheets, so there is room for them.
-std::uint32_t Facing::sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept {
+std::uint32_t Facing::sheet_of(const ActiveLayer& layer, std::uint32_t number) noexcept {
+  const SurfacePoints& points = *layer.points;
   const SurfacePoints::Sheets& own = points.sheets;
   const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
   std::uint8_t* const slot = now_.find(key);
@@ -102,7 +103,7 @@ std::uint32_t Facing::sheet_of(const SurfacePoints& points, std::uint32_t number
   Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
   part.unsure = points.one_sided && !part.known;
   if (!own.empty() && (part.unsure || !points.one_sided)) part.key = {&points, own.part[number]};
-  Sheet sheet{.key = key, .part = part_of(part)};
+  Sheet sheet{.key = key, .source = layer.source, .part = part_of(part)};
   const std::uint8_t before = *before_.find(key);
   if (before < kMost) sheet.label = before_.sheets[before].label;
   now_.sheets[now_.sheet_count] = sheet;
@@ -122,7 +123,7 @@ void Facing::list_layer(const ActiveLayer& layer, std::span<const std::uint32_t>
       sheet_of_place_.push_back(surface.one_sided ? kUnsure : kMost);
       continue;
     }
-    if (sheet != last) slot = sheet_of(surface, last = sheet);
+    if (sheet != last) slot = sheet_of(layer, last = sheet);
     sheet_of_place_.push_back(slot == kMost && surface.one_sided ? kUnsure : slot);
     if (slot == kMost) continue;
     Point point{};
@@ -193,8 +194,9 @@ void Facing::add_references(const Sheet& sheet) noexcept {
     const Point& p = points_[order_[sheet.begin + k]];
     if (references_.size() == references_.capacity()) return;
     if (part.is_absent() && !is_above(p)) continue;
-    references_.push_back(
-        {p.place, static_cast<float>(sign) * p.normal, p.confidence, p.residual, sheet.label});
+    references_.push_back({sheet.key.owner, sheet.source, p.place,
+                           static_cast<float>(sign) * p.normal, p.confidence, p.residual,
+                           sheet.label});
   }
 }
 
@@ -210,6 +212,7 @@ bool Facing::list_references(const Stance& stance) noexcept {
     const Vector3f shift = (remembered_from_ - stance.proxy).cast<float>();
     for (Reference r : remembered_) {
       r.place += shift;
+      r.cloud = nullptr;
       references_.push_back(r);
     }
   }

@@ -109,6 +109,7 @@ class Facing {
   };
   struct Sheet {
     Key key;
+    int source = 0;
     std::uint32_t part = 0;
     std::uint8_t label = kOpen;
     bool near = false;
@@ -145,6 +146,8 @@ class Facing {
   };
   /// A point that is decided and counts for those that are not.
   struct Reference {
+    const void* cloud;  // nullptr: one that is gone
+    int source;
     Eigen::Vector3f place;
     Eigen::Vector3f normal;  // turned
     float confidence;
@@ -160,7 +163,7 @@ class Facing {
   };
 
   std::uint32_t part_of(Part part) noexcept;
-  std::uint32_t sheet_of(const SurfacePoints& points, std::uint32_t number) noexcept;
+  std::uint32_t sheet_of(const ActiveLayer& layer, std::uint32_t number) noexcept;
   void list(const Points& points, const Stance& stance) noexcept;
   void list_layer(const ActiveLayer& layer, std::span<const std::uint32_t> places,
                   const Stance& stance) noexcept;
@@ -180,8 +183,12 @@ class Facing {
   void see(const Stance& stance) noexcept;
   void decide_signs(bool continued) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
+  [[nodiscard]] static bool is_of_another_time(const Sheet& sheet, const Reference& q) noexcept;
   [[nodiscard]] double across(std::uint32_t part) noexcept;
   void decide_labels() noexcept;
+  struct Meeting;
+  using Meetings = std::array<Meeting, simd::kLabels>;
+  [[nodiscard]] Meetings meetings(const Sheet& sheet, double& beyond) noexcept;
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
   [[nodiscard]] bool is_hidden(const Point& point, float height) const noexcept;
   void look(const Points& points, const Stance& stance) noexcept;

@@ -62,13 +62,23 @@ void Facing::each_meeting(const Sheet& sheet, const Visit& visit) noexcept {
   }
 }
 
-/// Sums the votes of decided points around a part on its sign; below 0: turn it.
+/// Was the point measured at another time than the sheet, by the same source? Then it may be what
+/// the sheet was, or will be, somewhere else.
+bool Facing::is_of_another_time(const Sheet& sheet, const Reference& q) noexcept {
+  return q.source == sheet.source && q.cloud != sheet.key.owner;
+}
+
+/// Sums the votes of decided points around a part on its sign; below 0: turn it. What moved keeps
+/// its normals; an arc joins points of one time.
 double Facing::across(std::uint32_t part) noexcept {
   double sum = 0;
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (sheet.part != part) continue;
-    each_meeting(sheet, [&sum](const Point& p, const Reference& q, const Vector3f& way, double w) {
-      const float a = agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+    each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+      const float a =
+          is_of_another_time(sheet, q)
+              ? p.normal.dot(q.normal)
+              : agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
       sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
     });
   }
@@ -213,41 +223,67 @@ void Facing::decide_signs(bool continued) noexcept {
   }
 }
 
-/// The label that follows from how the sheet lies to sheets whose labels are known.
-std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
-  double parallel[simd::kLabels] = {};
-  double above[simd::kLabels] = {};
-  double all[simd::kLabels] = {};
+/// Sums over the pairs that a sheet's points make with decided ones of one label.
+struct Facing::Meeting {
+  double all = 0;       // of weights
+  double parallel = 0;  // of the cosines between their normals
+  double above = 0;     // of sines; below 0: at a convex edge
+  double off = 0;       // of sines off the decided points' planes
+  double now = 0;       // of weights, pairs with another time of the same source left out
+  double off_now = 0;
+
+  /// Is the sheet what these points are of? It has to lie on their plane, but if it may be the same
+  /// surface at another time (`moved`): there planes tell only how far it went.
+  [[nodiscard]] bool continues(bool moved) const noexcept {
+    if (!(all > kLeastMeeting) || !(parallel > kSameNormal * all)) return false;
+    return std::abs(moved ? off_now : off) <= kSamePlane * (moved ? now : all);
+  }
+};
+
+/// `beyond`: the weight of pairs where what is in front goes on beyond the sheet's plane.
+Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
+  Meetings result{};
   const auto sign = static_cast<float>(now_.parts[sheet.part].factor());
-  double planes[simd::kLabels] = {};
-  double beyond = 0;  // of what is in front: where it goes on beyond the sheet's plane
   each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
     const float length = way.norm();
     if (!(length > kSamePlace * p.radius)) return;
-    parallel[q.label] += w * static_cast<double>(sign * p.normal.dot(q.normal));
-    planes[q.label] += w * static_cast<double>(q.normal.dot(way) / length);
-    above[q.label] += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
-    all[q.label] += w;
+    Meeting& m = result[q.label];
+    const double off = w * static_cast<double>(q.normal.dot(way) / length);
+    m.all += w;
+    m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
+    m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+    m.off += off;
+    if (!is_of_another_time(sheet, q)) {
+      m.now += w;
+      m.off_now += off;
+    }
     const float unsharp = kUnsharp * std::max(p.residual, q.residual);
     const bool passes = -sign * p.normal.dot(way) > kBeyond * p.radius + unsharp;
     if (q.label == kInFront && passes) beyond += w;
   });
-  int same = -1;
-  for (int k = 0; k < simd::kLabels; ++k) {
-    const bool one = all[k] > kLeastMeeting && parallel[k] > kSameNormal * all[k] &&
-                     std::abs(planes[k]) < kSamePlane * all[k];
-    if (one && (same < 0 || all[k] > all[same])) same = k;
+  return result;
+}
+
+/// The label that follows from how the sheet lies to sheets whose labels are known.
+std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
+  double beyond = 0;
+  const Meetings with = meetings(sheet, beyond);
+  for (const bool moved : {false, true}) {
+    int same = -1;
+    for (int k = 0; k < simd::kLabels; ++k) {
+      if (with[k].continues(moved) && (same < 0 || with[k].all > with[same].all)) same = k;
+    }
+    if (same >= 0) return static_cast<std::uint8_t>(same);
   }
-  if (same >= 0) return static_cast<std::uint8_t>(same);
-  if (all[0] + all[1] + all[2] <= kLeastMeeting) {
+  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) {
     return sheet.hidden <= 0.5 * sheet.all ? kInFront : kBehind;
   }
-  const int other = all[kInFront] > kLeastMeeting ? kInFront
-                    : all[kBehind] > all[kAcross] ? kBehind
-                                                  : kAcross;
-  const bool concave = above[other] >= 0;
+  const int other = with[kInFront].all > kLeastMeeting      ? kInFront
+                    : with[kBehind].all > with[kAcross].all ? kBehind
+                                                            : kAcross;
+  const bool concave = with[other].above >= 0;
   // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
-  const bool plate = parallel[other] < -kBackToBack * all[other];
+  const bool plate = with[other].parallel < -kBackToBack * with[other].all;
   if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
   if (other == kBehind && concave) return kInFront;
   if (other == kAcross && !concave) return kInFront;

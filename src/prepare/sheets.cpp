@@ -14,71 +14,64 @@ using Eigen::Vector3f;
 
 constexpr double kCertain = std::numeric_limits<double>::infinity();  // outweighs all votes
 
-constexpr double kCoherent = 0.5;     // |sum v |v|| over sum v^2: votes agree; judgement
+constexpr double kCoherent = 0.5;     // |sum of votes| over the sum of their sizes: most agree
 constexpr double kEnoughVotes = 0.3;  // sum v^2 of the votes v; less is chance; judgement
 
-constexpr double kAgree = 0.96;      // |sum of signs| over their number: 98 % agree; judgement
+// The same, of evidence that is sure: 92 % of it agree. The eye sees 0.83 of a whole sphere from
+// behind where it is 1.4 radii from its centre, and must not turn it inside out; judgement.
+constexpr double kAgree = 0.85;
 constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
 constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
 // Sine of the lean that gives an open part an upper side; judgement.
 constexpr double kUpright = 0.2;
 
-/// For each sheet the sign that nearly all of its points are known to have, relative to their
-/// normals; 0: not known.
-class SignsOfSheets {
- public:
-  explicit SignsOfSheets(std::size_t sheets) : sums_(sheets) {}
+/// What is known from outside of which side of a sheet or part is free, relative to its normals.
+struct Evidence {
+  double signs = 0;  // sum of votes
+  double all = 0;    // sum of their sizes
 
-  void add(std::uint32_t sheet, double vote) {
-    sums_[sheet].signs += vote;
-    sums_[sheet].all += std::abs(vote);
+  void add(double vote) {
+    signs += vote;
+    all += std::abs(vote);
   }
-  void add_hidden(std::uint32_t sheet) { ++sums_[sheet].hidden; }
-  void count(std::uint32_t sheet) { ++sums_[sheet].points; }
-
-  [[nodiscard]] int of(std::uint32_t sheet) const {
-    const Sums& s = sums_[sheet];
-    if (!(s.all > 0) || std::abs(s.signs) < kAgree * s.all) return 0;
-    if (s.hidden > kMostHidden * s.points) return 0;
-    return s.signs < 0 ? -1 : 1;
+  /// The sign that at least (1 + share) / 2 of the votes have; 0: neither.
+  [[nodiscard]] int sign(double share) const {
+    if (!(all > 0) || std::abs(signs) < share * all) return 0;
+    return signs < 0 ? -1 : 1;
   }
-
- private:
-  struct Sums {
-    double signs = 0;
-    double all = 0;
-    double hidden = 0;
-    double points = 0;
-  };
-  std::vector<Sums> sums_;
 };
 
-std::vector<int> known_signs(const SheetInput& input, const KnownSigns& known, const OwnSheets& own,
-                             const SurfacePoints::Sheets& sheets) {
-  SignsOfSheets given(sheets.part.size());
-  SignsOfSheets seen(sheets.part.size());
+/// For each sheet: given normals where nearly all agree, else what the eye sees of it.
+std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& known,
+                                  const OwnSheets& own, const SurfacePoints::Sheets& sheets) {
+  struct Counts {
+    double points = 0;
+    double hidden = 0;
+  };
+  std::vector<Evidence> given(sheets.part.size());
+  std::vector<Evidence> seen(sheets.part.size());
+  std::vector<Counts> counts(sheets.part.size());
   for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
     const std::uint32_t sheet = sheets.sheet[i];
     if (sheet == SurfacePoints::Sheets::kNone) continue;
-    given.count(sheet);
-    seen.count(sheet);
+    ++counts[sheet].points;
     if (!known.given.empty() && known.given[i].allFinite()) {
       const float cosine = known.given[i].dot(own.normals[i]);
-      if (cosine != 0) given.add(sheet, cosine < 0 ? -1 : 1);
+      if (cosine != 0) given[sheet].add(cosine < 0 ? -1 : 1);
     }
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
       const bool hidden = std::isfinite(cosine > 0 ? sheets.above[i] : sheets.below[i]);
-      hidden ? seen.add_hidden(sheet) : seen.add(sheet, static_cast<double>(cosine));
+      hidden ? void(++counts[sheet].hidden) : seen[sheet].add(static_cast<double>(cosine));
     }
   }
-  std::vector<int> signs(sheets.part.size());
-  for (std::uint32_t k = 0; k < signs.size(); ++k) {
-    signs[k] = given.of(k) != 0 ? given.of(k) : seen.of(k);
+  for (std::uint32_t k = 0; k < seen.size(); ++k) {
+    if (counts[k].hidden > kMostHidden * counts[k].points) seen[k] = {};
+    if (given[k].sign(kAgree) != 0 || !(seen[k].all > 0)) seen[k] = given[k];
   }
-  return signs;
+  return seen;
 }
 
 struct Link {
@@ -88,7 +81,8 @@ struct Link {
 };
 
 /// Which sheets belong together, the surest first.
-std::vector<Link> links_of(const std::vector<SheetVote>& votes, const std::vector<int>& known) {
+std::vector<Link> links_of(const std::vector<SheetVote>& votes,
+                           const std::vector<Evidence>& evidence) {
   std::vector<Link> links;
   for (std::size_t k = 0; k < votes.size();) {
     Link link{votes[k].a, votes[k].b, 0};
@@ -98,7 +92,7 @@ std::vector<Link> links_of(const std::vector<SheetVote>& votes, const std::vecto
       link.value += v * std::abs(v);
       squares += v * v;
     }
-    const int both = known[link.a] * known[link.b];
+    const int both = evidence[link.a].sign(kAgree) * evidence[link.b].sign(kAgree);
     if (both != 0) {
       link.value = both * kCertain;
     } else if (std::abs(link.value) < kCoherent * squares || squares <= kEnoughVotes) {
@@ -120,27 +114,37 @@ struct PartSums {
   Vector3d moment = Vector3d::Zero();  // sum a p, m^3
 };
 
-/// Must the part's normals be turned round? One that closes around something gets them outward.
-/// One that does not, such as terrain, a wall or one view of a scene, has no outside: its mean
-/// normal is to point up (+z) or, if it lies, away from the centre of all points.
-bool is_inside_out(const PartSums& part, const Vector3d& center_of_all) {
-  if (!(part.area > 0)) return false;
+/// The sign that turns a part's normals to its free side, and whether evidence told it.
+struct Side {
+  int sign = 1;
+  bool known = false;
+};
+
+/// Evidence counts where nearly all of it agrees. Else a part that closes around something gets its
+/// normals outward: the far side of a whole object faces away from where it was seen. A part that
+/// does not close, such as terrain, a wall or one view of a scene, has no outside: evidence that
+/// mostly agrees decides or, without any, the mean normal is to point up (+z) or, if it lies, away
+/// from the centre of all points.
+Side side_of(const PartSums& part, const Evidence& evidence, const Vector3d& center_of_all) {
+  if (const int sign = evidence.sign(kAgree); sign != 0) return {sign, true};
+  if (!(part.area > 0)) return {};
+  const auto turned = [](double along) { return Side{along < 0 ? -1 : 1, false}; };
   const Vector3d center = part.moment / part.area;
-  if (part.vector.norm() <= kOpen * part.area) return part.flux - center.dot(part.vector) < 0;
-  if (std::abs(part.vector.z()) > kUpright * part.vector.norm()) return part.vector.z() < 0;
-  return part.vector.dot(center - center_of_all) < 0;
+  if (part.vector.norm() <= kOpen * part.area) return turned(part.flux - center.dot(part.vector));
+  if (const int sign = evidence.sign(kCoherent); sign != 0) return {sign, true};
+  if (std::abs(part.vector.z()) > kUpright * part.vector.norm()) return turned(part.vector.z());
+  return turned(part.vector.dot(center - center_of_all));
 }
 
-/// The sign that each part's normals are to be multiplied by where nothing is known of it.
-std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
-                               const SurfacePoints::Sheets& sheets, std::size_t parts,
-                               const std::optional<Vector3d>& middle) {
-  std::vector<PartSums> sums(parts);
-  PartSums all;
+/// The sums of every part, its normals turned by `signs` of the sheets, and of all.
+std::vector<PartSums> sums_of_parts(const SheetInput& input, const OwnSheets& own,
+                                    const SurfacePoints::Sheets& sheets,
+                                    const std::vector<int>& signs, PartSums& all) {
+  std::vector<PartSums> sums(signs.size());
   for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
     if (sheets.sheet[i] == SurfacePoints::Sheets::kNone) continue;
     const Vector3d p = input.grid.points()[i].cast<double>();
-    const Vector3d n = own.normals[i].cast<double>();
+    const Vector3d n = signs[sheets.sheet[i]] * own.normals[i].cast<double>();
     const double area =
         static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
     PartSums& part = sums[sheets.part[sheets.sheet[i]]];
@@ -151,11 +155,7 @@ std::vector<int> outward_signs(const SheetInput& input, const OwnSheets& own,
     all.area += area;
     all.moment += area * p;
   }
-  const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
-  const Vector3d center = middle.value_or(own_middle);
-  std::vector<int> signs;
-  for (const PartSums& part : sums) signs.push_back(is_inside_out(part, center) ? -1 : 1);
-  return signs;
+  return sums;
 }
 
 /// Turns the normals of whole sheets.
@@ -168,42 +168,48 @@ void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, SurfacePoints::
   }
 }
 
-/// Makes parts of linked sheets. A link that contradicts what is known of both of its sides is
-/// passed over.
-void join_parts(const SheetInput& input, const std::vector<Link>& links, std::vector<int> known,
-                const std::optional<Vector3d>& middle, OwnSheets& own,
-                SurfacePoints::Sheets& sheets) {
-  const std::size_t count = sheets.part.size();
-  detail::SignedSets sets(count);
+/// Joins linked sheets in sets. A link that contradicts the evidence of both of its sides is passed
+/// over. `evidence`: becomes that of the sets, at their roots.
+detail::SignedSets join_links(const std::vector<Link>& links, std::vector<Evidence>& evidence) {
+  detail::SignedSets sets(evidence.size());
   for (const Link& link : links) {
     const auto [root_a, sign_a] = sets.find(link.a);
     const auto [root_b, sign_b] = sets.find(link.b);
     if (root_a == root_b) continue;
     const int sign = (link.value < 0 ? -1 : 1) * sign_a * sign_b;
-    const int both = known[root_a] * known[root_b];
+    const int both = evidence[root_a].sign(kCoherent) * evidence[root_b].sign(kCoherent);
     if (both != 0 && both != sign) continue;
-    const std::uint32_t root = std::min(root_a, root_b);
-    const std::uint32_t other = std::max(root_a, root_b);
-    if (known[root] == 0) known[root] = sign * known[other];
+    Evidence& whole = evidence[std::min(root_a, root_b)];
+    const Evidence& other = evidence[std::max(root_a, root_b)];
+    whole.signs += sign * other.signs;
+    whole.all += other.all;
     sets.join(root_a, root_b, sign);
   }
-  std::vector<int> signs(count);
-  std::vector<int> known_parts;
-  for (std::uint32_t k = 0; k < count; ++k) {
+  return sets;
+}
+
+/// Makes parts of linked sheets and turns their normals to the free side.
+void join_parts(const SheetInput& input, const std::vector<Link>& links,
+                std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
+                OwnSheets& own, SurfacePoints::Sheets& sheets) {
+  detail::SignedSets sets = join_links(links, evidence);
+  std::vector<int> signs;
+  std::vector<std::uint32_t> roots;  // of the parts
+  for (std::uint32_t k = 0; k < sheets.part.size(); ++k) {
     const auto [root, sign] = sets.find(k);
-    if (root == k) {
-      sheets.part[k] = static_cast<std::uint32_t>(known_parts.size());
-      known_parts.push_back(known[k]);
-    }
-    sheets.part[k] = sheets.part[root];
-    signs[k] = sign * (known[root] != 0 ? known[root] : 1);
+    if (root == k) roots.push_back(k);
+    sheets.part[k] = root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : sheets.part[root];
+    signs.push_back(sign);
   }
-  turn(signs, own, sheets);
-  const std::vector<int> outward = outward_signs(input, own, sheets, known_parts.size(), middle);
-  for (std::uint32_t k = 0; k < count; ++k) {
-    signs[k] = known_parts[sheets.part[k]] != 0 ? 1 : outward[sheets.part[k]];
+  PartSums all;
+  const std::vector<PartSums> sums = sums_of_parts(input, own, sheets, signs, all);
+  const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
+  std::vector<Side> sides;
+  for (std::uint32_t k = 0; k < roots.size(); ++k) {
+    sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
+    sheets.known.push_back(sides.back().known ? 1 : 0);
   }
-  for (const int known_part : known_parts) sheets.known.push_back(known_part != 0 ? 1 : 0);
+  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[sheets.part[k]].sign;
   turn(signs, own, sheets);
 }
 
@@ -215,8 +221,8 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   twins = std::move(grown.twins);
   const std::vector<SheetVote> votes = look_around(input, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
-  const std::vector<int> signs = known_signs(input, known, own, sheets);
-  join_parts(input, links_of(votes, signs), signs, known.middle, own, sheets);
+  const std::vector<Evidence> evidence = evidence_of(input, known, own, sheets);
+  join_parts(input, links_of(votes, evidence), evidence, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
 }

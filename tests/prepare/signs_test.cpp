@@ -165,6 +165,26 @@ TEST(GivenSigns, ThatContradictEachOtherSayNothing) {
   EXPECT_THROW((void)prepare(cloud, {.orientation = PrepareOptions::Orientation::given}), Error);
 }
 
+/// A wavy sheet of which a camera at the origin sees the waves' backs, too, as noise of stereo
+/// shows them that is as long as its windows. It leans towards the camera.
+PointCloud grazed_waves(const Vector3f& normal) {
+  PointCloud cloud = cloud_of(Clouds(6).plane(80, 5e-3));
+  const Vector3f along = Vector3f::UnitX().cross(normal);
+  for (Vector3f& p : cloud.positions) {
+    const float height = 2.5e-3f * std::sin(80 * p.y());
+    p = Vector3f(p.x() - 0.2f, -0.2f, 1) + (p.y() - 0.2f) * along + height * normal;
+  }
+  cloud.viewpoint = Eigen::Vector3d::Zero();
+  return cloud;
+}
+
+// Where nothing is known +z counts as up: in a camera's frame the back of what it sees.
+TEST(SeenSigns, CountWhereMostOfThemAgree) {
+  const Vector3f normal = Vector3f(0, -1, -0.3f).normalized();
+  const auto outward = [&](const Vector3f&) { return normal; };
+  EXPECT_EQ(share_right(prepare(grazed_waves(normal)).points, outward), 1);
+}
+
 TEST(GivenSigns, DoNotReachOtherObjects) {
   PointCloud cloud = inward_sphere();
   const std::size_t near = cloud.size();
