@@ -261,8 +261,11 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   if (points_.empty()) return;
   if (!std::exchange(follows_, false)) let_go(stance);
   group();
-  choose_eye(stance);
-  see(stance);
+  const auto decided = [this](const Sheet& sheet) { return is_decided(sheet); };
+  if (!std::ranges::all_of(std::span(now_.sheets).first(now_.sheet_count), decided)) {
+    choose_eye(stance);
+    see(stance);
+  }
   const bool begins = stance.touches() && !touched_;
   touched_ = stance.touches();
   if (begins) turn_by(stance.normal.cast<float>());

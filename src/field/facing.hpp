@@ -180,6 +180,7 @@ class Facing {
   void add_references(const Sheet& sheet) noexcept;
   template <class Visit>
   void each_meeting(const Sheet& sheet, const Visit& visit) noexcept;
+  [[nodiscard]] bool is_decided(const Sheet& sheet) const noexcept;
   void see(const Stance& stance) noexcept;
   void decide_signs(bool continued) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;

@@ -150,6 +150,12 @@ void Facing::choose_eye(const Stance& stance) noexcept {
   eye_.view = std::sqrt(closest) + kView * radius_;
 }
 
+/// Has the sheet a label, and a side that is never turned? Then what is seen of it decides nothing.
+bool Facing::is_decided(const Sheet& sheet) const noexcept {
+  const Part& part = now_.parts[sheet.part];
+  return sheet.label != kOpen && part.key == kOneSided && part.sign != 0;
+}
+
 /// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
 /// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
 /// of some are wrong.
@@ -159,6 +165,7 @@ void Facing::see(const Stance& stance) noexcept {
   std::array<double, kMost> seen{};
   for (const Point& p : points_) {
     Sheet& sheet = now_.sheets[p.sheet];
+    if (is_decided(sheet)) continue;
     const Vector3f back = eye_.place - p.place;
     const float squared = back.squaredNorm();
     const float height = height_over(p);
