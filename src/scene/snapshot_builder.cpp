@@ -7,6 +7,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "prepare/place.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {
@@ -15,6 +16,9 @@ namespace {
 // A cloud is clipped this far outside the fields' reach, of their radius: supports reach further
 // than points, and normals look around (judgement).
 constexpr double kClipMargin = 0.3;
+
+// Points of a cloud that are only seen: pages draw some ten thousand of all (judgement).
+constexpr std::size_t kMostSeen = 20000;
 
 // A sensor is silent no sooner than after so many intervals (judgement; docs/method.md 7.4).
 constexpr double kSilentIntervals = 3;
@@ -47,6 +51,35 @@ bool is_view(const PointCloud& cloud) {
   if (!image) return false;
   const Eigen::Isometry3d stand = image->T_world_sensor.value_or(Eigen::Isometry3d::Identity());
   return stand.translation() == *cloud.viewpoint;
+}
+
+/// The points of a cloud, by whether a tool can come to them before the next clouds.
+struct Split {
+  std::vector<std::uint32_t> near;
+  std::vector<std::uint32_t> far;
+};
+
+Split split(const PointCloud& cloud, const Arrival& arrival) {
+  Split parts;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d p = arrival.T_world_sensor * cloud.point(i);
+    const bool near = std::ranges::any_of(arrival.reach, [&](const Reach& reach) {
+      return (p - reach.center).norm() <= (1 + kClipMargin) * reach.radius;
+    });
+    (near ? parts.near : parts.far).push_back(i);
+  }
+  return parts;
+}
+
+/// What is seen of these points, in the world frame. nullptr: there are none.
+std::shared_ptr<const PointCloud> thinned(const PointCloud& cloud,
+                                          std::span<const std::uint32_t> points,
+                                          const Eigen::Isometry3d& T_world_sensor) {
+  if (points.empty()) return nullptr;
+  std::vector<std::uint32_t> kept;
+  const std::size_t stride = (points.size() - 1) / kMostSeen + 1;
+  for (std::size_t k = 0; k < points.size(); k += stride) kept.push_back(points[k]);
+  return std::make_shared<const PointCloud>(place(select(cloud, kept), {}, T_world_sensor).cloud());
 }
 
 double time_of(const char* what, double time) {
@@ -116,22 +149,28 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest
 }
 
 std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
-                                                const Arrival& arrival, Prepared::Report& report) {
+                                                const Arrival& arrival, CloudNotes& notes) {
   time_of("stamp", stamp);
   if (clouds_ == Policy::morph) {
     throw Error(
         "policy morph works only with depth frames; give replace, average or crossfade for clouds");
   }
-  const bool clips = options_.policy.clip_to_reach && !arrival.reach.empty();
-  const PointCloud clipped = clips ? within_reach(cloud, arrival) : PointCloud();
+  const bool clips = (options_.policy.clip_to_reach || late_) && !arrival.reach.empty();
+  const Split parts = clips ? split(cloud, arrival) : Split{};
+  const PointCloud clipped = select(cloud, parts.near);
   const PointCloud& wanted = clips ? clipped : cloud;
-  if (clips && wanted.empty()) return nullptr;
-  Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
-  report = prepared.report;
+  notes = {{}, thinned(cloud, parts.far, arrival.T_world_sensor)};
   std::shared_ptr<SurfacePoints> points = points_.take();
-  *points = std::move(prepared.points);
-  points->one_sided = is_one_view(cloud);
+  if (clips && wanted.empty()) {
+    *points = {};
+  } else {
+    Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
+    notes.report = prepared.report;
+    *points = std::move(prepared.points);
+    points->one_sided = is_one_view(cloud);
+  }
   const FrameTiming moment = next_timing(stamp, arrival.start);
+  late_ = late_ || moment.start - stamp > kLateCloud;
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
@@ -187,18 +226,6 @@ double SnapshotBuilder::presence_at(double time) const {
 void SnapshotBuilder::forget() {
   morph_.forget();
   layers_.forget();
-}
-
-PointCloud SnapshotBuilder::within_reach(const PointCloud& cloud, const Arrival& arrival) const {
-  std::vector<std::uint32_t> inside;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d p = arrival.T_world_sensor * cloud.point(i);
-    const bool near = std::ranges::any_of(arrival.reach, [&](const Reach& reach) {
-      return (p - reach.center).norm() <= (1 + kClipMargin) * reach.radius;
-    });
-    if (near) inside.push_back(i);
-  }
-  return select(cloud, inside);
 }
 
 /// Keeps the noise model and the median depth of the image.

@@ -201,13 +201,14 @@ bool Source::push(const PointCloud& cloud, double stamp, const Source::StartTime
   inside_->sight.forget();
   if (!inside_->room_for(true)) return false;
   inside_->reaches.read(inside_->found);
-  Prepared::Report report;
+  CloudNotes notes;
   named(inside_->name, [&] {
     inside_->hand_over(
-        *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, report));
+        *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, notes));
   });
   const std::lock_guard lock(inside_->mutex);
-  inside_->report = report;
+  inside_->report = notes.report;
+  inside_->state.overview = std::move(notes.overview);
   return true;
 }
 
@@ -241,7 +242,6 @@ bool Source::Inside::room_for(bool clouds) {
 }
 
 void Source::Inside::hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot) {
-  if (!snapshot) return;
   snapshot->publication = ++publications;
   {
     const std::lock_guard lock(mutex);

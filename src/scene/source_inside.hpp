@@ -66,6 +66,12 @@ struct Arrival {
   const Source::StartTime& start;
 };
 
+/// What is known of a cloud besides its surface.
+struct CloudNotes {
+  Prepared::Report report;                     ///< of the preparation
+  std::shared_ptr<const PointCloud> overview;  ///< of what was left out, thinned, world frame
+};
+
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
 /// it. Recycles the memory of snapshots that no reader holds.
 class SnapshotBuilder {
@@ -76,10 +82,10 @@ class SnapshotBuilder {
   /// @throws Error as DepthFilter::filter does, and when a time is not finite.
   [[nodiscard]] std::shared_ptr<Snapshot> take(const DepthFrame& frame, const Arrival& arrival);
 
-  /// nullptr: no point of the cloud is within reach. `report`: of its preparation.
+  /// Where clouds are clipped, the surface is what is within reach, and empty where nothing is.
   /// @throws Error as prepare() does, when a time is not finite, and when the policy is morph.
   [[nodiscard]] std::shared_ptr<Snapshot> take(const PointCloud& cloud, double stamp,
-                                               const Arrival& arrival, Prepared::Report& report);
+                                               const Arrival& arrival, CloudNotes& notes);
 
   /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
   /// nullptr: `newest` was not made here.
@@ -104,7 +110,6 @@ class SnapshotBuilder {
   [[nodiscard]] std::shared_ptr<Snapshot> next_snapshot(const FrameTiming& moment, Policy policy);
   [[nodiscard]] double presence_at(double time) const;
   void forget();
-  [[nodiscard]] PointCloud within_reach(const PointCloud& cloud, const Arrival& arrival) const;
   void note_noise(const FilteredDepth& depth);
   [[nodiscard]] bool knows_sides() const;
   [[nodiscard]] bool is_one_view(const PointCloud& cloud);
@@ -121,6 +126,7 @@ class SnapshotBuilder {
   Snapshot last_;      // without its layers
   Pinhole pinhole_;    // of the last frame
   bool view_ = false;  // has a cloud proved to be seen from its viewpoint?
+  bool late_ = false;  // has a cloud's surface come late? Clouds are clipped from then on
   NoiseModel noise_;
   double median_depth_ = 0;
   std::vector<float> depths_;

@@ -44,6 +44,21 @@ TEST(SourceReport, SimulatedTimeSaysWhatLiveWouldBeDropped) {
   expect_silence(fed(30, 0, true));
 }
 
+TEST(SourceReport, CloudsThatComeLateAreSaidToBeClipped) {
+  LoadedSource slow = fed(10, 570, true);
+  slow.plan.as_cloud = true;
+  const std::string text = printed(camera_report(slow));
+  EXPECT_NE(
+      text.find("preparing a frame takes 570 ms: live, only what tools can reach is prepared"),
+      std::string::npos)
+      << text;
+  EXPECT_EQ(camera_report(slow).data["would_drop_live"], 0.0);
+  LoadedSource live = fed(10, 20, false);
+  EXPECT_EQ(printed(camera_report(live)).find("clipped"), std::string::npos);
+  live.state.overview = std::make_shared<const PointCloud>();
+  EXPECT_NE(printed(camera_report(live)).find("came 100 ms late"), std::string::npos);
+}
+
 TEST(SourceReport, AMeshIsToldWithWhatItIsFeltAs) {
   LoadedSource source;
   source.prepared.points_in = 400000;

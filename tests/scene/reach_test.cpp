@@ -144,6 +144,60 @@ TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
   EXPECT_LT(source.state().points, cloud.size() * 3 / 4);
 }
 
+/// A strip of 2 m, 4 mm apart; half of it is left of x = 0.
+PointCloud strip() {
+  PointCloud cloud;
+  cloud.viewpoint = Vector3d(0, 0, 1);
+  for (int i = -250; i <= 250; ++i) {
+    for (int j = -5; j <= 5; ++j) cloud.positions.push_back({4e-3f * i, 4e-3f * j, 0});
+  }
+  return cloud;
+}
+
+TEST(Scene, CloudsAreClippedOnceASurfaceCameLate) {
+  Scene scene;
+  Source& source = scene.add("sensor");
+  SceneField field(scene);
+  const PointCloud cloud = strip();
+  const auto push = [&](double now, double delay) {
+    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    source.push(cloud, now, [=] { return now + delay; });
+    return source.state();
+  };
+  for (const double now : {0.0, 0.1, 0.2}) {
+    EXPECT_EQ(push(now, kLateCloud - 0.01).points, cloud.size()) << now;
+    EXPECT_EQ(source.state().overview, nullptr);
+  }
+  EXPECT_EQ(push(0.3, kLateCloud + 0.01).points, cloud.size()) << "known when it is done";
+  const Source::State clipped = push(0.5, 0.01);
+  EXPECT_LT(clipped.points, cloud.size() * 3 / 4);
+  ASSERT_NE(clipped.overview, nullptr);
+  EXPECT_EQ(clipped.points + clipped.overview->size(), cloud.size());
+  source.change(source.options());
+  EXPECT_EQ(push(0.6, 0.01).points, cloud.size()) << "other options may be quicker";
+}
+
+TEST(Scene, ClippedCloudsWithoutAPointInReachAreEmptySurfaces) {
+  SourceOptions options;
+  options.policy.clip_to_reach = true;
+  options.T_world_sensor = Eigen::Translation3d(0, 0, 5) * Eigen::Isometry3d::Identity();
+  Scene scene;
+  Source& source = scene.add("sensor", options);
+  SceneField field(scene);
+  const PointCloud cloud = strip();
+  for (const double now : {0.0, 0.1, 0.2, 0.3}) {
+    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    EXPECT_TRUE(source.push(cloud, now, [=] { return now + 0.01; }));
+  }
+  const Source::State state = source.state();
+  EXPECT_EQ(state.frames, 4u);
+  EXPECT_EQ(state.points, 0u);
+  ASSERT_EQ(state.overview->size(), cloud.size());
+  EXPECT_EQ((state.overview->origin + state.overview->positions[0].cast<double>()).z(), 5);
+  field.update(0.35, Vector3d::Zero(), Vector3d::Zero());
+  EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
+}
+
 TEST(Scene, RefusesSourcesThatAFieldWouldNeverSee) {
   Scene scene;
   scene.add("early");

@@ -29,14 +29,20 @@ enum class Policy {
 inline constexpr Policy kDepthPolicy = Policy::morph;      ///< of depth frames
 inline constexpr Policy kCloudPolicy = Policy::crossfade;  ///< of clouds
 
+/// A surface that comes later than this after its cloud's stamp is felt where things were, s; the
+/// delay that people begin to notice (judgement).
+inline constexpr double kLateCloud = 0.1;
+
 struct PolicyOptions {
   std::optional<Policy> policy = {};  ///< unset: kDepthPolicy or kCloudPolicy
   int history = 4;       ///< N of `average` and `crossfade`, 1 to 7; the others do not use it
   double silence = 0.3;  ///< fade a surface after this long without new data, s
   double fade = 0.5;     ///< duration of that fade, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
-  bool clip_to_reach = false;   ///< leave out points of clouds that no tool can come to before the
-                                ///< next ones (the paper's section IV-B)
+  /// Leave out points of clouds that no tool can come to before the next ones (the paper's section
+  /// IV-B). Otherwise that begins when the surface of a cloud comes more than 0.1 s after its
+  /// stamp.
+  bool clip_to_reach = false;
 };
 
 struct SourceOptions {
@@ -131,7 +137,8 @@ class Source {
     double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
     double stamp = 0;           ///< of the last one, s
     std::size_t points = 0;     ///< of the newest surface's newest layer
-    /// Points of all of a store, world frame, of which the surface is a part. null: it is no store.
+    /// What is there besides the surface, thinned, world frame: points of all of a store, or of a
+    /// cloud beyond the tools' reach. null: the surface is all.
     std::shared_ptr<const PointCloud> overview = {};
     double noise = 0;        ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
     double depth = 0;        ///< median depth of the last frame, m
