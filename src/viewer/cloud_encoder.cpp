@@ -13,7 +13,7 @@ namespace palpate::viewer {
 
 namespace {
 
-constexpr std::size_t kOverviewShare = 4;  // of what is drawn, one in so many; judgement
+constexpr std::size_t kOverviewShare = 4;  // of what is drawn, at least one in so many; judgement
 
 // A place in a stretch that repeats from call to call and has no rhythm that a scan's rows could
 // have, too.
@@ -142,8 +142,9 @@ SharedBytes CloudEncoder::encode(std::size_t source, const SurfacePoints* points
                                  std::size_t share) const {
   CloudMessage message;
   const Source::State state = scene_.source(source).state();
+  const std::size_t left = share - std::min(share, points != nullptr ? points->size() : 0);
   const std::size_t far =
-      state.overview ? std::min(share / kOverviewShare, state.overview->size()) : 0;
+      state.overview ? std::min(std::max(share / kOverviewShare, left), state.overview->size()) : 0;
   if (points != nullptr) message = cloud_of(*points, origin_, share - far);
   if (points != nullptr && far > 0) add_overview(*state.overview, origin_, far, message);
   message.source = static_cast<std::uint8_t>(source);
