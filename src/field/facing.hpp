@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -143,6 +145,11 @@ class Facing {
     float above;
     float below;
     std::uint32_t sheet;
+
+    // Is another sheet between its plane and an eye at this height above it?
+    [[nodiscard]] bool is_hidden(float height) const noexcept {
+      return std::abs(height) > (height > 0 ? above : below) + residual;
+    }
   };
   /// A point that is decided and counts for those that are not.
   struct Reference {
@@ -153,6 +160,12 @@ class Facing {
     float confidence;
     float residual;
     std::uint8_t label;
+
+    // Was it measured at another time than the sheet, by the same source? Then it may be what the
+    // sheet was, or will be, somewhere else.
+    [[nodiscard]] bool is_of_another_time(const Sheet& sheet) const noexcept {
+      return source == sheet.source && cloud != sheet.key.owner;
+    }
   };
 
   // Where the tool looks from.
@@ -170,7 +183,10 @@ class Facing {
   void let_go(const Stance& stance) noexcept;
   void group() noexcept;
   void choose_eye(const Stance& stance) noexcept;
-  [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept;
+  // The key of the one sheet and part that points without sheets of their own belong to.
+  [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept {
+    return points.one_sided ? kOneSided : Key{};
+  }
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept;
   [[nodiscard]] float height_over(const Point& point) const noexcept;
   [[nodiscard]] float rise_of(const Point& point) const noexcept;
@@ -184,16 +200,16 @@ class Facing {
   void see(const Stance& stance) noexcept;
   void decide_signs(bool continued) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
-  [[nodiscard]] static bool is_of_another_time(const Sheet& sheet, const Reference& q) noexcept;
   [[nodiscard]] double across(std::uint32_t part) noexcept;
   void decide_labels() noexcept;
   struct Meeting;
   using Meetings = std::array<Meeting, simd::kLabels>;
   [[nodiscard]] Meetings meetings(const Sheet& sheet, double& beyond) noexcept;
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
-  [[nodiscard]] bool is_hidden(const Point& point, float height) const noexcept;
   void look(const Points& points, const Stance& stance) noexcept;
-  [[nodiscard]] bool sees_from_behind() const noexcept;
+  [[nodiscard]] bool sees_from_behind() const noexcept {
+    return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), &Part::is_absent);
+  }
   [[nodiscard]] bool tells() const noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;
 

@@ -62,12 +62,6 @@ void Facing::each_meeting(const Sheet& sheet, const Visit& visit) noexcept {
   }
 }
 
-/// Was the point measured at another time than the sheet, by the same source? Then it may be what
-/// the sheet was, or will be, somewhere else.
-bool Facing::is_of_another_time(const Sheet& sheet, const Reference& q) noexcept {
-  return q.source == sheet.source && q.cloud != sheet.key.owner;
-}
-
 /// Sums the votes of decided points around a part on its sign; below 0: turn it. What moved keeps
 /// its normals; an arc joins points of one time.
 double Facing::across(std::uint32_t part) noexcept {
@@ -75,27 +69,13 @@ double Facing::across(std::uint32_t part) noexcept {
   for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
     if (sheet.part != part) continue;
     each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-      const float a =
-          is_of_another_time(sheet, q)
-              ? p.normal.dot(q.normal)
-              : agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+      const float a = q.is_of_another_time(sheet) ? p.normal.dot(q.normal)
+                                                  : agreement(p.normal, q.normal, way,
+                                                              3 * std::max(p.residual, q.residual));
       sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
     });
   }
   return sum;
-}
-
-/// The key of the one sheet and part that points without sheets of their own belong to.
-Facing::Key Facing::key_of_all(const SurfacePoints& points) noexcept {
-  return points.one_sided ? kOneSided : Key{};
-}
-
-bool Facing::sees_from_behind() const noexcept {
-  return std::ranges::any_of(std::span(now_.parts).first(now_.part_count), &Part::is_absent);
-}
-
-bool Facing::is_hidden(const Point& point, float height) const noexcept {
-  return std::abs(height) > (height > 0 ? point.above : point.below) + point.residual;
 }
 
 bool Facing::is_one_sided(const Point& point) const noexcept {
@@ -169,7 +149,7 @@ void Facing::see(const Stance& stance) noexcept {
     const Vector3f back = eye_.place - p.place;
     const float squared = back.squaredNorm();
     const float height = height_over(p);
-    const bool hidden = is_hidden(p, height);
+    const bool hidden = p.is_hidden(height);
     if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
       sheet.all += w;
       if (hidden) sheet.hidden += w;
@@ -260,7 +240,7 @@ Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
     m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
     m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
     m.off += off;
-    if (!is_of_another_time(sheet, q)) {
+    if (!q.is_of_another_time(sheet)) {
       m.now += w;
       m.off_now += off;
     }

@@ -89,7 +89,7 @@ struct SceneField::State {
   double typical_radius = 0;                                // of the layers
   double cloud_duration = 0;  // of snapshots whose points do not move, or between them, s
   double step = 0;            // how far surfaces may have stepped since the last tick, m
-  double frame_interval = 0;  // the longest of any source
+  double frame_interval = 0;  // that reaches last, the longest of any source, s
   double now = 0;
   bool other_kernel = false;
   bool moving = false;       // do points or their weights change now?
@@ -123,7 +123,6 @@ void SceneField::State::list_layers() noexcept {
   for (std::size_t s = 0; s < views.size(); ++s) {
     const Snapshot* snapshot = views[s].current();
     if (!snapshot) continue;
-    frame_interval = std::max(frame_interval, time_shown(*snapshot));
     for (std::size_t k = 0; k < snapshot->layers.size(); ++k) list_layer(s, k);
   }
   if (layer_count == 0) typical_radius = 0;
@@ -131,10 +130,13 @@ void SceneField::State::list_layers() noexcept {
 
 void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
-  if (layer.points->size() == 0) return;  // a sensor that sees nothing
-  if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
   const bool still = layer.points->end_positions.empty();
   const Snapshot& newest = *shown[source];
+  // A cloud is prepared as soon as tools' reach lets it; the reach must not wait for it in turn.
+  const double next = still ? std::min(time_shown(newest), kLateCloud) : time_shown(newest);
+  frame_interval = std::max(frame_interval, next);
+  if (layer.points->size() == 0) return;  // a sensor that sees nothing
+  if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
   if (still) cloud_duration = std::max(cloud_duration, time_shown(newest));
   layer.last_weight = newest.layers[k].weight_end;
   other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;

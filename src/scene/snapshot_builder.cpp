@@ -232,13 +232,13 @@ void SnapshotBuilder::forget() {
 void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
   constexpr std::size_t kStep = 37;  // a sample is enough
   noise_ = depth.noise;
-  depths_.clear();
+  std::vector<float> depths;
   for (std::size_t b = 0; b < depth.size(); b += kStep) {
-    if (depth.states[b] != FilteredDepth::State::empty) depths_.push_back(depth.positions[b].z());
+    if (depth.states[b] != FilteredDepth::State::empty) depths.push_back(depth.positions[b].z());
   }
-  if (depths_.empty()) return;
-  const auto middle = depths_.begin() + static_cast<std::ptrdiff_t>(depths_.size() / 2);
-  std::nth_element(depths_.begin(), middle, depths_.end());
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
   median_depth_ = static_cast<double>(*middle);
 }
 

@@ -129,7 +129,6 @@ class SnapshotBuilder {
   bool late_ = false;  // has a cloud's surface come late? Clouds are clipped from then on
   NoiseModel noise_;
   double median_depth_ = 0;
-  std::vector<float> depths_;
 };
 
 /// The parts of a source. Its scene and the fields of that scene use them.
