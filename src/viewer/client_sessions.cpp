@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <exception>
-#include <memory>
 #include <utility>
 #include <variant>
 
+#include "palpate/base/error.hpp"
 #include "viewer/access.hpp"
 
 namespace palpate::viewer {
@@ -42,27 +42,119 @@ std::string why_not(std::span<const Setting> settings, const std::string& key,
   return reason.empty() ? "" : fmt::format("{}: {}", found->label, reason);
 }
 
-Message text_message(std::string text) {
-  return {std::make_shared<const std::string>(std::move(text)), true};
+std::vector<Setting> settings_of(const ViewerControls& controls) {
+  return controls.settings ? controls.settings() : std::vector<Setting>{};
 }
 
-template <class Function>
-void require(const Function& function, const char* what) {
-  if (!function) throw Error(fmt::format("this program does not allow a page to {}", what));
+// `control`, which the program gives only if it allows a page to do that.
+template <class Control>
+const Control& allowed(const Control& control, const char* what) {
+  if (!control) throw Error(fmt::format("this program does not allow a page to {}", what));
+  return control;
 }
+
+void change(const ViewerControls& controls, const Set& set) {
+  const auto& control = allowed(controls.set, "change settings");
+  const std::string reason = why_not(settings_of(controls), set.key, set.value);
+  if (!reason.empty()) throw Error(reason);
+  control(set.key, set.value);
+}
+
+void change(const ViewerControls& controls, const Preset& preset) {
+  const auto& control = allowed(controls.preset, "choose presets");
+  if (std::ranges::find(controls.presets, preset.name) == controls.presets.end()) {
+    throw Error("unknown preset");
+  }
+  control(preset.name);
+}
+
+Welcome welcome_of(const ClientSessionsOptions& options) {
+  const ViewerControls& controls = options.controls;
+  Welcome welcome = options.welcome();
+  welcome.devices = options.devices;
+  welcome.settings = settings_of(controls);
+  welcome.presets = controls.presets;
+  welcome.opens = controls.open ? options.limits.file : 0;
+  if (controls.time_line) welcome.time_line = controls.time_line->length;
+  return welcome;
+}
+
+// The envelope and each tool's past; nothing while a run is shown.
+std::vector<std::pair<Topic, Message>> time_line_messages(const ClientSessionsOptions& options) {
+  std::vector<std::pair<Topic, Message>> messages;
+  const auto& line = options.controls.time_line;
+  if (!line) return messages;
+  messages.emplace_back(Topic{Topic::Kind::envelope},
+                        text_message(envelope_text(line->envelope())));
+  for (std::size_t i = 0; i < options.devices.size(); ++i) {
+    messages.emplace_back(Topic{Topic::Kind::past, i},
+                          binary_message(encode_past(static_cast<std::uint8_t>(i), line->past(i))));
+  }
+  return messages;
+}
+
+// Makes one function of several, one for each type of a message.
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
 
 }  // namespace
 
-void ClientSessions::leave(Session& session) {
-  std::erase(sessions_, &session);
+void ToolHolders::move(Session& session, const Hand& hand) {
+  const auto& control = allowed(options_.controls.hand, "move the tool");
+  if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
+    throw Error(fmt::format("no tool {} that a page can move", hand.device));
+  }
+  if (session.lost.contains(hand.device)) return;  // said before it knew
+  TargetSource::Target target = hand.target;
+  target.position += options_.origin;
+  control(hand.device, target);
+  Session* const before = holders_[hand.device];
+  if (before != nullptr && before != &session) {
+    before->lose(hand.device, "another page took the tool");
+  }
+  holders_[hand.device] = &session;
+}
+
+// If the tool was taken away meanwhile, the release says that the client knows it now.
+void ToolHolders::release(Session& session, const Release& wish) {
+  if (wish.device >= holders_.size()) throw Error("unknown tool");
+  session.lost.erase(wish.device);
+  if (holders_[wish.device] == &session) let_go(wish.device);
+}
+
+void ToolHolders::reset(const Reset& wish) const {
+  const auto& control = allowed(options_.controls.reset, "reset");
+  if (wish.device.value_or(0) >= holders_.size()) throw Error("unknown tool");
+  control(wish.device);
+}
+
+void ToolHolders::leave(const Session& session) {
   for (std::size_t device = 0; device < holders_.size(); ++device) {
-    if (holders_[device] != &session) continue;
     try {
-      release(device);
+      if (holders_[device] == &session) let_go(device);
     } catch (const std::exception&) {
       continue;  // the client that would have to know is gone
     }
   }
+}
+
+void ToolHolders::check(double now) {
+  for (std::size_t device = 0; device < holders_.size(); ++device) {
+    Session* const holder = holders_[device];
+    if (holder == nullptr || now - holder->heard <= options_.limits.hand_silence) continue;
+    holder->lose(device, fmt::format("no message from this page for {} s: the tool was released",
+                                     options_.limits.hand_silence));
+    let_go(device);
+  }
+}
+
+void ToolHolders::let_go(std::size_t device) {
+  holders_[device] = nullptr;
+  if (options_.controls.release) options_.controls.release(device);
 }
 
 void ClientSessions::receive(Session& session, std::string_view text, double now) {
@@ -77,141 +169,86 @@ void ClientSessions::receive(Session& session, std::string_view text, double now
     const bool hello = std::holds_alternative<Hello>(message);
     if (!session.greeted && !hello) throw Error("send hello first");
     if (session.greeted && hello) throw Error("hello was already sent");
-    std::visit([&](const auto& read) { act(session, read); }, message);
+    act(session, message);
   } catch (const std::exception& error) {
     refuse(session, error.what(), now);
   }
 }
 
-void ClientSessions::receive_binary(Session& session, double now) {
-  if (!session.closing) refuse(session, "binary message; send JSON", now);
+void ClientSessions::act(Session& session, const ClientMessage& message) {
+  const ViewerControls& controls = options_.controls;
+  std::visit(
+      Overloaded{[&](const Unreadable& unreadable) { throw Error(unreadable.text); },
+                 [&](const Hello& hello) { greet(session, hello); },
+                 [&](const Hand& hand) { tools_.move(session, hand); },
+                 [&](const Release& wish) { tools_.release(session, wish); },
+                 [&](const Reset& wish) { tools_.reset(wish); },
+                 [&](const Pause& pause) { allowed(controls.pause, "pause")(pause.on); },
+                 [&](const Record& wish) { record(wish.on); },
+                 [&](const Seek& seek) { allowed(controls.time_line, "seek")->seek(seek.time); },
+                 [&](const Play& play) {
+                   allowed(controls.time_line, "play a recording")->play(play.on, play.speed);
+                 },
+                 [&](const Points& points) { session.points = points.points; },
+                 [&](const Ping& ping) { session.answer(pong_text(ping.id)); },
+                 [&](const auto& set) {  // a setting or a preset
+                   change(controls, set);
+                   send_settings();
+                 }},
+      message);
+}
+
+void ClientSessions::refuse(Session& session, std::string_view why, double now) {
+  if (session.closing) return;
+  ++counts_.refused;
+  session.answer(refused_text(why));
+  if (!session.refusals.exceeded(now)) return;
+  session.close(close_code::kPolicy, "too many invalid messages");
 }
 
 void ClientSessions::check(double now) {
   for (Session* session : sessions_) {
     const bool late = !session->greeted && now - session->opened > options_.limits.hello_time;
-    if (late && !session->closing) close(*session, close_code::kTryAgainLater, "no hello in time");
+    if (late && !session->closing) session->close(close_code::kTryAgainLater, "no hello in time");
   }
-  for (std::size_t device = 0; device < holders_.size(); ++device) {
-    const Session* holder = holders_[device];
-    if (holder == nullptr || now - holder->heard <= options_.limits.hand_silence) continue;
-    lose(device, fmt::format("no message from this page for {} s: the tool was released",
-                             options_.limits.hand_silence));
-    release(device);
-  }
+  tools_.check(now);
 }
 
-void ClientSessions::act(Session& session, const Hello& hello) {
+void ClientSessions::greet(Session& session, const Hello& hello) {
   if (!same_token(hello.token, options_.token)) {
-    ++wrong_tokens_;
-    close(session, close_code::kPolicy, "wrong token; use the address that the program printed");
-    return;
+    ++counts_.forbidden;
+    return session.close(close_code::kPolicy,
+                         "wrong token; use the address that the program printed");
   }
   if (greeted().size() >= options_.limits.clients) {
-    ++turned_away_;
+    ++counts_.turned_away;
     const std::string words =
         fmt::format("{} pages are already connected; close one of them", options_.limits.clients);
-    answer(session, refused_text(words));
-    return close(session, close_code::kTryAgainLater, words);
+    session.answer(refused_text(words));
+    return session.close(close_code::kTryAgainLater, words);
   }
-  welcome(session);
+  const Welcome welcome = welcome_of(options_);
+  session.answer(welcome_text(welcome));
+  for (const Notice& notice : welcome.notices) session.answer(notice_text(notice));
+  if (!recording_.empty()) {
+    session.send({Topic::Kind::record}, text_message(record_text(true, recording_)));
+  }
+  moment_.reset();  // for the new one
+  for (const auto& [topic, message] : time_line_messages(options_)) session.send(topic, message);
   session.greeted = true;
   session.points = hello.points;
 }
 
-void ClientSessions::welcome(Session& session) {
-  Welcome welcome = options_.welcome();
-  welcome.devices = options_.devices;
-  welcome.settings = settings();
-  const ViewerControls& controls = options_.controls;
-  welcome.presets = controls.presets;
-  welcome.opens = controls.open ? options_.limits.file : 0;
-  if (controls.time_line) welcome.time_line = controls.time_line->length;
-  answer(session, welcome_text(welcome));
-  for (const Notice& notice : welcome.notices) answer(session, notice_text(notice));
-  if (!recording_.empty()) {
-    session.outbox.put({Topic::Kind::record}, text_message(record_text(true, recording_)));
-  }
-  moment_.reset();  // for the new one
-  show_time_line({&session});
+void ClientSessions::record(bool on) {
+  const std::string file = allowed(options_.controls.record, "record")(on);
+  recording_ = on ? file : "";
+  send_to_all({Topic::Kind::record}, text_message(record_text(on, file)));
 }
 
-void ClientSessions::act(Session& session, const Hand& hand) {
-  require(options_.controls.hand, "move the tool");
-  if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
-    throw Error(fmt::format("no tool {} that a page can move", hand.device));
-  }
-  if (session.lost.contains(hand.device)) return;  // said before it knew
-  TargetSource::Target target = hand.target;
-  target.position += options_.origin;
-  options_.controls.hand(hand.device, target);
-  Session* const before = holders_[hand.device];
-  if (before != nullptr && before != &session) lose(hand.device, "another page took the tool");
-  holders_[hand.device] = &session;
-}
-
-// If the tool was taken away meanwhile, the release says that the client knows it now.
-void ClientSessions::act(Session& session, const Release& wish) {
-  if (wish.device >= holders_.size()) throw Error("unknown tool");
-  session.lost.erase(wish.device);
-  if (holders_[wish.device] == &session) release(wish.device);
-}
-
-void ClientSessions::lose(std::size_t device, std::string_view why) {
-  Session& holder = *std::exchange(holders_[device], nullptr);
-  holder.lost.insert(device);
-  answer(holder, lost_text(device, why));
-}
-
-void ClientSessions::release(std::size_t device) {
-  holders_[device] = nullptr;
-  if (options_.controls.release) options_.controls.release(device);
-}
-
-void ClientSessions::act(Session&, const Set& set) {
-  require(options_.controls.set, "change settings");
-  const std::string reason = why_not(settings(), set.key, set.value);
-  if (!reason.empty()) throw Error(reason);
-  options_.controls.set(set.key, set.value);
-  send_settings();
-}
-
-void ClientSessions::act(Session&, const Preset& preset) {
-  const ViewerControls& controls = options_.controls;
-  require(controls.preset, "choose presets");
-  if (std::ranges::find(controls.presets, preset.name) == controls.presets.end()) {
-    throw Error("unknown preset");
-  }
-  controls.preset(preset.name);
-  send_settings();
-}
-
-void ClientSessions::act(Session&, const Pause& pause) {
-  require(options_.controls.pause, "pause");
-  options_.controls.pause(pause.on);
-}
-
-void ClientSessions::act(Session&, const Reset& reset) {
-  require(options_.controls.reset, "reset");
-  if (reset.device.value_or(0) >= holders_.size()) throw Error("unknown tool");
-  options_.controls.reset(reset.device);
-}
-
-void ClientSessions::act(Session&, const Record& record) {
-  require(options_.controls.record, "record");
-  const std::string file = options_.controls.record(record.on);
-  recording_ = record.on ? file : "";
-  send_to_all({Topic::Kind::record}, text_message(record_text(record.on, file)));
-}
-
-void ClientSessions::act(Session&, const Seek& seek) {
-  require(options_.controls.time_line, "seek");
-  options_.controls.time_line->seek(seek.time);
-}
-
-void ClientSessions::act(Session&, const Play& play) {
-  require(options_.controls.time_line, "play a recording");
-  options_.controls.time_line->play(play.on, play.speed);
+void ClientSessions::end_record() {
+  if (recording_.empty()) return;
+  const std::string file = std::exchange(recording_, {});
+  send_to_all({Topic::Kind::record}, text_message(record_text(false, file)));
 }
 
 void ClientSessions::send_moment() {
@@ -222,50 +259,21 @@ void ClientSessions::send_moment() {
   send_to_all({Topic::Kind::time}, text_message(moment_text(moment)));
 }
 
-void ClientSessions::show_time_line(const std::vector<Session*>& sessions) const {
-  const auto& line = options_.controls.time_line;
-  if (!line) return;
-  std::vector<std::pair<Topic, Message>> messages;
-  messages.emplace_back(Topic{Topic::Kind::envelope},
-                        text_message(envelope_text(line->envelope())));
-  for (std::size_t i = 0; i < options_.devices.size(); ++i) {
-    std::string past = encode_past(static_cast<std::uint8_t>(i), line->past(i));
-    messages.emplace_back(Topic{Topic::Kind::past, i},
-                          Message{std::make_shared<const std::string>(std::move(past)), false});
-  }
-  for (Session* session : sessions) {
-    for (const auto& [topic, message] : messages) session->outbox.put(topic, message);
-    if (session->wake) session->wake();
-  }
+void ClientSessions::send_time_line() {
+  for (const auto& [topic, message] : time_line_messages(options_)) send_to_all(topic, message);
 }
 
 void ClientSessions::send_to_all(Topic topic, const Message& message) {
-  for (Session* session : greeted()) {
-    session->outbox.put(topic, message);
-    if (session->wake) session->wake();
-  }
+  for (Session* session : greeted()) session->send(topic, message);
 }
 
 void ClientSessions::send_settings() {
-  send_to_all({Topic::Kind::settings}, text_message(settings_text(settings())));
+  const std::vector<Setting> settings = settings_of(options_.controls);
+  send_to_all({Topic::Kind::settings}, text_message(settings_text(settings)));
 }
 
 void ClientSessions::send(const Notice& notice) {
   send_to_all({Topic::Kind::answer}, text_message(notice_text(notice)));
-}
-
-void ClientSessions::end_record() {
-  if (recording_.empty()) return;
-  const std::string file = std::exchange(recording_, {});
-  send_to_all({Topic::Kind::record}, text_message(record_text(false, file)));
-}
-
-void ClientSessions::show(Session& session, Topic topic, const SharedBytes& bytes) {
-  SharedBytes& shown = session.shown[topic];
-  if (shown == bytes) return;
-  shown = bytes;
-  session.outbox.put(topic, {bytes, false});
-  if (session.wake) session.wake();
 }
 
 std::vector<Session*> ClientSessions::greeted() const {
@@ -274,27 +282,6 @@ std::vector<Session*> ClientSessions::greeted() const {
     return session->greeted && !session->closing;
   });
   return found;
-}
-
-void ClientSessions::answer(Session& session, std::string text) {
-  session.outbox.put({Topic::Kind::answer}, text_message(std::move(text)));
-  if (session.wake) session.wake();
-}
-
-void ClientSessions::refuse(Session& session, std::string_view text, double now) {
-  ++refused_;
-  answer(session, refused_text(text));
-  if (!session.refusals.exceeded(now)) return;
-  close(session, close_code::kPolicy, "too many invalid messages");
-}
-
-void ClientSessions::close(Session& session, std::uint16_t code, std::string reason) {
-  session.closing = Closing{code, std::move(reason)};
-  if (session.wake) session.wake();
-}
-
-std::vector<Setting> ClientSessions::settings() const {
-  return options_.controls.settings ? options_.controls.settings() : std::vector<Setting>{};
 }
 
 }  // namespace palpate::viewer

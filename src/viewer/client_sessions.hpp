@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
 #include "viewer/messages.hpp"
 
@@ -48,6 +47,13 @@ struct Message {
   SharedBytes bytes;
   bool text = false;
 };
+
+inline Message text_message(std::string text) {
+  return {std::make_shared<const std::string>(std::move(text)), true};
+}
+inline Message binary_message(std::string bytes) {
+  return {std::make_shared<const std::string>(std::move(bytes)), false};
+}
 
 /// Messages that wait to be sent to one client: at most one a topic, and kMostAnswers answers. Any
 /// message but an answer is replaced by a newer one, never queued.
@@ -117,6 +123,24 @@ struct Session {
         messages(limits.messages, 1),
         refusals(limits.refusals - 1, limits.refusal_time) {}
 
+  void send(Topic topic, Message message) {
+    outbox.put(topic, std::move(message));
+    if (wake) wake();
+  }
+  void answer(std::string text) { send({Topic::Kind::answer}, text_message(std::move(text))); }
+  /// Sends these bytes, unless it was sent the same of that topic last.
+  void show(Topic topic, const SharedBytes& bytes) {
+    if (std::exchange(shown[topic], bytes) != bytes) send(topic, {bytes, false});
+  }
+  void lose(std::size_t tool, std::string_view why) {
+    lost.insert(tool);
+    answer(lost_text(tool, why));
+  }
+  void close(std::uint16_t code, std::string reason) {
+    closing = Closing{code, std::move(reason)};
+    if (wake) wake();
+  }
+
   double opened;         ///< s
   bool greeted = false;  ///< said hello with the token
   std::size_t points = 0;
@@ -140,24 +164,52 @@ struct ClientSessionsOptions {
   std::function<Welcome()> welcome;  ///< devices, settings and presets are filled in
 };
 
-/// All clients of the program: reads what they say, answers, remembers who holds which tool.
-/// Knows neither sockets nor clocks; one thread uses it.
+/// Does what pages wish of tools. Remembers which client holds which tool: the last one that moved
+/// it, until it releases the tool, leaves or falls silent.
+class ToolHolders {
+ public:
+  /// `options` outlive it.
+  explicit ToolHolders(const ClientSessionsOptions& options)
+      : options_(options), holders_(options.devices.size(), nullptr) {}
+
+  [[nodiscard]] bool taken(std::size_t device) const { return holders_[device] != nullptr; }
+  // @throws Error that says why a page cannot do that.
+  void move(Session& session, const Hand& hand);
+  void release(Session& session, const Release& wish);
+  void reset(const Reset& wish) const;
+  /// Releases all tools of a client that is gone.
+  void leave(const Session& session);
+  /// Releases what silent clients hold at `now` (s), and tells them.
+  void check(double now);
+
+ private:
+  void let_go(std::size_t device);
+
+  const ClientSessionsOptions& options_;
+  std::vector<Session*> holders_;  // of each device's tool
+};
+
+/// All clients of the program: reads what they say and answers. Knows neither sockets nor clocks;
+/// one thread uses it.
 class ClientSessions {
  public:
   explicit ClientSessions(ClientSessionsOptions options)
-      : options_(std::move(options)), recording_(options_.controls.recording) {
-    holders_.resize(options_.devices.size(), nullptr);
-  }
+      : options_(std::move(options)), tools_(options_), recording_(options_.controls.recording) {}
+  ClientSessions(const ClientSessions&) = delete;
+  ClientSessions& operator=(const ClientSessions&) = delete;
 
   /// A client outlives its leaving.
   void join(Session& session) { sessions_.push_back(&session); }
-  /// Lets go of what the client held.
-  void leave(Session& session);
+  /// Releases the tools that the client held.
+  void leave(Session& session) {
+    std::erase(sessions_, &session);
+    tools_.leave(session);
+  }
 
   /// A message came at `now` (s).
   void receive(Session& session, std::string_view text, double now);
-  /// A binary message: a page sends none.
-  void receive_binary(Session& session, double now);
+  /// Tells a client that its message was refused; closes it after too many of them.
+  void refuse(Session& session, std::string_view why, double now);
   /// Closes those who said no hello in time; lets go of tools whose holders have fallen silent.
   void check(double now);
 
@@ -170,50 +222,26 @@ class ClientSessions {
   /// Sends the time line's present moment if it has changed.
   void send_moment();
   /// Sends the envelope and the past of the time line.
-  void send_time_line() { show_time_line(greeted()); }
-  /// Sends to one client, unless it was sent these same bytes last.
-  static void show(Session& session, Topic topic, const SharedBytes& bytes);
+  void send_time_line();
 
   [[nodiscard]] const ClientSessionsOptions& options() const { return options_; }
   /// Is the device's tool held by a page?
-  [[nodiscard]] bool taken(std::size_t device) const { return holders_[device] != nullptr; }
+  [[nodiscard]] bool taken(std::size_t device) const { return tools_.taken(device); }
   [[nodiscard]] std::vector<Session*> greeted() const;
-  [[nodiscard]] std::uint64_t refused() const { return refused_; }
-  [[nodiscard]] std::uint64_t wrong_tokens() const { return wrong_tokens_; }
-  [[nodiscard]] std::uint64_t turned_away() const { return turned_away_; }
+  /// What was turned away, forbidden and refused; the rest is 0.
+  [[nodiscard]] const Viewer::Counts& counts() const { return counts_; }
 
  private:
-  void act(Session& session, const Hello& hello);
-  void act(Session& session, const Hand& hand);
-  void act(Session& session, const Release& release);
-  void act(Session& session, const Set& set);
-  void act(Session& session, const Preset& preset);
-  void act(Session& session, const Pause& pause);
-  void act(Session& session, const Reset& reset);
-  void act(Session& session, const Record& record);
-  void act(Session& session, const Seek& seek);
-  void act(Session& session, const Play& play);
-  static void act(Session& session, const Points& points) { session.points = points.points; }
-  void act(Session& session, const Ping& ping) { answer(session, pong_text(ping.id)); }
-  static void act(Session&, const Unreadable& unreadable) { throw Error(unreadable.text); }
-
-  void welcome(Session& session);
-  void show_time_line(const std::vector<Session*>& sessions) const;
-  void answer(Session& session, std::string text);
-  void refuse(Session& session, std::string_view text, double now);
-  void close(Session& session, std::uint16_t code, std::string reason);
-  void release(std::size_t device);
-  void lose(std::size_t device, std::string_view why);
-  [[nodiscard]] std::vector<Setting> settings() const;
+  void act(Session& session, const ClientMessage& message);
+  void greet(Session& session, const Hello& hello);
+  void record(bool on);
 
   ClientSessionsOptions options_;
+  ToolHolders tools_;
   std::vector<Session*> sessions_;
-  std::vector<Session*> holders_;           // of each device's tool
   std::string recording_;                   // the file, while one is recorded
   std::optional<TimeLine::Moment> moment_;  // that was told last
-  std::uint64_t refused_ = 0;
-  std::uint64_t wrong_tokens_ = 0;
-  std::uint64_t turned_away_ = 0;
+  Viewer::Counts counts_;
 };
 
 }  // namespace palpate::viewer

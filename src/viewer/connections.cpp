@@ -109,7 +109,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
       const std::string_view text(static_cast<const char*>(data.data()), data.size());
       context().sessions.receive(session_, text, ServerContext::now());
     } else {
-      context().sessions.receive_binary(session_, ServerContext::now());
+      context().sessions.refuse(session_, "binary message; send JSON", ServerContext::now());
     }
     buffer_.consume(buffer_.size());
     read();

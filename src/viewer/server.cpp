@@ -196,14 +196,14 @@ void Server::restarts(std::string why) {
 
 Viewer::Counts Server::counts() const {
   const ServerContext& context = state_->context;
-  const ClientSessions& sessions = context.sessions;
-  return {.connections = context.connections.size(),
-          .clients = sessions.greeted().size(),
-          .accepted = context.accepted,
-          .turned_away = context.turned_away + sessions.turned_away(),
-          .forbidden = context.forbidden + sessions.wrong_tokens(),
-          .refused = sessions.refused(),
-          .closed_silent = context.closed_silent};
+  Viewer::Counts counts = context.sessions.counts();
+  counts.connections = context.connections.size();
+  counts.clients = context.sessions.greeted().size();
+  counts.accepted = context.accepted;
+  counts.turned_away += context.turned_away;
+  counts.forbidden += context.forbidden;
+  counts.closed_silent = context.closed_silent;
+  return counts;
 }
 
 }  // namespace palpate::viewer

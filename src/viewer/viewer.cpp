@@ -34,10 +34,6 @@ constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame (judgement)
 constexpr double kReportPeriod = 0.5;      // s (judgement)
 constexpr double kEmptyRadius = 1;         // m, shown while there are no points (judgement)
 
-Message binary(std::string bytes) {
-  return {std::make_shared<const std::string>(std::move(bytes)), false};
-}
-
 // Around the points of every source's newest surface; empty where there are none.
 Box scene_box(const Scene& scene) {
   Box box;
@@ -209,8 +205,7 @@ void Viewer::Parts::send_devices() {
                        report.status == DeviceState::Status::failed;
     if (wrong) report.reason = servo->device().reason();
   }
-  sessions.send_to_all({Topic::Kind::devices},
-                       {std::make_shared<const std::string>(devices_text(reports)), true});
+  sessions.send_to_all({Topic::Kind::devices}, text_message(devices_text(reports)));
 }
 
 void Viewer::Parts::tick() {
@@ -220,7 +215,7 @@ void Viewer::Parts::tick() {
   encoder.set_budgets(std::move(budgets));
   for (std::size_t i = 0; seen && i < states.size(); ++i) {
     if (const auto state = states[i].next(SteadyClock().now(), radii[i], sessions.taken(i))) {
-      sessions.send_to_all({Topic::Kind::state, i}, binary(encode(*state)));
+      sessions.send_to_all({Topic::Kind::state, i}, binary_message(encode(*state)));
     }
   }
   if (seen) sessions.send_moment();
@@ -233,11 +228,11 @@ void Viewer::Parts::show(const EncodedScene& encoded) {
     if (session->points == 0) continue;
     for (const EncodedCloud& cloud : encoded.clouds) {
       if (session->points != cloud.budget) continue;
-      ClientSessions::show(*session, {Topic::Kind::cloud, cloud.source}, cloud.bytes);
+      session->show({Topic::Kind::cloud, cloud.source}, cloud.bytes);
     }
     for (std::size_t i = 0; i < encoded.surfaces.size(); ++i) {
       if (encoded.surfaces[i].bytes == nullptr) continue;
-      ClientSessions::show(*session, {Topic::Kind::surface, i}, encoded.surfaces[i].bytes);
+      session->show({Topic::Kind::surface, i}, encoded.surfaces[i].bytes);
     }
   }
   if (encoded.sources) sessions.send_to_all({Topic::Kind::sources}, {encoded.sources, true});

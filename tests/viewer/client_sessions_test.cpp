@@ -33,7 +33,7 @@ TEST(ClientSessions, AWrongTokenClosesTheSocketAndTellsNothing) {
   EXPECT_EQ(session.closing->code, 1008);
   EXPECT_FALSE(session.greeted);
   EXPECT_TRUE(rig.answers(session, kHello).empty());
-  EXPECT_EQ(rig.sessions->wrong_tokens(), 1u);
+  EXPECT_EQ(rig.sessions->counts().forbidden, 1u);
 }
 
 TEST(ClientSessions, WhatComesBeforeHelloIsRefusedAndChangesNothing) {
@@ -121,12 +121,12 @@ TEST(ClientSessions, After20RefusalsIn10SecondsASocketIsClosed) {
   }
   EXPECT_FALSE(patient.closing);
   Session& hasty = rig.enter();
-  for (int i = 0; i < 19; ++i) rig.sessions->receive_binary(hasty, rig.now);
+  for (int i = 0; i < 19; ++i) rig.sessions->refuse(hasty, "binary", rig.now);
   EXPECT_FALSE(hasty.closing);
   rig.sessions->receive(hasty, "nonsense", rig.now);
   ASSERT_TRUE(hasty.closing);
   EXPECT_EQ(hasty.closing->code, 1008);
-  EXPECT_EQ(rig.sessions->refused(), 80u);
+  EXPECT_EQ(rig.sessions->counts().refused, 80u);
 }
 
 TEST(ClientSessions, MoreThan250MessagesASecondAreRefused) {
