@@ -116,7 +116,7 @@ DeviceState OpenHapticsDriver::exchange(const Vector3d& force) {
 void OpenHapticsDriver::prepare() {
   OpenHapticsFrames::Answer now = checked_answer();
   if (now.temperature > kCool) {
-    fail(fmt::format("its motors are hot ({:.2f} of 1). Let them cool down to {}", now.temperature,
+    fail(fmt::format("its motors are hot ({:.2f} of 1). Let them cool down to {}", *now.temperature,
                      kCool));
   }
   const int styles = session_.facts().calibration_styles & (hd::kAutomatic | hd::kInkwell);

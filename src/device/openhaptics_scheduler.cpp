@@ -117,6 +117,32 @@ class Rest {
 
 }  // namespace
 
+void OpenHapticsHand::end_frame(const Vector3d& force) const noexcept {
+  library.set_numbers(hd::kCurrentForce, to_hd(force).eval().data());
+  library.end_frame(device);
+}
+
+DeviceState OpenHapticsHand::read() const noexcept {
+  Vector3d position = Vector3d::Zero();
+  Vector3d velocity = Vector3d::Zero();
+  int buttons = 0;
+  library.get_numbers(hd::kCurrentPosition, position.data());
+  library.get_numbers(hd::kCurrentVelocity, velocity.data());
+  library.get_integers(hd::kCurrentButtons, &buttons);
+  DeviceState state;
+  state.position = kMillimetre * from_hd(position);
+  state.velocity = kMillimetre * from_hd(velocity);
+  state.buttons = static_cast<std::uint32_t>(buttons);
+  return state;
+}
+
+double OpenHapticsHand::warmest_motor() const noexcept {
+  std::array<double, 6> temperatures{};  // of three motors or six
+  library.get_numbers(hd::kMotorTemperature, temperatures.data());
+  (void)take_error();  // older libraries do not know it
+  return std::ranges::max(temperatures);
+}
+
 void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
   wanted_.set({force, clock_.now(), ++asked_});
 }
@@ -128,20 +154,15 @@ std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patien
     if (newest.number == asked_) return newest;
     const TimePoint now = steady_clock::now();
     // Time at rest does not count.
-    end = std::max(end, (resting_ ? now : resumed_.load()) + seconds(patience));
+    end = std::max(end, std::min(now, runs_since_.load()) + seconds(patience));
     if (now >= end) return std::nullopt;
     wakeup_.wait_until(end);
   }
 }
 
-void OpenHapticsFrames::resume() noexcept {
-  resumed_ = steady_clock::now();
-  resting_ = false;
-}
-
 void OpenHapticsFrames::tick() noexcept {
   if (over_) return;
-  if (!resting_) {
+  if (runs_since_.load() != TimePoint::max()) {
     at_rest_ = false;
     frame();
   } else if (!at_rest_) {
@@ -151,21 +172,21 @@ void OpenHapticsFrames::tick() noexcept {
 }
 
 void OpenHapticsFrames::frame() noexcept {
-  library_.make_current(device_);
-  library_.begin_frame(device_);
+  hand_.begin_frame();
   if (over_) return;  // it may have hung
-  if (frames_ == 0) newest_.temperature = warmest_motor();
-  if (const int styles = calibrate_.exchange(0); styles != 0) {
-    library_.update_calibration(calibration_style(styles));
+  if (!newest_.temperature) {
+    keep_failure();
+    newest_.temperature = hand_.warmest_motor();
   }
-  newest_.calibration = library_.check_calibration();
-  newest_.state = read();
+  if (const int styles = calibrate_.exchange(0); styles != 0) {
+    hand_.library.update_calibration(calibration_style(styles));
+  }
+  newest_.calibration = hand_.library.check_calibration();
+  newest_.state = hand_.read();
   keep_failure();  // before there is a force
   if (const std::optional<Wanted> wanted = wanted_.look()) taken_ = *wanted;
-  library_.set_numbers(hd::kCurrentForce, to_hd(permitted(newest_.state)).eval().data());
-  library_.end_frame(device_);
+  hand_.end_frame(permitted(newest_.state));
   keep_failure();
-  ++frames_;
   const bool is_awaited = newest_.number != taken_.number;
   newest_.number = taken_.number;
   answers_.set(newest_);
@@ -173,35 +194,10 @@ void OpenHapticsFrames::frame() noexcept {
 }
 
 void OpenHapticsFrames::frame_without_force() noexcept {
-  const Vector3d zero = Vector3d::Zero();
-  library_.make_current(device_);
-  library_.begin_frame(device_);
+  hand_.begin_frame();
   if (over_) return;
-  library_.set_numbers(hd::kCurrentForce, zero.data());
-  library_.end_frame(device_);
+  hand_.end_frame(Vector3d::Zero());
   keep_failure();
-}
-
-double OpenHapticsFrames::warmest_motor() noexcept {
-  keep_failure();
-  std::array<double, 6> temperatures{};  // of three motors or six
-  library_.get_numbers(hd::kMotorTemperature, temperatures.data());
-  (void)errors_.take(library_, device_);  // older libraries do not know it
-  return std::ranges::max(temperatures);
-}
-
-DeviceState OpenHapticsFrames::read() const noexcept {
-  Vector3d position = Vector3d::Zero();
-  Vector3d velocity = Vector3d::Zero();
-  int buttons = 0;
-  library_.get_numbers(hd::kCurrentPosition, position.data());
-  library_.get_numbers(hd::kCurrentVelocity, velocity.data());
-  library_.get_integers(hd::kCurrentButtons, &buttons);
-  DeviceState state;
-  state.position = kMillimetre * from_hd(position);
-  state.velocity = kMillimetre * from_hd(velocity);
-  state.buttons = static_cast<std::uint32_t>(buttons);
-  return state;
 }
 
 Vector3d OpenHapticsFrames::permitted(const DeviceState& state) const noexcept {
@@ -213,7 +209,7 @@ Vector3d OpenHapticsFrames::permitted(const DeviceState& state) const noexcept {
 }
 
 void OpenHapticsFrames::keep_failure() noexcept {
-  const unsigned code = errors_.take(library_, device_);
+  const unsigned code = hand_.take_error();
   if (newest_.failure == hd::kSuccess) newest_.failure = code;
 }
 

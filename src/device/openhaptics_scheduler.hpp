@@ -42,6 +42,23 @@ class Wakeup {
   sem_t semaphore_{};
 };
 
+/// An open device of the library, as frames use it, in metres and with z up. Bounded work.
+struct OpenHapticsHand {
+  OpenHapticsLibrary library;
+  OpenHapticsLibrary::Device device;
+  OpenHapticsErrors& errors;
+
+  void begin_frame() const noexcept {
+    library.make_current(device);
+    library.begin_frame(device);
+  }
+  void end_frame(const Eigen::Vector3d& force) const noexcept;
+  /// The state without status and time. Within a frame, as the next.
+  [[nodiscard]] DeviceState read() const noexcept;
+  [[nodiscard]] double warmest_motor() const noexcept;
+  [[nodiscard]] unsigned take_error() const noexcept { return errors.take(library, device); }
+};
+
 /// Frames of one device: the scheduler calls tick() at 1 kHz on its own thread; each call reads
 /// the hand's position and applies the force that was asked for last.
 ///
@@ -55,17 +72,17 @@ class OpenHapticsFrames {
 
   /// The result of the frame that took what was asked for last.
   struct Answer {
-    DeviceState state;         // without status and time
-    std::uint64_t number = 0;  // of what was asked
-    unsigned failure = 0;      // the first error's code
-    unsigned calibration = 0;  // hd::kCalibrated and the like
-    double temperature = 0;    // of the warmest motor in the first frame; 1: as warm as allowed
+    DeviceState state;                  // without status and time
+    std::uint64_t number = 0;           // of what was asked
+    unsigned failure = 0;               // the first error's code
+    unsigned calibration = 0;           // hd::kCalibrated and the like
+    std::optional<double> temperature;  // of the warmest motor at first; 1: as warm as allowed
   };
 
   /// `clock` is read in ticks, too; it and `errors` outlive this.
   OpenHapticsFrames(const OpenHapticsLibrary& library, OpenHapticsLibrary::Device device,
                     const Clock& clock, OpenHapticsErrors& errors)
-      : library_(library), device_(device), clock_(clock), errors_(errors) {}
+      : hand_{library, device, errors}, clock_(clock) {}
 
   // For one other thread.
   /// Asks for a force, N, as the operator sits.
@@ -80,10 +97,10 @@ class OpenHapticsFrames {
   /// The next tick makes one frame without a force; later ones do nothing, until resume().
   void rest() noexcept {
     at_rest_ = false;
-    resting_ = true;
+    runs_since_ = TimePoint::max();
   }
   [[nodiscard]] bool is_at_rest() const noexcept { return at_rest_; }
-  void resume() noexcept;
+  void resume() noexcept { runs_since_ = std::chrono::steady_clock::now(); }
   /// The device is about to be closed: no tick does anything any more, not even one whose frame
   /// began before this.
   void end() noexcept { over_ = true; }
@@ -101,18 +118,13 @@ class OpenHapticsFrames {
 
   void frame() noexcept;
   void frame_without_force() noexcept;
-  [[nodiscard]] DeviceState read() const noexcept;
-  [[nodiscard]] double warmest_motor() noexcept;
   [[nodiscard]] Eigen::Vector3d permitted(const DeviceState& state) const noexcept;
   void keep_failure() noexcept;
 
-  OpenHapticsLibrary library_;
-  OpenHapticsLibrary::Device device_;
+  OpenHapticsHand hand_;
   const Clock& clock_;
-  OpenHapticsErrors& errors_;
 
   // Used by the scheduler's thread alone.
-  std::uint64_t frames_ = 0;
   Wanted taken_;
   Answer newest_;
 
@@ -122,10 +134,9 @@ class OpenHapticsFrames {
   Latest<Wanted> wanted_;
   Latest<Answer> answers_;
   std::atomic<int> calibrate_{0};
-  std::atomic<bool> resting_{false};
+  std::atomic<TimePoint> runs_since_{TimePoint{}};  // max(): it rests
   std::atomic<bool> at_rest_{false};
   std::atomic<bool> over_{false};
-  std::atomic<TimePoint> resumed_{TimePoint{}};
   Wakeup wakeup_;
 };
 
