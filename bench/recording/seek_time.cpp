@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <deque>
 #include <random>
 #include <vector>
 
@@ -37,36 +36,25 @@ void measure(const std::string& path, int seeks) {
   const SteadyClock clock;
   double begin = clock.now();
   const auto passed = [&] { return clock.now() - std::exchange(begin, clock.now()); };
-  const Recording recording(path);
-  const Recording::Stretch stretch = recording.stretch();
-  Scene scene;
-  std::deque<ShownSource> sources;
-  std::deque<ShownHand> hands;
-  for (std::size_t i = 0; i < recording.sources().size(); ++i) {
-    sources.emplace_back(recording, i, scene);
-  }
-  for (std::size_t i = 0; i < recording.hands().size(); ++i) {
-    hands.emplace_back(recording, i, scene);
-  }
+  ShownRun run(path);
   fmt::print("{:.0f} s, {} hands, {} sources; opened in {:.0f} ms; {:.0f} MB at most\n",
-             stretch.end - stretch.begin, hands.size(), sources.size(), 1e3 * passed(),
-             megabytes());
+             run.length(), run.hands.size(), run.sources.size(), 1e3 * passed(), megabytes());
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> moments(stretch.begin, stretch.end);
+  std::uniform_real_distribution<double> moments(run.stretch.begin, run.stretch.end);
   std::vector<double> steps;
   std::vector<double> pasts;
   std::vector<double> frames;
   for (int i = 0; i < seeks; ++i) {
     const double moment = moments(random);
     passed();
-    for (ShownHand& hand : hands) hand.seek(moment);
+    for (ShownHand& hand : run.hands) hand.seek(moment);
     steps.push_back(passed());
-    for (ShownHand& hand : hands) (void)hand.past(Playback::kPast, [] { return false; });
+    for (ShownHand& hand : run.hands) (void)hand.past(Playback::kPast, [] { return false; });
     pasts.push_back(passed());
-    for (ShownSource& source : sources) {
+    for (ShownSource& source : run.sources) {
       if (source.lives()) source.show(moment);
     }
-    if (sources.front().lives()) frames.push_back(passed());
+    if (run.sources.front().lives()) frames.push_back(passed());
   }
   tell("steps", steps);
   tell("past", pasts);

@@ -133,6 +133,7 @@ struct Playing {
   }
 
   Playback player;
+  Playback::TimeLine line = player.time_line();
   std::atomic<int> changes{0};
   std::string complaint;
 };
@@ -140,30 +141,31 @@ struct Playing {
 TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   Playing playing(path());
   Playback& player = playing.player;
-  EXPECT_NEAR(player.length(), 1e-3 * (kSteps - 1), 1e-9);
+  const Playback::TimeLine& line = playing.line;
+  EXPECT_NEAR(line.length, 1e-3 * (kSteps - 1), 1e-9);
   EXPECT_EQ(player.servos().size(), 2u);
   EXPECT_NEAR(playing.shown(0), 0, 1e-9);
-  player.seek(2.5);
-  Playing::wait([&] { return playing.shown(1) > 2.4 && player.past(1).size() > 2400; });
-  EXPECT_EQ(player.past(0).back().time, player.servos()[0]->state().time);
+  line.seek(2.5);
+  Playing::wait([&] { return playing.shown(1) > 2.4 && line.past(1).size() > 2400; });
+  EXPECT_EQ(line.past(0).back().time, player.servos()[0]->state().time);
   expect_same(player.servos()[1]->state(), at(1, kBegin + 2.5));
-  player.seek(1e6);
+  line.seek(1e6);
   Playing::wait([&] { return playing.shown(0) > 5.9; });
-  EXPECT_EQ(player.moment().time, player.length());
-  player.play(true, 4);
+  EXPECT_EQ(line.moment().time, line.length);
+  line.play(true, 4);
   Playing::wait([&] { return playing.shown(0) > 0.01 && playing.shown(0) < 5; });
-  player.seek(player.length() - 0.1);
-  Playing::wait([&] { return playing.shown(0) > player.length() - 1e-6; });
-  EXPECT_FALSE(player.moment().playing);
-  EXPECT_EQ(player.moment().time, player.length()) << "it ends there";
-  EXPECT_EQ(player.moment().speed, 4);
+  line.seek(line.length - 0.1);
+  Playing::wait([&] { return playing.shown(0) > line.length - 1e-6; });
+  EXPECT_FALSE(line.moment().playing);
+  EXPECT_EQ(line.moment().time, line.length) << "it ends there";
+  EXPECT_EQ(line.moment().speed, 4);
   expect_same(player.servos()[0]->state(), felt_[0].back());
   EXPECT_EQ(playing.complaint, "");
 }
 
 TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
   Playing playing(path());
-  const double part = playing.player.length() / Playback::kEnvelope;
+  const double part = playing.line.length / Playback::kEnvelope;
   std::vector<float> largest(Playback::kEnvelope);
   for (const States& felt : felt_) {
     for (const ServoState& state : felt) {
@@ -172,17 +174,18 @@ TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
       top = std::max(top, static_cast<float>(state.force.norm()));
     }
   }
-  Playing::wait([&] { return playing.player.envelope() == largest; });
+  Playing::wait([&] { return playing.line.envelope() == largest; });
   EXPECT_GT(*std::ranges::max_element(largest), 0.1F);
 }
 
 TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {
   Playing playing(path());
   Playback& player = playing.player;
+  const Playback::TimeLine& line = playing.line;
   // Hangs until the test's time is over if it never is.
   const auto wait_for = [&](double time, FieldOptions::Kind kind) {
     Playing::wait([&] {
-      player.seek(time);
+      line.seek(time);
       return std::abs(playing.shown(0) - time) < 1e-3 && player.servos()[0]->field().kind == kind;
     });
   };
@@ -198,8 +201,8 @@ TEST_F(TimeLineTest, AFileThatWasCutShowsWhatIsThere) {
   std::filesystem::resize_file(cut, 3 * std::filesystem::file_size(cut) / 5);
   EXPECT_FALSE(bag::McapReader(cut).contents().closed);
   Playing playing(cut);
-  EXPECT_GT(playing.player.length(), 1);
-  playing.player.seek(1);
+  EXPECT_GT(playing.line.length, 1);
+  playing.line.seek(1);
   Playing::wait([&] { return playing.shown(1) > 0.9; });
   expect_same(playing.player.servos()[1]->state(), at(1, kBegin + 1));
 }

@@ -10,6 +10,7 @@
 
 #include "apps/palpate/record/options_json.hpp"
 #include "message/transforms.hpp"
+#include "palpate/base/clock.hpp"
 
 namespace palpate::app {
 
@@ -22,18 +23,10 @@ constexpr double kNews = 0.5;  // s between two envelopes while the file is read
 }  // namespace
 
 Playback::Playback(const std::string& path)
-    : recording_(path),
-      stretch_(recording_.stretch()),
-      envelope_(kEnvelope, 0.0F),
-      pasts_(recording_.hands().size()),
-      fields_(pasts_.size()) {
-  for (std::size_t i = 0; i < recording_.sources().size(); ++i) {
-    sources_.emplace_back(recording_, i, scene_);
-  }
-  for (std::size_t i = 0; i < pasts_.size(); ++i) {
-    hands_.emplace_back(recording_, i, scene_);
-    hands_.back().seek(stretch_.begin);
-    fields_[i].push_back({stretch_.begin, hands_.back().servo().field()});
+    : run_(path), envelope_(kEnvelope, 0.0F), pasts_(run_.hands.size()) {
+  for (ShownHand& hand : run_.hands) {
+    hand.seek(run_.stretch.begin);
+    fields_.push_back({FieldChange{run_.stretch.begin, hand.servo().field()}});
   }
 }
 
@@ -43,7 +36,7 @@ Playback::~Playback() {
 
 std::vector<Servo*> Playback::servos() {
   std::vector<Servo*> servos;
-  for (ShownHand& hand : hands_) servos.push_back(&hand.servo());
+  for (ShownHand& hand : run_.hands) servos.push_back(&hand.servo());
   return servos;
 }
 
@@ -55,7 +48,7 @@ void Playback::start(Listener listener) {
   };
   run(&Playback::show_steps);
   run(&Playback::read_forces);
-  const bool live = std::ranges::any_of(sources_, &ShownSource::lives);
+  const bool live = std::ranges::any_of(run_.sources, &ShownSource::lives);
   if (live) run(&Playback::show_frames);
 }
 
@@ -72,15 +65,27 @@ void Playback::guard(const std::function<void()>& work) {
   }
 }
 
-Playback::TimeLine::Moment Playback::moment() const {
-  const std::lock_guard lock(mutex_);
-  return moment_;
+Playback::TimeLine Playback::time_line() {
+  const auto locked = [this](const auto& copy) {
+    return [this, copy](auto... which) {
+      const std::lock_guard lock(mutex_);
+      return copy(which...);
+    };
+  };
+  TimeLine line;
+  line.length = run_.length();
+  line.moment = locked([this] { return moment_; });
+  line.seek = [this](double time) { seek(time); };
+  line.play = [this](bool on, double speed) { play(on, speed); };
+  line.envelope = locked([this] { return envelope_; });
+  line.past = locked([this](std::size_t hand) { return pasts_[hand]; });
+  return line;
 }
 
 void Playback::seek(double time) {
   {
     const std::lock_guard lock(mutex_);
-    sought_ = moment_.time = std::clamp(time, 0.0, length());
+    sought_ = moment_.time = std::clamp(time, 0.0, run_.length());
   }
   changed_.notify_all();
 }
@@ -88,33 +93,24 @@ void Playback::seek(double time) {
 void Playback::play(bool on, double speed) {
   {
     const std::lock_guard lock(mutex_);
-    if (on && !moment_.playing && moment_.time >= length()) sought_ = moment_.time = 0;
+    if (on && !moment_.playing && moment_.time >= run_.length()) sought_ = moment_.time = 0;
     moment_.playing = on;
     moment_.speed = speed;
   }
   changed_.notify_all();
 }
 
-std::vector<float> Playback::envelope() const {
-  const std::lock_guard lock(mutex_);
-  return envelope_;
-}
-
-std::vector<Playback::TimeLine::Force> Playback::past(std::size_t hand) const {
-  const std::lock_guard lock(mutex_);
-  return pasts_[hand];
-}
-
 std::vector<ViewerOptions::Stream> Playback::streams() const {
   std::vector<ViewerOptions::Stream> streams;
-  for (const ShownSource& source : sources_) {
+  for (const ShownSource& source : run_.sources) {
     if (source.lives()) streams.push_back(source.stream());
   }
   return streams;
 }
 
 void Playback::show_steps(const std::stop_token& stop) {
-  double looked = clock_.now();
+  const SteadyClock clock;
+  double looked = clock.now();
   while (!stop.stop_requested()) {
     std::optional<double> sought;
     {
@@ -124,26 +120,26 @@ void Playback::show_steps(const std::stop_token& stop) {
         changed_.wait_for(lock, stop, kPicture, called);
       } else {
         changed_.wait(lock, stop, [&] { return called() || moment_.playing; });
-        looked = clock_.now();
+        looked = clock.now();
       }
       sought = std::exchange(sought_, std::nullopt);
     }
     if (sought) jump(*sought, stop);
-    const double now = clock_.now();
+    const double now = clock.now();
     if (!sought) advance(now - looked);
     looked = now;
   }
 }
 
 void Playback::jump(double time, const std::stop_token& stop) {
-  for (ShownHand& hand : hands_) hand.seek(stretch_.begin + time);
-  show_fields(stretch_.begin + time);
+  for (ShownHand& hand : run_.hands) hand.seek(run_.stretch.begin + time);
+  show_fields(run_.stretch.begin + time);
   const auto cancelled = [&] {
     const std::lock_guard lock(mutex_);
     return sought_.has_value() || stop.stop_requested();
   };
-  for (std::size_t i = 0; i < hands_.size(); ++i) {
-    std::vector<TimeLine::Force> past = hands_[i].past(kPast, cancelled);
+  for (std::size_t i = 0; i < run_.hands.size(); ++i) {
+    std::vector<TimeLine::Force> past = run_.hands[i].past(kPast, cancelled);
     const std::lock_guard lock(mutex_);
     pasts_[i] = std::move(past);
   }
@@ -155,31 +151,35 @@ void Playback::advance(double elapsed) {
   {
     const std::lock_guard lock(mutex_);
     if (sought_ || !moment_.playing) return;
-    time = moment_.time = std::min(moment_.time + elapsed * moment_.speed, length());
-    moment_.playing = time < length();
+    time = moment_.time = std::min(moment_.time + elapsed * moment_.speed, run_.length());
+    moment_.playing = time < run_.length();
   }
-  for (ShownHand& hand : hands_) hand.advance(stretch_.begin + time);
-  show_fields(stretch_.begin + time);
+  for (ShownHand& hand : run_.hands) hand.advance(run_.stretch.begin + time);
+  show_fields(run_.stretch.begin + time);
 }
 
 // The surface around a tool is that of the field which its hand felt.
 void Playback::show_fields(double time) {
-  for (std::size_t i = 0; i < hands_.size(); ++i) {
+  for (std::size_t i = 0; i < run_.hands.size(); ++i) {
     FieldOptions field;
     {
       const std::lock_guard lock(mutex_);
       const auto after = std::ranges::upper_bound(fields_[i], time, {}, &FieldChange::time);
       field = (after == fields_[i].begin() ? after : std::prev(after))->field;
     }
-    if (field != hands_[i].servo().field()) hands_[i].servo().set_field(field);
+    if (field != run_.hands[i].servo().field()) run_.hands[i].servo().set_field(field);
   }
 }
 
 void Playback::show_frames(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const double time = moment().time;
-    for (ShownSource& source : sources_) {
-      if (source.lives()) guard([&] { source.show(stretch_.begin + time); });
+    double time = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      time = moment_.time;
+    }
+    for (ShownSource& source : run_.sources) {
+      if (source.lives()) guard([&] { source.show(run_.stretch.begin + time); });
     }
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kFrame, [] { return false; });
@@ -188,22 +188,23 @@ void Playback::show_frames(const std::stop_token& stop) {
 }
 
 void Playback::read_forces(const std::stop_token& stop) {
-  Recording::Steps steps(recording_);
-  double told = clock_.now();
+  Recording::Steps steps(run_.recording);
+  const SteadyClock clock;
+  double told = clock.now();
   while (!stop.stop_requested()) {
     const std::optional<Recording::Step> step = steps.next();
     if (!step) break;
     take(*step);
-    if (clock_.now() - told < kNews) continue;
-    told = clock_.now();
+    if (clock.now() - told < kNews) continue;
+    told = clock.now();
     listener_.changed();
   }
   if (!stop.stop_requested()) listener_.changed();
 }
 
 void Playback::take(const Recording::Step& step) {
-  const double part = std::max(length(), 1e-3) / static_cast<double>(kEnvelope);
-  const double at = std::floor((step.tick.time - stretch_.begin) / part);
+  const double part = std::max(run_.length(), 1e-3) / static_cast<double>(kEnvelope);
+  const double at = std::floor((step.tick.time - run_.stretch.begin) / part);
   const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, double{kEnvelope - 1}));
   const auto force = static_cast<float>(message::eigen(step.tick.force).norm());
   const std::lock_guard lock(mutex_);

@@ -2,7 +2,6 @@
 
 #include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -12,16 +11,15 @@
 
 #include "apps/palpate/record/recording.hpp"
 #include "apps/palpate/replay/shown_run.hpp"
-#include "palpate/base/clock.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
 
-/// A recorded run that goes by as it did, or is shown at any moment, in a scene and servos that
-/// nobody steps. Threads of its own read the file: one the steps, one the frames, one all forces
-/// once. Times from 0 at the run's first step. Holds no more of the file than what is shown.
+/// A recorded run that goes by as it did, or is shown at any moment. Threads of its own read the
+/// file: one the steps, one the frames, one all forces once. Holds no more of the file than what is
+/// shown.
 class Playback {
  public:
   using TimeLine = ViewerControls::TimeLine;
@@ -32,7 +30,7 @@ class Playback {
     std::function<void(const std::string&)> complain;  ///< what is damaged
   };
 
-  static constexpr double kPast = 5;               ///< s that past() goes back
+  static constexpr double kPast = 5;               ///< s that a hand's past goes back
   static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
 
   /// Shows the first moment. @throws Error when the file is no recording of a run.
@@ -41,23 +39,18 @@ class Playback {
   Playback(const Playback&) = delete;
   Playback& operator=(const Playback&) = delete;
 
-  [[nodiscard]] Scene& scene() { return scene_; }
+  [[nodiscard]] Scene& scene() { return run_.scene; }
   [[nodiscard]] std::vector<Servo*> servos();
-  [[nodiscard]] double length() const { return stretch_.end - stretch_.begin; }
   /// Was the run in the axes of a camera's picture, y down?
-  [[nodiscard]] bool in_picture_axes() const { return recording_.in_picture_axes(); }
+  [[nodiscard]] bool in_picture_axes() const { return run_.recording.in_picture_axes(); }
 
   /// Starts the threads. From now on any thread may call the rest; stop() ends what is told.
   void start(Listener listener);
   void stop();
 
-  [[nodiscard]] TimeLine::Moment moment() const;
-  /// Beyond the length: the end.
-  void seek(double time);
-  /// At the end it begins again.
-  void play(bool on, double speed);
-  [[nodiscard]] std::vector<float> envelope() const;
-  [[nodiscard]] std::vector<TimeLine::Force> past(std::size_t hand) const;
+  /// Shows and moves this playback, which outlives it. Times from 0 at the run's first step: a seek
+  /// beyond the length goes to the end; who plays at the end begins again.
+  [[nodiscard]] TimeLine time_line();
   [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;
 
  private:
@@ -66,6 +59,8 @@ class Playback {
     FieldOptions field;
   };
 
+  void seek(double time);
+  void play(bool on, double speed);
   void guard(const std::function<void()>& work);
   void show_steps(const std::stop_token& stop);
   void jump(double time, const std::stop_token& stop);
@@ -75,15 +70,10 @@ class Playback {
   void read_forces(const std::stop_token& stop);
   void take(const Recording::Step& step);
 
-  Recording recording_;
-  Recording::Stretch stretch_;
-  Scene scene_;
-  std::deque<ShownSource> sources_;
-  std::deque<ShownHand> hands_;
-  SteadyClock clock_;
+  ShownRun run_;
   Listener listener_;
 
-  mutable std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // of what follows
   std::condition_variable_any changed_;
   TimeLine::Moment moment_;
   std::optional<double> sought_;  // not shown yet

@@ -20,17 +20,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{50};
 
-ViewerControls::TimeLine time_line_of(Playback& playback) {
-  ViewerControls::TimeLine line;
-  line.length = playback.length();
-  line.moment = [&] { return playback.moment(); };
-  line.seek = [&](double time) { playback.seek(time); };
-  line.play = [&](bool on, double speed) { playback.play(on, speed); };
-  line.envelope = [&] { return playback.envelope(); };
-  line.past = [&](std::size_t hand) { return playback.past(hand); };
-  return line;
-}
-
 }  // namespace
 
 void view_recording(const std::string& path, const PagePlan& page) {
@@ -46,7 +35,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
   options.scene = std::filesystem::path(path).filename();
   options.streams = [&] { return playback.streams(); };
   ViewerControls controls;
-  controls.time_line = time_line_of(playback);
+  controls.time_line = playback.time_line();
   Viewer viewer(playback.scene(), playback.servos(), options, controls);
   playback.start({[&] { viewer.time_line_changed(); },
                   [&](const std::string& why) {

@@ -142,4 +142,13 @@ ShownSource::Stream ShownSource::stream() const {
   return stream_;
 }
 
+ShownRun::ShownRun(const std::string& path) : recording(path), stretch(recording.stretch()) {
+  for (std::size_t i = 0; i < recording.sources().size(); ++i) {
+    sources.emplace_back(recording, i, scene);
+  }
+  for (std::size_t i = 0; i < recording.hands().size(); ++i) {
+    hands.emplace_back(recording, i, scene);
+  }
+}
+
 }  // namespace palpate::app

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -70,6 +71,20 @@ class ShownSource {
   std::optional<RecordedFrame> upcoming_;  // the first after that
   mutable std::mutex mutex_;
   Stream stream_;
+};
+
+/// Hands and sources of a recorded run, in a scene of their own.
+struct ShownRun {
+  /// @throws Error when the file is no recording of a run.
+  explicit ShownRun(const std::string& path);
+
+  [[nodiscard]] double length() const { return stretch.end - stretch.begin; }
+
+  Recording recording;
+  Recording::Stretch stretch;
+  Scene scene;
+  std::deque<ShownSource> sources;
+  std::deque<ShownHand> hands;
 };
 
 }  // namespace palpate::app
