@@ -130,10 +130,11 @@ void Facing::choose_eye(const Stance& stance) noexcept {
   eye_.view = std::sqrt(closest) + kView * radius_;
 }
 
-/// Has the sheet a label, and a side that is never turned? Then what is seen of it decides nothing.
+/// Has the sheet a label, and is it seen from its one side? Then what is seen of it decides
+/// nothing.
 bool Facing::is_decided(const Sheet& sheet) const noexcept {
   const Part& part = now_.parts[sheet.part];
-  return sheet.label != kOpen && part.key == kOneSided && part.sign != 0;
+  return sheet.label != kOpen && part.key == kOneSided && part.sign > 0;
 }
 
 /// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the

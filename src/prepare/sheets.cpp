@@ -17,9 +17,7 @@ constexpr double kCertain = std::numeric_limits<double>::infinity();  // outweig
 constexpr double kCoherent = 0.5;     // |sum of votes| over the sum of their sizes: most agree
 constexpr double kEnoughVotes = 0.3;  // sum v^2 of the votes v; less is chance; judgement
 
-// The same, of evidence that is sure: 92 % of it agree. The eye sees 0.83 of a whole sphere from
-// behind where it is 1.4 radii from its centre, and must not turn it inside out; judgement.
-constexpr double kAgree = 0.85;
+constexpr double kAgree = 0.96;      // the same, of evidence that is sure: 98 % agree; judgement
 constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
 constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement

@@ -100,6 +100,13 @@ struct SceneField::State {
   PatchCache patches{surface};
 };
 
+/// How long a cloud has to last, as far as its sensor tells, s. Clouds whose surfaces come late are
+/// apart for that reason: the longer tools reach, the later these come.
+double time_to_next(const Snapshot& cloud) noexcept {
+  const double shown = time_shown(cloud);
+  return std::max(std::min(shown, kLateCloud), shown - (cloud.start - cloud.stamp));
+}
+
 /// Are the views' snapshots those of the last call? A new one never has the old one's address.
 bool SceneField::State::same_snapshots() noexcept {
   bool same = true;
@@ -132,9 +139,7 @@ void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
   ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
   const bool still = layer.points->end_positions.empty();
   const Snapshot& newest = *shown[source];
-  // A cloud is prepared as soon as tools' reach lets it; the reach must not wait for it in turn.
-  const double next = still ? std::min(time_shown(newest), kLateCloud) : time_shown(newest);
-  frame_interval = std::max(frame_interval, next);
+  frame_interval = std::max(frame_interval, still ? time_to_next(newest) : time_shown(newest));
   if (layer.points->size() == 0) return;  // a sensor that sees nothing
   if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
   if (still) cloud_duration = std::max(cloud_duration, time_shown(newest));

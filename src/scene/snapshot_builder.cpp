@@ -17,6 +17,12 @@ namespace {
 // than points, and normals look around (judgement).
 constexpr double kClipMargin = 0.3;
 
+// So many clouds in a row whose surfaces come late are no hiccup (judgement).
+constexpr int kEnoughLate = 3;
+
+// In so long at least a last surface goes to where all of what was measured has it, s (judgement).
+constexpr double kLeast = 0.1;
+
 // Points of a cloud that are only seen: pages draw some ten thousand of all (judgement).
 constexpr std::size_t kMostSeen = 20000;
 
@@ -53,16 +59,19 @@ bool is_view(const PointCloud& cloud) {
   return stand.translation() == *cloud.viewpoint;
 }
 
-/// The points of a cloud, by whether a tool can come to them before the next clouds.
+/// The points of a cloud that preparation would take, by whether a tool can come to them before the
+/// next clouds.
 struct Split {
   std::vector<std::uint32_t> near;
   std::vector<std::uint32_t> far;
 };
 
-Split split(const PointCloud& cloud, const Arrival& arrival) {
+Split split(const PointCloud& cloud, const std::optional<Box>& clip, const Arrival& arrival) {
   Split parts;
   for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d p = arrival.T_world_sensor * cloud.point(i);
+    const Eigen::Vector3d own = cloud.point(i);
+    if (!own.allFinite() || (clip && !clip->contains(own))) continue;
+    const Eigen::Vector3d p = arrival.T_world_sensor * own;
     const bool near = std::ranges::any_of(arrival.reach, [&](const Reach& reach) {
       return (p - reach.center).norm() <= (1 + kClipMargin) * reach.radius;
     });
@@ -137,15 +146,27 @@ std::shared_ptr<Snapshot> SnapshotBuilder::morphed(const MorphInput& input,
   return snapshot;
 }
 
-std::shared_ptr<Snapshot> SnapshotBuilder::last_of_frames(const Snapshot& newest) {
-  constexpr double kLeast = 0.1;  // s, in which a surface goes to where the fit has it
-  const bool own = newest.sequence > 0 && newest.sequence == last_.sequence;
-  if (frames_ != Policy::morph || !own) return nullptr;
+std::shared_ptr<Snapshot> SnapshotBuilder::last_of(const Snapshot& newest,
+                                                   const CloudNotes& notes) {
+  if (newest.sequence == 0 || newest.sequence != last_.sequence) return nullptr;
+  const FrameTiming moment{last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)};
+  if (!notes.whole.empty()) {
+    std::shared_ptr<SurfacePoints> points = points_.take();
+    *points = prepare(notes.whole, options_.prepare, notes.T_world_sensor).points;
+    points->one_sided = is_one_view(notes.whole);
+    std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
+    for (const Snapshot::Layer& layer : newest.layers) {
+      if (layer.weight_end > 0) snapshot->layers.push_back({layer.points, layer.weight_end, 0});
+    }
+    snapshot->layers.push_back({std::move(points), 0, 1});
+    return snapshot;
+  }
+  if (frames_ != Policy::morph) return nullptr;
   const FilteredDepth* const depth = filter_.fit_all();
   if (depth == nullptr) return nullptr;
   const MorphInput input{.depth = *depth, .pinhole = pinhole_, .last = true};
   morph_.look(input);
-  return morphed(input, {last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)});
+  return morphed(input, moment);
 }
 
 std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
@@ -155,11 +176,14 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
     throw Error(
         "policy morph works only with depth frames; give replace, average or crossfade for clouds");
   }
-  const bool clips = (options_.policy.clip_to_reach || late_) && !arrival.reach.empty();
-  const Split parts = clips ? split(cloud, arrival) : Split{};
+  const bool clips =
+      (options_.policy.clip_to_reach || late_ == kEnoughLate) && !arrival.reach.empty();
+  const Split parts = clips ? split(cloud, options_.prepare.clip, arrival) : Split{};
   const PointCloud clipped = select(cloud, parts.near);
   const PointCloud& wanted = clips ? clipped : cloud;
-  notes = {{}, thinned(cloud, parts.far, arrival.T_world_sensor)};
+  notes = {.overview = thinned(cloud, parts.far, arrival.T_world_sensor),
+           .whole = parts.far.empty() ? PointCloud() : cloud,
+           .T_world_sensor = arrival.T_world_sensor};
   std::shared_ptr<SurfacePoints> points = points_.take();
   if (clips && wanted.empty()) {
     *points = {};
@@ -170,7 +194,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
     points->one_sided = is_one_view(cloud);
   }
   const FrameTiming moment = next_timing(stamp, arrival.start);
-  late_ = late_ || moment.start - stamp > kLateCloud;
+  if (late_ < kEnoughLate) late_ = moment.start - stamp > kLateCloud ? late_ + 1 : 0;
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
@@ -231,15 +255,16 @@ void SnapshotBuilder::forget() {
 /// Keeps the noise model and the median depth of the image.
 void SnapshotBuilder::note_noise(const FilteredDepth& depth) {
   constexpr std::size_t kStep = 37;  // a sample is enough
-  noise_ = depth.noise;
-  std::vector<float> depths;
+  std::vector<float>& depths = measured_.depths;
+  measured_.noise = depth.noise;
+  depths.clear();
   for (std::size_t b = 0; b < depth.size(); b += kStep) {
     if (depth.states[b] != FilteredDepth::State::empty) depths.push_back(depth.positions[b].z());
   }
   if (depths.empty()) return;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
-  median_depth_ = static_cast<double>(*middle);
+  measured_.median_depth = static_cast<double>(*middle);
 }
 
 }  // namespace palpate

@@ -181,6 +181,7 @@ void Source::set(const DepthFrame& frame) {
 bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
   inside_->take_change();
   inside_->stays = false;
+  inside_->notes = {};
   const Eigen::Isometry3d pose_now = frame.T_world_sensor.value_or(pose());
   named(inside_->name, [&] {
     if (frame.T_world_sensor) check_pose(pose_now);
@@ -201,14 +202,11 @@ bool Source::push(const PointCloud& cloud, double stamp, const Source::StartTime
   inside_->sight.forget();
   if (!inside_->room_for(true)) return false;
   inside_->reaches.read(inside_->found);
-  CloudNotes notes;
+  CloudNotes& notes = inside_->notes;
   named(inside_->name, [&] {
-    inside_->hand_over(
-        *this, inside_->builder->take(cloud, stamp, {pose(), inside_->found, start}, notes));
+    const Arrival arrival{pose(), inside_->found, start};
+    inside_->hand_over(*this, inside_->builder->take(cloud, stamp, arrival, notes), &notes);
   });
-  const std::lock_guard lock(inside_->mutex);
-  inside_->report = notes.report;
-  inside_->state.overview = std::move(notes.overview);
   return true;
 }
 
@@ -216,14 +214,16 @@ void Source::keep() {
   const Snapshot* newest = inside_->handoff.peek();  // nobody else publishes, so nobody frees it
   if (newest == nullptr) return;
   std::shared_ptr<Snapshot> kept =
-      inside_->room_for(false) ? inside_->builder->last_of_frames(*newest) : nullptr;
-  if (!kept) kept = std::make_shared<Snapshot>(*newest);
+      inside_->room_for(false) ? inside_->builder->last_of(*newest, inside_->notes) : nullptr;
+  const bool whole = kept != nullptr;
+  if (!whole) kept = std::make_shared<Snapshot>(*newest);
   kept->silent_from = std::numeric_limits<double>::infinity();
   kept->publication = ++inside_->publications;
   {
     const std::lock_guard lock(inside_->mutex);
     inside_->points = kept->layers.empty() ? nullptr : kept->layers.back().points;
     inside_->state.silent_from = kept->silent_from;
+    if (whole) inside_->state.overview = nullptr;
   }
   inside_->handoff.publish(std::move(kept));
 }
@@ -241,11 +241,14 @@ bool Source::Inside::room_for(bool clouds) {
   return false;
 }
 
-void Source::Inside::hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot) {
+void Source::Inside::hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot,
+                               const CloudNotes* cloud) {
   snapshot->publication = ++publications;
   {
     const std::lock_guard lock(mutex);
     note(*snapshot);
+    if (cloud) report = cloud->report;
+    state.overview = cloud ? cloud->overview : nullptr;
   }
   handoff.publish(std::move(snapshot));
   if (state.frames % kComparedFrames == 1) compare(source);

@@ -68,8 +68,10 @@ struct Arrival {
 
 /// What is known of a cloud besides its surface.
 struct CloudNotes {
-  Prepared::Report report;                     ///< of the preparation
-  std::shared_ptr<const PointCloud> overview;  ///< of what was left out, thinned, world frame
+  Prepared::Report report = {};                     ///< of the preparation
+  std::shared_ptr<const PointCloud> overview = {};  ///< of what was left out, thinned, world frame
+  PointCloud whole = {};                            ///< if something was left out
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
 };
 
 /// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
@@ -87,19 +89,27 @@ class SnapshotBuilder {
   [[nodiscard]] std::shared_ptr<Snapshot> take(const PointCloud& cloud, double stamp,
                                                const Arrival& arrival, CloudNotes& notes);
 
-  /// A surface that stays: the newest frame's, all of it fitted, from where the last snapshot ends.
-  /// nullptr: `newest` was not made here.
-  [[nodiscard]] std::shared_ptr<Snapshot> last_of_frames(const Snapshot& newest);
+  /// A surface that stays: all of the newest frame fitted, or all of the newest cloud prepared if
+  /// it was clipped, from where the last snapshot ends. nullptr: `newest` was not made here, or is
+  /// all of it. `notes`: of the newest cloud.
+  /// @throws Error as prepare() does.
+  [[nodiscard]] std::shared_ptr<Snapshot> last_of(const Snapshot& newest, const CloudNotes& notes);
 
   /// How many snapshots of clouds or of depth frames may be in use at a time while so many fields
   /// look at them: N + 2 and one for each.
   [[nodiscard]] std::size_t most_snapshots(bool clouds, std::size_t fields) const;
 
   [[nodiscard]] double interval() const { return interval_filter_.interval(); }
-  [[nodiscard]] const NoiseModel& noise() const { return noise_; }
-  [[nodiscard]] double median_depth() const { return median_depth_; }
+  [[nodiscard]] const NoiseModel& noise() const { return measured_.noise; }
+  [[nodiscard]] double median_depth() const { return measured_.median_depth; }
 
  private:
+  /// Of the last depth frame.
+  struct Measured {
+    NoiseModel noise;
+    double median_depth = 0;    // m
+    std::vector<float> depths;  // a sample, m; scratch
+  };
   struct Empty {
     void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
   };
@@ -126,16 +136,16 @@ class SnapshotBuilder {
   Snapshot last_;      // without its layers
   Pinhole pinhole_;    // of the last frame
   bool view_ = false;  // has a cloud proved to be seen from its viewpoint?
-  bool late_ = false;  // has a cloud's surface come late? Clouds are clipped from then on
-  NoiseModel noise_;
-  double median_depth_ = 0;
+  int late_ = 0;       // clouds in a row whose surfaces came late; from kEnoughLate on it stays
+  Measured measured_;
 };
 
 /// The parts of a source. Its scene and the fields of that scene use them.
 struct Source::Inside {
   void take_change();
   [[nodiscard]] bool room_for(bool clouds);
-  void hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot);
+  void hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot,
+                 const CloudNotes* cloud = nullptr);
   void note(const Snapshot& snapshot);
   void note(const SnapshotBuilder& made);
   void compare(const Source& source);
@@ -153,6 +163,7 @@ struct Source::Inside {
 
   std::unique_ptr<SnapshotBuilder> builder;  // the preparing thread's
   std::vector<Reach> found;                  // the same thread's
+  CloudNotes notes;                          // of the last cloud; the same thread's
   std::uint64_t publications = 0;            // the same thread's
   std::uint64_t changes = 0;                 // taken; the same thread's
   SourceOptions taken;                       // with the last of them; the same thread's

@@ -48,11 +48,12 @@ void add_overview(const PointCloud& overview, const Eigen::Vector3d& origin, std
                   CloudMessage& message) {
   constexpr std::array<std::uint8_t, 3> kGrey{128, 128, 128};
   const Eigen::Vector3f shift = (overview.origin - origin).cast<float>();
+  const bool coloured = message.places.empty() ? !overview.colors.empty() : !message.colors.empty();
   for (const std::uint32_t i : thinned(overview.size(), budget)) {
     message.places.emplace_back(overview.positions[i] + shift);
     message.trust.push_back(0);
     if (!message.normals.empty()) message.normals.emplace_back(Eigen::Vector3f::Zero());
-    if (message.colors.empty()) continue;
+    if (!coloured) continue;
     message.colors.push_back(overview.colors.empty() ? kGrey : overview.colors[i]);
   }
 }

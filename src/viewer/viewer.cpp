@@ -40,6 +40,9 @@ Box scene_box(const Scene& scene) {
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
     if (points) box.extend(points->bounds());
+    const std::shared_ptr<const PointCloud> overview = scene.source(i).state().overview;
+    if (!overview) continue;
+    for (const auto& p : overview->positions) box.extend(overview->origin + p.cast<double>());
   }
   return box;
 }

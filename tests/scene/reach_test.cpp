@@ -168,13 +168,41 @@ TEST(Scene, CloudsAreClippedOnceASurfaceCameLate) {
     EXPECT_EQ(push(now, kLateCloud - 0.01).points, cloud.size()) << now;
     EXPECT_EQ(source.state().overview, nullptr);
   }
-  EXPECT_EQ(push(0.3, kLateCloud + 0.01).points, cloud.size()) << "known when it is done";
-  const Source::State clipped = push(0.5, 0.01);
+  for (const double now : {0.3, 0.5, 0.7}) {
+    EXPECT_EQ(push(now, kLateCloud + 0.01).points, cloud.size()) << "no more than three are enough";
+  }
+  const Source::State clipped = push(0.9, 0.01);
   EXPECT_LT(clipped.points, cloud.size() * 3 / 4);
   ASSERT_NE(clipped.overview, nullptr);
   EXPECT_EQ(clipped.points + clipped.overview->size(), cloud.size());
   source.change(source.options());
-  EXPECT_EQ(push(0.6, 0.01).points, cloud.size()) << "other options may be quicker";
+  EXPECT_EQ(push(1.0, 0.01).points, cloud.size()) << "other options may be quicker";
+}
+
+TEST(Scene, LastCloudOfAClippedStreamStaysWhole) {
+  SourceOptions options;
+  options.policy.clip_to_reach = true;
+  Scene scene;
+  Source& source = scene.add("sensor", options);
+  SceneField field(scene);
+  const PointCloud cloud = strip();
+  const Vector3d away(0.9, 0, 0);
+  for (const double now : {0.0, 0.1, 0.2, 0.3}) {
+    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    source.push(cloud, now, [=] { return now + 0.01; });
+  }
+  field.update(0.4, away, away);
+  EXPECT_EQ(field.sample(away).support, 0);
+  const double near = field.sample({0.01, 0, 0}).value;
+  source.keep();
+  EXPECT_EQ(source.points()->size(), cloud.size());
+  EXPECT_EQ(source.state().overview, nullptr);
+  for (const double later : {0.55, 0.6, 2.0}) {
+    field.update(later, Vector3d::Zero(), Vector3d::Zero());
+    EXPECT_NEAR(field.sample({0.01, 0, 0}).value, near, 1e-5) << "what was there stays";
+  }
+  field.update(10, away, away);
+  EXPECT_GT(field.sample(away).support, 0.9);
 }
 
 TEST(Scene, ClippedCloudsWithoutAPointInReachAreEmptySurfaces) {

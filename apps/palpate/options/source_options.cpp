@@ -97,7 +97,7 @@ void add_stream_options(OptionTable& table, SourcePlan& s) {
   table
       .add_flag("--clip-to-reach", s.options.policy.clip_to_reach,
                 "for frames processed as clouds: prepare only what the tool can reach before the "
-                "next frame, as in the paper. Live, that begins once a surface is 0.1 s late")
+                "next frame, as in the paper. Live, that begins once surfaces come 0.1 s late")
       .only_for({&RunFacts::cloud_frames,
                  "applies only to frames processed as clouds; add --unorganised, or remove it: the "
                  "depth filter always limits its costly steps to the tool's reach"});

@@ -127,10 +127,11 @@ void add_frames(Report& report, const FeedReport& feed) {
              drops.empty, drops.garbage, drops.unposed, drops.resized, drops.refused);
 }
 
-void add_latency(Report& report, const FeedReport& feed, bool clouds) {
+// `whole`: frames are clouds, none of which was clipped.
+void add_latency(Report& report, const FeedReport& feed, bool whole) {
   const Quantiles latency = quantiles_of(feed.latency_s);
   const Quantiles times = quantiles_of(feed.prepare_ms);
-  const bool late = clouds && feed.simulated && times.p50 > 1e3 * kLateCloud;
+  const bool late = whole && feed.simulated && times.p50 > 1e3 * kLateCloud;
   const double dropped = late ? 0 : share_too_fast(feed, times.p50);
   report.row("latency",
              "{latency_s/p50} (p50), {latency_s/p99} (p99), {latency_s/max} (max) from frame to "
@@ -170,12 +171,13 @@ Report camera_report(const LoadedSource& source) {
   report.data = {{"name", argument.name}, {"camera", argument.path}};
   report.row("assumed", "[{}]", source.camera ? source.camera->info().assumed : "");
   add_frames(report, feed);
-  add_latency(report, feed, source.plan.as_cloud);
+  const bool clipped = source.state.overview != nullptr;
+  add_latency(report, feed, source.plan.as_cloud && !clipped);
   add_policy(report, source.plan);
   add_seen(report, source.state);
   report.row("clipped",
              "[{?}to what tools can reach, since surfaces of whole clouds came {_s} late and more]",
-             source.state.overview != nullptr && !source.plan.options.policy.clip_to_reach, kLateCloud);
+             clipped && !source.plan.options.policy.clip_to_reach, kLateCloud);
   report.row({"problem", Mark::warning},
              "[{problem}][{?} (at {_s}; {} failed reads, stalled {} times)]", state.problem,
              !state.problem.empty(), state.problem_at, state.failures, state.stalls);
