@@ -179,6 +179,50 @@ TEST(Scene, CloudsAreClippedOnceASurfaceCameLate) {
   EXPECT_EQ(push(1.0, 0.01).points, cloud.size()) << "other options may be quicker";
 }
 
+/// Ticks of 2 s in which a hand finds nothing under itself that moves at `speed` (m/s) over clouds
+/// that come each `interval` (s), 0.12 s late.
+int ticks_without_surface(double interval, double speed) {
+  Scene scene;
+  Source& source = scene.add("sensor");
+  SceneField field(scene);
+  const PointCloud cloud = strip();
+  double next = 0;
+  int lost = 0;
+  const double begin = 5 * interval;  // clipped by then
+  for (int tick = 0; tick < static_cast<int>(1e3 * (begin + 2)); ++tick) {
+    const double now = 1e-3 * tick;
+    const Vector3d hand(-0.5 + speed * std::max(0.0, now - begin), 0, 0);
+    field.update(now, hand, hand);
+    if (now >= next) source.push(cloud, now, [=] { return now + 0.12; });
+    if (now >= next) next += interval;
+    if (now > begin && !(field.sample(hand).support > 0.1)) ++lost;
+  }
+  EXPECT_LT(source.state().points, cloud.size());
+  return lost;
+}
+
+TEST(Scene, ClippedCloudsOfASlowSensorReachAsFarAsTheyHaveToLast) {
+  for (const double interval : {0.1, 0.25, 0.5}) {
+    EXPECT_EQ(ticks_without_surface(interval, 0.3), 0) << interval;
+  }
+}
+
+TEST(Scene, WhatIsLeftOutOfClippedCloudsIsWhatPreparationWouldTake) {
+  SourceOptions options;
+  options.policy.clip_to_reach = true;
+  options.prepare.clip = Box(Vector3d(0.6, -1, -1), Vector3d(2, 1, 1));
+  Scene scene;
+  Source& source = scene.add("sensor", options);
+  SceneField field(scene);
+  PointCloud cloud = strip();
+  const auto in_box = std::ranges::count_if(cloud.positions, [](auto& p) { return p.x() >= 0.6f; });
+  cloud.positions.emplace_back(std::nanf(""), 0, 0);
+  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  source.push(cloud, 0, [] { return 0.01; });
+  EXPECT_EQ(source.state().points, 0u);
+  EXPECT_EQ(source.state().overview->size(), static_cast<std::size_t>(in_box));
+}
+
 TEST(Scene, LastCloudOfAClippedStreamStaysWhole) {
   SourceOptions options;
   options.policy.clip_to_reach = true;
