@@ -100,13 +100,6 @@ struct SceneField::State {
   PatchCache patches{surface};
 };
 
-/// How long a cloud has to last, as far as its sensor tells, s. Clouds whose surfaces come late are
-/// apart for that reason: the longer tools reach, the later these come.
-double time_to_next(const Snapshot& cloud) noexcept {
-  const double shown = time_shown(cloud);
-  return std::max(std::min(shown, kLateCloud), shown - (cloud.start - cloud.stamp));
-}
-
 /// Are the views' snapshots those of the last call? A new one never has the old one's address.
 bool SceneField::State::same_snapshots() noexcept {
   bool same = true;

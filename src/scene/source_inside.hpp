@@ -104,7 +104,7 @@ class SnapshotBuilder {
   [[nodiscard]] double median_depth() const { return measured_.median_depth; }
 
  private:
-  /// Of the last depth frame.
+  /// What the last depth frame told.
   struct Measured {
     NoiseModel noise;
     double median_depth = 0;    // m

@@ -94,6 +94,13 @@ class SourceView {
   return std::max(snapshot.end - snapshot.start, snapshot.interval);
 }
 
+/// How long a cloud's snapshot has to last, as far as its sensor tells, s. Clouds whose surfaces
+/// come late are apart for that reason: the longer tools reach, the later these come.
+[[nodiscard]] inline double time_to_next(const Snapshot& cloud) noexcept {
+  const double shown = time_shown(cloud);
+  return std::max(std::min(shown, kLateCloud), shown - (cloud.start - cloud.stamp));
+}
+
 /// For how long a surface that a snapshot shows may have moved unseen, s: time_shown() if it
 /// shows points at once that were not among the layers `before`. 0: it goes on from what was there.
 [[nodiscard]] double time_stepped(const Snapshot& snapshot,

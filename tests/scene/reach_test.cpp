@@ -210,7 +210,7 @@ TEST(Scene, ClippedCloudsOfASlowSensorReachAsFarAsTheyHaveToLast) {
 TEST(Scene, WhatIsLeftOutOfClippedCloudsIsWhatPreparationWouldTake) {
   SourceOptions options;
   options.policy.clip_to_reach = true;
-  options.prepare.clip = Box(Vector3d(0.6, -1, -1), Vector3d(2, 1, 1));
+  options.prepare.clip = Box{Vector3d(0.6, -1, -1), Vector3d(2, 1, 1)};
   Scene scene;
   Source& source = scene.add("sensor", options);
   SceneField field(scene);
