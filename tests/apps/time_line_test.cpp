@@ -31,10 +31,10 @@ using States = std::vector<ServoState>;
 class TimeLineTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = std::make_unique<test::Folder>();
-    folder_->write("plane.xyz", plane_xyz());
+    run_folder = std::make_unique<test::Folder>();
+    run_folder->write("plane.xyz", plane_xyz());
     LoadedScene loaded =
-        load_sources(planned(*folder_ / "plane.xyz").sources, {.keep_clouds = true});
+        load_sources(planned(*run_folder / "plane.xyz").sources, {.keep_clouds = true});
     begin_run(loaded, {});
     ScriptedDevice device({{0, Eigen::Vector3d::Zero()}, {1, Eigen::Vector3d::Zero()}});
     Recorder recorder(path());
@@ -44,16 +44,16 @@ class TimeLineTest : public testing::Test {
     options.traces = recorder.add_hand();
     Servo second(device, loaded.scene, options);
     recorder.begin(loaded, {&first, &second}, 0, true);
-    felt_.assign(2, {});
+    felt_states.assign(2, {});
     for (int i = 0; i < kSteps; ++i) {
       if (i == kSteps / 2) first.set_field({.kind = FieldOptions::Kind::metaball});
-      dip(first, i, 3e-3, felt_[0]);
-      dip(second, i, 5e-3, felt_[1]);
+      dip(first, i, 3e-3, felt_states[0]);
+      dip(second, i, 5e-3, felt_states[1]);
       recorder.keep_up();
     }
     EXPECT_EQ(recorder.finish().at(0).steps, 2u * kSteps);
   }
-  static void TearDownTestSuite() { folder_.reset(); }
+  static void TearDownTestSuite() { run_folder.reset(); }
 
   static void dip(Servo& servo, int i, double pace, States& felt) {
     DeviceState hand;
@@ -62,11 +62,11 @@ class TimeLineTest : public testing::Test {
     servo.show();
     felt.push_back(servo.state());
   }
-  [[nodiscard]] static std::string path() { return *folder_ / "run.mcap"; }
+  [[nodiscard]] static std::string path() { return *run_folder / "run.mcap"; }
 
   // The last of them at or before `time`, s on the run's clock.
   [[nodiscard]] static const ServoState& at(std::size_t hand, double time) {
-    const States& felt = felt_[hand];
+    const States& felt = felt_states[hand];
     auto after = std::ranges::upper_bound(felt, time, {}, &ServoState::time);
     return after == felt.begin() ? *after : *--after;
   }
@@ -80,8 +80,8 @@ class TimeLineTest : public testing::Test {
     EXPECT_EQ(shown.guard.fault, felt.guard.fault);
   }
 
-  inline static std::unique_ptr<test::Folder> folder_;
-  inline static std::vector<States> felt_;  // of each hand
+  inline static std::unique_ptr<test::Folder> run_folder;
+  inline static std::vector<States> felt_states;  // of each hand
 };
 
 TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
@@ -159,7 +159,7 @@ TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   EXPECT_FALSE(line.moment().playing);
   EXPECT_EQ(line.moment().time, line.length) << "it ends there";
   EXPECT_EQ(line.moment().speed, 4);
-  expect_same(player.servos()[0]->state(), felt_[0].back());
+  expect_same(player.servos()[0]->state(), felt_states[0].back());
   EXPECT_EQ(playing.complaint, "");
 }
 
@@ -167,7 +167,7 @@ TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
   Playing playing(path());
   const double part = playing.line.length / Playback::kEnvelope;
   std::vector<float> largest(Playback::kEnvelope);
-  for (const States& felt : felt_) {
+  for (const States& felt : felt_states) {
     for (const ServoState& state : felt) {
       const auto i = static_cast<std::size_t>((state.time - kBegin) / part);
       float& top = largest[std::min(i, Playback::kEnvelope - 1)];
@@ -196,7 +196,7 @@ TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {
 }
 
 TEST_F(TimeLineTest, AFileThatWasCutShowsWhatIsThere) {
-  const std::string cut = *folder_ / "cut.mcap";
+  const std::string cut = *run_folder / "cut.mcap";
   std::filesystem::copy(path(), cut);
   std::filesystem::resize_file(cut, 3 * std::filesystem::file_size(cut) / 5);
   EXPECT_FALSE(bag::McapReader(cut).contents().closed);
@@ -208,7 +208,7 @@ TEST_F(TimeLineTest, AFileThatWasCutShowsWhatIsThere) {
 }
 
 TEST_F(TimeLineTest, InAGapTheLastStepBeforeItStays) {
-  const std::string gap = *folder_ / "gap.mcap";
+  const std::string gap = *run_folder / "gap.mcap";
   {
     bag::McapReader reader(path());
     bag::McapWriter writer(gap);
