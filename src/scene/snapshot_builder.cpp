@@ -21,7 +21,7 @@ constexpr double kClipMargin = 0.3;
 constexpr int kEnoughLate = 3;
 
 // In so long at least a last surface goes to where all of what was measured has it, s (judgement).
-constexpr double kLeast = 0.1;
+constexpr double kLastMove = 0.1;
 
 // Points of a cloud that are only seen: pages draw some ten thousand of all (judgement).
 constexpr std::size_t kMostSeen = 20000;
@@ -149,11 +149,10 @@ std::shared_ptr<Snapshot> SnapshotBuilder::morphed(const MorphInput& input,
 std::shared_ptr<Snapshot> SnapshotBuilder::last_of(const Snapshot& newest,
                                                    const CloudNotes& notes) {
   if (newest.sequence == 0 || newest.sequence != last_.sequence) return nullptr;
-  const FrameTiming moment{last_.stamp, last_.end, std::max(kLeast, last_.end - last_.start)};
+  const FrameTiming moment{last_.stamp, last_.end, std::max(kLastMove, last_.end - last_.start)};
   if (!notes.whole.empty()) {
-    std::shared_ptr<SurfacePoints> points = points_.take();
-    *points = prepare(notes.whole, options_.prepare, notes.T_world_sensor).points;
-    points->one_sided = is_one_view(notes.whole);
+    Prepared prepared = prepare(notes.whole, options_.prepare, notes.T_world_sensor);
+    std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), notes.whole);
     std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
     for (const Snapshot::Layer& layer : newest.layers) {
       if (layer.weight_end > 0) snapshot->layers.push_back({layer.points, layer.weight_end, 0});
@@ -184,20 +183,25 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   notes = {.overview = thinned(cloud, parts.far, arrival.T_world_sensor),
            .whole = parts.far.empty() ? PointCloud() : cloud,
            .T_world_sensor = arrival.T_world_sensor};
-  std::shared_ptr<SurfacePoints> points = points_.take();
-  if (clips && wanted.empty()) {
-    *points = {};
-  } else {
-    Prepared prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
-    notes.report = prepared.report;
-    *points = std::move(prepared.points);
-    points->one_sided = is_one_view(cloud);
+  Prepared prepared;
+  if (!clips || !wanted.empty()) {
+    prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
   }
+  notes.report = prepared.report;
+  std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), cloud);
   const FrameTiming moment = next_timing(stamp, arrival.start);
   if (late_ < kEnoughLate) late_ = moment.start - stamp > kLateCloud ? late_ + 1 : 0;
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
+}
+
+/// The points of a cloud that was prepared, or a part of it was.
+std::shared_ptr<SurfacePoints> SnapshotBuilder::filled(Prepared prepared, const PointCloud& cloud) {
+  std::shared_ptr<SurfacePoints> points = points_.take();
+  *points = std::move(prepared.points);
+  points->one_sided = is_one_view(cloud);
+  return points;
 }
 
 /// Do normals get their signs from where the sensor is?

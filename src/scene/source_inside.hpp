@@ -122,6 +122,7 @@ class SnapshotBuilder {
   void forget();
   void note_noise(const FilteredDepth& depth);
   [[nodiscard]] bool knows_sides() const;
+  [[nodiscard]] std::shared_ptr<SurfacePoints> filled(Prepared prepared, const PointCloud& cloud);
   [[nodiscard]] bool is_one_view(const PointCloud& cloud);
 
   SourceOptions options_;

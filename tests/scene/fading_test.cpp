@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLasts = 0.1;  // s
-
 /// A plane that prepare() puts on one sheet.
 std::shared_ptr<const SurfacePoints> prepared_plane(double height) {
   PointCloud cloud;
@@ -41,17 +39,8 @@ double farthest_off(double rise) {
   double farthest = 0;
   for (int k = 0; k < 400; ++k) {
     const double now = 1e-3 * k;
-    if (k % 100 == 0) {
-      auto snapshot = std::make_unique<Snapshot>();
-      snapshot->start = now;
-      snapshot->end = now + kLasts;
-      snapshot->interval = kLasts;
-      if (k < 200) snapshot->layers = {{old, 1, 1}};
-      if (k == 200) snapshot->layers = {{old, 1, 0}, {next, 0, 1}};
-      if (k == 300) snapshot->layers = {{next, 1, 1}};
-      source.publish(std::move(snapshot));
-    }
-    const double height = rise * std::clamp(now / kLasts - 2, 0.0, 1.0);
+    test::publish_fade(source, k, old, next);
+    const double height = rise * std::clamp(10 * now - 2, 0.0, 1.0);
     const Vector3d hip(0.3e-3, 0.4e-3, std::max(height - 2e-3, 10e-3 - 0.2e-3 * k));
     field.update(now, hip, k > 0 ? proxy.position() : hip);
     (void)proxy.step(field, hip, 1e-3);

@@ -56,16 +56,7 @@ double largest_step_while_fading() {
   double largest = 0;
   for (int k = 0; k < 400; ++k) {
     const double now = 1e-3 * k;
-    if (k % 100 == 0) {
-      auto next = std::make_unique<Snapshot>();
-      next->start = now;
-      next->end = now + kLasts;
-      next->interval = kLasts;
-      if (k < 200) next->layers = {{low, 1, 1}};
-      if (k == 200) next->layers = {{low, 1, 0}, {high, 0, 1}};
-      if (k == 300) next->layers = {{high, 1, 1}};
-      source.publish(std::move(next));
-    }
+    test::publish_fade(source, k, low, high);
     const Vector3d hip(0, 0, std::max(-3e-3, 10e-3 - 0.2e-3 * k));
     field.update(now, hip, k > 0 ? proxy.position() : hip);
     const Vector3d force = proxy.step(field, hip, 1e-3).force;

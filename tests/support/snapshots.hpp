@@ -33,6 +33,21 @@ inline std::unique_ptr<Snapshot> still(const std::vector<TestPoint>& points, dou
   return snapshot;
 }
 
+/// Publishes, at ticks 0, 100, 200 and 300 of 1 ms, `old` twice, its change into `next` in 0.1 s,
+/// and `next`.
+inline void publish_fade(Source& source, int tick, const std::shared_ptr<const SurfacePoints>& old,
+                         const std::shared_ptr<const SurfacePoints>& next) {
+  if (tick % 100 != 0) return;
+  auto snapshot = std::make_unique<Snapshot>();
+  snapshot->interval = 0.1;
+  snapshot->start = 1e-3 * tick;
+  snapshot->end = snapshot->start + snapshot->interval;
+  if (tick < 200) snapshot->layers = {{old, 1, 1}};
+  if (tick == 200) snapshot->layers = {{old, 1, 0}, {next, 0, 1}};
+  if (tick == 300) snapshot->layers = {{next, 1, 1}};
+  source.publish(std::move(snapshot));
+}
+
 /// The height of the surface above the origin, from whichever side it is seen: of the places where
 /// solid ends, the one with most points around it. NaN: there is none.
 inline double height_of(const SceneField& field) {

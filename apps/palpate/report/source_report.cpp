@@ -171,13 +171,14 @@ Report camera_report(const LoadedSource& source) {
   report.data = {{"name", argument.name}, {"camera", argument.path}};
   report.row("assumed", "[{}]", source.camera ? source.camera->info().assumed : "");
   add_frames(report, feed);
+  const bool clips = source.plan.options.policy.clip_to_reach;  // from the first cloud on
   const bool clipped = source.state.overview != nullptr;
-  add_latency(report, feed, source.plan.as_cloud && !clipped);
+  add_latency(report, feed, source.plan.as_cloud && !clips && !clipped);
   add_policy(report, source.plan);
   add_seen(report, source.state);
   report.row("clipped",
              "[{?}to what tools can reach, since surfaces of whole clouds came {_s} late and more]",
-             clipped && !source.plan.options.policy.clip_to_reach, kLateCloud);
+             clipped && !clips, kLateCloud);
   report.row({"problem", Mark::warning},
              "[{problem}][{?} (at {_s}; {} failed reads, stalled {} times)]", state.problem,
              !state.problem.empty(), state.problem_at, state.failures, state.stalls);

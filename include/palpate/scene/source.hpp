@@ -40,8 +40,8 @@ struct PolicyOptions {
   double fade = 0.5;     ///< duration of that fade, s
   bool fit_everywhere = false;  ///< run the depth filter's fit outside the fields' reach as well
   /// Leave out points of clouds that no tool can come to before the next ones (the paper's section
-  /// IV-B). Otherwise that begins when the surface of a cloud comes more than 0.1 s after its
-  /// stamp.
+  /// IV-B). Otherwise that begins after three clouds in a row whose surfaces came late
+  /// (kLateCloud).
   bool clip_to_reach = false;
 };
 
