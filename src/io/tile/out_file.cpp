@@ -22,7 +22,7 @@ OutFile::OutFile(const std::filesystem::path& path, std::uint64_t size)
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0 || static_cast<std::uint64_t>(status.st_size) < size) {
     ::close(descriptor_);
-    throw Error(name_ + ": is shorter than it was. Start again with --force.");
+    throw Error(name_ + ": is shorter than it was. Start anew with --force.");
   }
   if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("it cannot be cut");
 }

@@ -112,7 +112,7 @@ class Tiler {
   [[nodiscard]] std::string difference(std::string_view earlier) const {
     const std::string_view names = earlier.substr(0, earlier.find('\n'));
     const bool same = names == job_.substr(0, job_.find('\n'));
-    return fmt::format("{} was begun with {}. {}, or start again with --force.", out_.string(),
+    return fmt::format("{} was begun with {}. {}, or start anew with --force.", out_.string(),
                        same ? "other options, or its inputs have changed since"
                             : fmt::format("other inputs: {}", names),
                        same ? "Give the same options" : "Give these");
