@@ -266,5 +266,26 @@ TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
   EXPECT_EQ(shown(50)->size(), shown(60)->size()) << "the last one stays";
 }
 
+// Hangs until the test's time is over if frames stand still.
+TEST(TimeLine, FramesGoOnAfterAPause) {
+  Shell shell;
+  ASSERT_EQ(shell
+                .run("touch camera:simulated --simulated-time --duration 2 --no-view --record "
+                     "run.mcap")
+                .code,
+            0);
+  Playing playing(shell.path("run.mcap"));
+  const Source& camera = playing.player.scene().source(0);
+  playing.line.seek(0.3);
+  Playing::wait([&] { return camera.points() != nullptr; });
+  for (int time = 0; time < 2; ++time) {
+    const auto before = camera.points();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // whoever looks looks again
+    playing.line.play(true, 1);
+    Playing::wait([&] { return camera.points() != before; });
+    playing.line.play(false, 1);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -183,7 +183,7 @@ void Playback::show_frames(const std::stop_token& stop) {
     }
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, stop, kFrame, [] { return false; });
-    changed_.wait(lock, stop, [&] { return moment_.time != time; });
+    changed_.wait(lock, stop, [&] { return moment_.playing || moment_.time != time; });
   }
 }
 
