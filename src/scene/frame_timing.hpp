@@ -12,6 +12,7 @@ struct FrameTiming {
   double stamp = 0;     ///< of the data that are new in it, s, the sensor's clock
   double start = 0;     ///< s, on the fields' clock; no earlier than the last snapshot's
   double duration = 0;  ///< how long the next one is going to be waited for, s
+  double spare = 0;     ///< what of that no surface will be late for, s
 };
 
 /// How far what began at `last` has gone at `time`, s, 0-1. Rounding does not keep it from
@@ -36,7 +37,7 @@ class FrameIntervalFilter {
     last_stamp_ = stamp;
     last_start_ = start;
     ++frames_;
-    return {stamp, start, interval_};
+    return {stamp, start, interval_, spare_};
   }
 
   /// Smoothed time between frames, s; a thirtieth until there have been two.
@@ -53,16 +54,17 @@ class FrameIntervalFilter {
   void measure(double stamp) {
     const double gap = stamp - last_stamp_;
     if (!(gap > 0)) return;
-    if (frames_ == 1) {
-      interval_ = std::clamp(gap, kShortest, kLongest);
-      return;
-    }
+    if (frames_ == 1) interval_ = gap;
     const double believed = std::clamp(gap, interval_ / kOutlier, interval_ * kOutlier);
-    interval_ += (believed - interval_) / std::min(frames_, kMemory);
-    interval_ = std::clamp(interval_, kShortest, kLongest);
+    const double late = last_start_ - last_stamp_;
+    const int share = std::min(frames_, kMemory);
+    interval_ = std::clamp(interval_ + (believed - interval_) / share, kShortest, kLongest);
+    const double left = std::clamp(std::min(gap, believed) - late, 0.0, kLongest);
+    spare_ += (left - spare_) / share;
   }
 
   double interval_ = 1. / 30;
+  double spare_ = 0;  // smoothed alike
   double last_stamp_ = 0;
   double last_start_ = 0;
   int frames_ = 0;

@@ -241,6 +241,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::next_snapshot(const FrameTiming& mome
       moment.start + std::max(options_.policy.silence, kSilentIntervals * moment.duration);
   s.fade = fade;
   s.interval = moment.duration;
+  s.spare = moment.spare;
   s.stamp = moment.stamp;
   s.sequence = last_.sequence + 1;
   last_ = s;

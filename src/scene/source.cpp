@@ -92,8 +92,7 @@ const std::string& Source::name() const {
 }
 
 SourceOptions Source::options() const {
-  const std::lock_guard lock(inside_->mutex);
-  return inside_->options;
+  return inside_->copy(&Inside::options);
 }
 
 void Source::change(const SourceOptions& options) {
@@ -116,13 +115,11 @@ void Source::Inside::take_change() {
 }
 
 Prepared::Report Source::report() const {
-  const std::lock_guard lock(inside_->mutex);
-  return inside_->report;
+  return inside_->copy(&Inside::report);
 }
 
 Eigen::Isometry3d Source::pose() const {
-  const std::lock_guard lock(inside_->mutex);
-  return inside_->pose;
+  return inside_->copy(&Inside::pose);
 }
 
 void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
@@ -221,8 +218,7 @@ void Source::keep() {
   kept->publication = ++inside_->publications;
   {
     const std::lock_guard lock(inside_->mutex);
-    inside_->points = kept->layers.empty() ? nullptr : kept->layers.back().points;
-    inside_->state.silent_from = kept->silent_from;
+    inside_->note_surface(*kept);
     if (whole) inside_->state.overview = nullptr;
   }
   inside_->handoff.publish(std::move(kept));
@@ -249,6 +245,7 @@ void Source::Inside::hand_over(const Source& source, std::shared_ptr<Snapshot> s
     note(*snapshot);
     if (cloud) report = cloud->report;
     state.overview = cloud ? cloud->overview : nullptr;
+    state.clipped = cloud && !cloud->whole.empty();
   }
   handoff.publish(std::move(snapshot));
   if (state.frames % kComparedFrames == 1) compare(source);
@@ -259,14 +256,18 @@ void Source::Inside::compare(const Source& source) {
 }
 
 void Source::Inside::note(const Snapshot& snapshot) {
-  points = snapshot.layers.back().points;
+  note_surface(snapshot);
   ++state.frames;
   state.interval = state.frames > 1 ? builder->interval() : 0;
   state.latency = snapshot.start - snapshot.stamp;
   state.stamp = snapshot.stamp;
-  state.points = points->size();
-  state.silent_from = snapshot.silent_from;
   state.fade = snapshot.fade;
+}
+
+void Source::Inside::note_surface(const Snapshot& snapshot) {
+  points = snapshot.layers.empty() ? nullptr : snapshot.layers.back().points;
+  state.points = points ? points->size() : 0;
+  state.silent_from = snapshot.silent_from;
 }
 
 void Source::Inside::note(const SnapshotBuilder& made) {
@@ -288,13 +289,11 @@ void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {
-  const std::lock_guard lock(inside_->mutex);
-  return inside_->points;
+  return inside_->copy(&Inside::points);
 }
 
 Source::State Source::state() const {
-  const std::lock_guard lock(inside_->mutex);
-  return inside_->state;
+  return inside_->copy(&Inside::state);
 }
 
 }  // namespace palpate

@@ -148,10 +148,18 @@ struct Source::Inside {
   void hand_over(const Source& source, std::shared_ptr<Snapshot> snapshot,
                  const CloudNotes* cloud = nullptr);
   void note(const Snapshot& snapshot);
+  void note_surface(const Snapshot& snapshot);
   void note(const SnapshotBuilder& made);
   void compare(const Source& source);
   void show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
   [[nodiscard]] FrameLimits frame_limits() const;
+
+  /// For those who draw.
+  template <class T>
+  [[nodiscard]] T copy(T Inside::*member) const {
+    const std::lock_guard lock(mutex);
+    return this->*member;
+  }
 
   std::string name;
   mutable std::mutex mutex;  // of what follows: those who draw, and the preparing thread

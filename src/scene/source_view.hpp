@@ -97,8 +97,7 @@ class SourceView {
 /// How long a cloud's snapshot has to last, as far as its sensor tells, s. Clouds whose surfaces
 /// come late are apart for that reason: the longer tools reach, the later these come.
 [[nodiscard]] inline double time_to_next(const Snapshot& cloud) noexcept {
-  const double shown = time_shown(cloud);
-  return std::max(std::min(shown, kLateCloud), shown - (cloud.start - cloud.stamp));
+  return std::max(std::min(time_shown(cloud), kLateCloud), cloud.spare);
 }
 
 /// For how long a surface that a snapshot shows may have moved unseen, s: time_shown() if it

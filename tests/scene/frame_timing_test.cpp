@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 #include <random>
 
@@ -48,6 +49,34 @@ TEST(FrameIntervalFilter, OneLongGapIsNoNewRate) {
   for (int k = 0; k < 30; ++k) advance(filter, stamp, 1. / 30);
   advance(filter, stamp, 3);
   EXPECT_LT(filter.interval(), 0.038);
+}
+
+/// The spare time of frames that the sensor takes every `period`, each prepared for `delay`, s.
+double spare_time(double period, double delay) {
+  FrameIntervalFilter filter;
+  double spare = 0;
+  double stamp = 0;
+  for (int k = 0; k < 30; ++k) {
+    spare = filter.next(stamp, stamp + delay).spare;
+    stamp += period * std::ceil(delay / period);
+  }
+  return spare;
+}
+
+TEST(FrameIntervalFilter, FramesThatWaitForPreparationLeaveNoTimeToSpare) {
+  EXPECT_NEAR(spare_time(0.5, 0.12), 0.38, 1e-6);
+  EXPECT_NEAR(spare_time(0.03, 0.02), 0.01, 1e-6);
+  EXPECT_LT(spare_time(0.03, 0.8), 0.03);
+  EXPECT_EQ(FrameIntervalFilter().next(3, 9).spare, 0);
+}
+
+TEST(FrameIntervalFilter, FramesThatGetQuickerHaveNoMoreTimeToSpareAtOnce) {
+  FrameIntervalFilter filter;
+  double stamp = 0;
+  for (const double delay : {0.8, 0.8, 0.8, 0.8, 0.1, 0.03, 0.03}) {
+    EXPECT_LT(filter.next(stamp, stamp + delay).spare, 0.01);
+    stamp += delay;
+  }
 }
 
 TEST(FrameIntervalFilter, StartsNeverGoBack) {

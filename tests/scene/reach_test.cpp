@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "palpate/scene/scene.hpp"
@@ -207,6 +208,24 @@ TEST(Scene, ClippedCloudsOfASlowSensorReachAsFarAsTheyHaveToLast) {
   }
 }
 
+// A sensor of 30 Hz whose whole clouds take 0.6 s, and parts of them as much less.
+TEST(Scene, ClippedCloudsOfAQuickSensorAreQuickAtOnce) {
+  Scene scene;
+  Source& source = scene.add("sensor");
+  SceneField field(scene);
+  const PointCloud cloud = strip();
+  double now = 0;
+  double delay = 0.6;
+  for (int k = 0; k < 12; ++k) {
+    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    source.push(cloud, now, [&] { return now + delay; });
+    EXPECT_LT(delay, k > 3 ? 0.15 : 0.61) << k;
+    now = std::ceil(30 * (now + delay)) / 30;
+    const auto points = static_cast<double>(source.state().points);
+    delay = 0.6 * points / static_cast<double>(cloud.size());
+  }
+}
+
 TEST(Scene, WhatIsLeftOutOfClippedCloudsIsWhatPreparationWouldTake) {
   SourceOptions options;
   options.policy.clip_to_reach = true;
@@ -240,7 +259,9 @@ TEST(Scene, LastCloudOfAClippedStreamStaysWhole) {
   const double near = field.sample({0.01, 0, 0}).value;
   source.keep();
   EXPECT_EQ(source.points()->size(), cloud.size());
+  EXPECT_EQ(source.state().points, cloud.size());
   EXPECT_EQ(source.state().overview, nullptr);
+  EXPECT_TRUE(source.state().clipped) << "clouds were, until then";
   for (const double later : {0.55, 0.6, 2.0}) {
     field.update(later, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_NEAR(field.sample({0.01, 0, 0}).value, near, 1e-5) << "what was there stays";

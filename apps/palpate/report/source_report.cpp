@@ -172,7 +172,7 @@ Report camera_report(const LoadedSource& source) {
   report.row("assumed", "[{}]", source.camera ? source.camera->info().assumed : "");
   add_frames(report, feed);
   const bool clips = source.plan.options.policy.clip_to_reach;  // from the first cloud on
-  const bool clipped = source.state.overview != nullptr;
+  const bool clipped = source.state.clipped;
   add_latency(report, feed, source.plan.as_cloud && !clips && !clipped);
   add_policy(report, source.plan);
   add_seen(report, source.state);
