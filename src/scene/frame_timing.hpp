@@ -7,6 +7,9 @@
 
 namespace palpate {
 
+/// The time between a usual camera's frames, s (judgement).
+inline constexpr double kUsualInterval = 1. / 30;
+
 /// When a snapshot holds.
 struct FrameTiming {
   double stamp = 0;     ///< of the data that are new in it, s, the sensor's clock
@@ -40,7 +43,7 @@ class FrameIntervalFilter {
     return {stamp, start, interval_, spare_};
   }
 
-  /// Smoothed time between frames, s; a thirtieth until there have been two.
+  /// Smoothed time between frames, s; kUsualInterval until there have been two.
   [[nodiscard]] double interval() const { return interval_; }
 
  private:
@@ -63,7 +66,7 @@ class FrameIntervalFilter {
     spare_ += (left - spare_) / share;
   }
 
-  double interval_ = 1. / 30;
+  double interval_ = kUsualInterval;
   double spare_ = 0;  // smoothed alike
   double last_stamp_ = 0;
   double last_start_ = 0;

@@ -43,12 +43,12 @@ class BlockTracksTest : public testing::Test {
     return filter.filter(test::frame_of(small_camera(), 0, depth_of), T_world_sensor_);
   }
 
-  void show(const test::DepthOf& depth_of, bool moved) {
+  void show(const test::DepthOf& depth_of, bool moved, double duration = kFrame) {
     depth_ = filtered(depth_of);
     blocks_.look(depth_, {}, true);
     shown_.begin({kFrame, kFrame, kFrame}, origin_);
     blocks_.put(depth_, origin_, false);
-    tracks_.begin(moved, pinhole_, kFrame);
+    tracks_.begin(moved, pinhole_, duration);
   }
 
   [[nodiscard]] SeenPoint seen(std::uint32_t place) const { return blocks_.four_at(place).lane(0); }
@@ -81,6 +81,14 @@ TEST_F(BlockTracksTest, WhatHasMovedAsFastAsAHandIsTheSame) {
 TEST_F(BlockTracksTest, WhatHasMovedFasterIsAnother) {
   show(wall(0.4), false);
   EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+}
+
+// An arm that came over a table while frames were lost took the table along, and a hand on it.
+TEST_F(BlockTracksTest, WhatIsFarNearerAfterALongGapIsAnother) {
+  show(wall(0.5 - 0.056), false, 4 * kFrame);
+  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+  show(wall(0.5 - 0.9 * kFrame), false, 4 * kFrame);
+  EXPECT_TRUE(tracks_.partner_of(seen(middle())));
 }
 
 TEST_F(BlockTracksTest, WhatLeavesIsNoPartner) {

@@ -10,9 +10,13 @@ namespace {
 
 constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from block to block
 
-// A surface that moves faster than this along its normal is taken for another one, m/s
+// A surface that rested and moves faster than this along its normal is taken for another one, m/s
 // (judgement; docs/method.md 7.3).
 constexpr float kFastest = 1;
+
+// It does so for so long at most, s: the longer nothing was seen, the likelier is what is nearer
+// now something else.
+constexpr auto kLongest = static_cast<float>(kUsualInterval);
 
 }  // namespace
 
@@ -74,9 +78,10 @@ std::optional<BlockTracks::Partner> BlockTracks::partner_of(const SeenPoint& see
 /// Has what was there come along the ray to what is seen now?
 bool BlockTracks::may_move(const SeenPoint& seen, std::uint32_t i, const PointState& before) const {
   if (shown_.entries()[i].kind != EntryKind::live || moved_) return false;
-  const float fastest = kFastest + std::min(shown_.speed_of(i), ShownPoints::kSudden);
+  const float went_on = std::min(shown_.speed_of(i), ShownPoints::kSudden) * duration_;
+  const float farthest = kFastest * std::min(duration_, kLongest) + went_on;
   return !seen.turns_from(before.normal) &&
-         seen.advance_from(before.position) <= fastest * duration_ &&
+         seen.advance_from(before.position) <= farthest &&
          blocks_.vouching(seen.place) >= FrameBlocks::kVouchToMove && !came_aside(seen);
 }
 
