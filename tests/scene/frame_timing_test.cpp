@@ -95,8 +95,8 @@ TEST(FrameIntervalFilter, AClockThatIsSetBackChangesNothing) {
   EXPECT_NEAR(filter.interval(), 1. / 30, 1e-9);
 }
 
-constexpr double kInterval = 0.1;  // s
-constexpr double kDelay = 0.02;    // s
+constexpr double kInterval = 0.1;     // s
+constexpr double kAskedAfter = 0.02;  // s
 
 // The lifetime after frames that are taken up to `jitter` and come up to `lag` (s) early or late,
 // and of which a share is lost.
@@ -108,7 +108,7 @@ FrameLifetime after(int frames, double jitter, double lost, double lag = 0) {
   std::optional<double> before;
   for (int k = 0; k < frames; ++k) {
     const double stamp = kInterval * k + jitter * error(random);
-    const double delay = kDelay + lag * error(random);
+    const double delay = kAskedAfter + lag * error(random);
     if (drop(random)) continue;
     if (before) lifetime.add(stamp - *before, delay);
     before = stamp;
@@ -118,11 +118,11 @@ FrameLifetime after(int frames, double jitter, double lost, double lag = 0) {
 
 TEST(FrameLifetime, IsUnknownAtFirst) {
   EXPECT_FALSE(after(8, 0, 0).longest());
-  EXPECT_NEAR(after(9, 0, 0).longest().value(), kInterval + kDelay, 1e-9);
+  EXPECT_NEAR(after(9, 0, 0).longest().value(), kInterval + kAskedAfter, 1e-9);
 }
 
 TEST(FrameLifetime, IsNoLongerWhereFramesAreLost) {
-  EXPECT_NEAR(after(200, 0, 0.4).longest().value(), kInterval + kDelay, 1e-9);
+  EXPECT_NEAR(after(200, 0, 0.4).longest().value(), kInterval + kAskedAfter, 1e-9);
 }
 
 TEST(FrameLifetime, IsNearlyAsLongAsAFrameCanLastAndNoLonger) {
@@ -131,16 +131,16 @@ TEST(FrameLifetime, IsNearlyAsLongAsAFrameCanLastAndNoLonger) {
   for (const double lost : {0., 0.1, 0.4}) {
     for (int frames = 100; frames < 300; ++frames) {
       const double longest = after(frames, kJitter, lost, kLag).longest().value();
-      EXPECT_GT(longest, kInterval + kDelay + kJitter) << lost;
-      EXPECT_LT(longest, kInterval + kDelay + 2.2 * kJitter + kLag) << lost;
+      EXPECT_GT(longest, kInterval + kAskedAfter + kJitter) << lost;
+      EXPECT_LT(longest, kInterval + kAskedAfter + 2.2 * kJitter + kLag) << lost;
     }
   }
 }
 
 TEST(FrameLifetime, IsNoLongerThanAGapThatLostAFrameAfterTwoCameAtOnce) {
   FrameLifetime lifetime;
-  for (int k = 0; k < 16; ++k) lifetime.add(k == 8 ? 0.01 * kInterval : kInterval, kDelay);
-  EXPECT_LE(lifetime.longest().value(), FrameLifetime::kLost * kInterval + kDelay + 1e-9);
+  for (int k = 0; k < 16; ++k) lifetime.add(k == 8 ? 0.01 * kInterval : kInterval, kAskedAfter);
+  EXPECT_LE(lifetime.longest().value(), FrameLifetime::kLost * kInterval + kAskedAfter + 1e-9);
 }
 
 TEST(FrameLifetime, FollowsAnotherRate) {
