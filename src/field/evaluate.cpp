@@ -116,7 +116,7 @@ Vector3d printed_gradient(const ImplicitSurface& surface, const simd::Columns& c
 
 Sample nothing_here(const Patch& patch) noexcept {
   Sample sample;
-  sample.radius = patch.mean_radius();
+  sample.radius = patch.columns().mean_radius;
   sample.value = 0.35 * sample.radius;
   return sample;
 }
@@ -217,7 +217,7 @@ bool is_free(const ImplicitSurface& surface, const Patch& patch, const Ball& bal
   double w[simd::kMaxSources];
   surface.sums->bound(patch.columns(), surface.options.kernel == Kernel::wendland, local.data(),
                       ball.radius, w);
-  return united(w, patch.columns().sources) < free_level(surface, patch.smallest_radius());
+  return united(w, patch.columns().sources) < free_level(surface, patch.columns().smallest_radius);
 }
 
 }  // namespace palpate

@@ -15,7 +15,7 @@ namespace palpate {
 PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
                           const Eigen::Vector3d& x, std::span<const double> presences) noexcept {
   using Eigen::Vector3d;
-  const simd::Columns& c = patch.columns();
+  const PatchColumns& c = patch.columns();
   const Vector3d local = x - patch.center();
   PatchSurface result;
   double total = 0;
@@ -33,9 +33,9 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
       const double w = c.weight[i] * evaluate(surface.options.kernel, r2).w;
       by_source[s] += w;
       total += w;
-      material += w * patch.material(i);
-      sure += w * patch.presence(i);
-      velocity += w * patch.velocity(i);
+      material += w * (c.material ? c.material[i] : 1);
+      sure += w * (c.presence ? c.presence[i] : 1);
+      if (c.moves) velocity += w * Vector3d(c.velocity[0][i], c.velocity[1][i], c.velocity[2][i]);
     }
     presence += sure * (presences.empty() ? 1 : presences[s]);
   }
@@ -45,7 +45,7 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
   result.source = largest > 0 ? static_cast<int>(most - first) : -1;
   if (total <= 0) return result;
   result.material = material / total;
-  if (patch.has_presences() || !presences.empty()) {
+  if (c.presence || !presences.empty()) {
     result.presence = std::min(1.0, presence / largest);
   }
   result.velocity = velocity / total;

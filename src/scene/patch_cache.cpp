@@ -27,7 +27,7 @@ void PatchCache::set_tool(const Vector3d& proxy) noexcept {
   tool_ = step_.last.proxy == proxy ? step_.last : Stance{proxy, Vector3d::Zero()};
   const double moved = (tool_.proxy - faced_.proxy).norm();
   const bool same =
-      tool_.touches() == faced_.touches() && moved < kMoved * near_.patch.mean_radius();
+      tool_.touches() == faced_.touches() && moved < kMoved * near_.patch.columns().mean_radius;
   if (!std::exchange(others_, false) && same) return;
   faced_ = tool_;
   const Ball here{tool_.proxy, 0};
@@ -65,7 +65,8 @@ void PatchCache::clear_far() noexcept {
 void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
   const double before = std::exchange(radius_, 0);
   Patch& patch = step_.far[0].patch;
-  const double nearest = gather(patch, x, 0, update_visits_) ? patch.nearest_radius(x) : 0;
+  const double nearest =
+      gather(patch, x, 0, update_visits_) ? patch.columns().nearest_radius(x - patch.center()) : 0;
   radius_ = nearest > 0 ? nearest : before > 0 ? before : first;
   for (Slot& far : step_.far) far.patch.clear();
   if (radius_ != before) near_.patch.clear();
@@ -154,10 +155,10 @@ bool PatchCache::gather(Patch& patch, const Vector3d& center, double extra,
 
 /// The work of a gather.
 void PatchCache::count(const Patch& patch, bool whole, int& left) const noexcept {
-  left -= patch.visits();
+  left -= patch.selection().visits();
   if (patch.thinned()) step_.work.notes = step_.work.notes | FieldNote::thinned;
   if (!whole) step_.work.notes = step_.work.notes | FieldNote::work_spent;
-  step_.work.visits += static_cast<std::uint64_t>(patch.visits());
+  step_.work.visits += static_cast<std::uint64_t>(patch.selection().visits());
   ++step_.work.gathers;
 }
 

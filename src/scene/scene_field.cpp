@@ -69,7 +69,7 @@ struct SceneField::State {
   void list_layer(std::size_t source, std::size_t k) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
   [[nodiscard]] double radius() const noexcept {
-    return patches.near().points() > 0 ? patches.near().mean_radius() : typical_radius;
+    return patches.near().points() > 0 ? patches.near().columns().mean_radius : typical_radius;
   }
   /// How far a patch away from the path reaches beyond what it is gathered for, m.
   [[nodiscard]] double margin() const noexcept {
@@ -152,7 +152,7 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   if (near.points() > 0 && near.sides().behind()) found = found | FieldNote::behind;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
   const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
-  if (near.points() > 0 && surface.options.tool_radius > tool * near.smallest_radius()) {
+  if (near.points() > 0 && surface.options.tool_radius > tool * near.columns().smallest_radius) {
     found = found | FieldNote::tool_too_large;
   }
   return found;
@@ -200,7 +200,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     for (std::size_t i = 0; i < state.views.size(); ++i) {
       state.boards[i]->write(state.views[i].reader(), ball);
     }
-    const std::uint32_t stride = state.patches.near().stride();
+    const std::uint32_t stride = state.patches.near().selection().stride();
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
@@ -266,7 +266,7 @@ Field::Traits SceneField::traits() const noexcept {
   const bool metaball = options_.kind == FieldOptions::Kind::metaball;
   // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
-      std::max(state.patches.near().points() > 0 ? state.patches.near().smallest_radius()
+      std::max(state.patches.near().points() > 0 ? state.patches.near().columns().smallest_radius
                                                  : state.typical_radius,
                kFinest * state.radius());
   return {.resolution = metaball ? 0.002 * smallest : smallest / 16,

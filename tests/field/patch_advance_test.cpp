@@ -159,7 +159,7 @@ TEST(PatchRenew, IsAsGatheringAfreshAndLooksAtChangedLayersAlone) {
   Patch renewed(2048);
   Patch afresh(2048);
   ASSERT_TRUE(renewed.gather(layers_with(0, 1, 0), 3, Vector3d::Zero(), extra));
-  const int whole = renewed.visits();
+  const int whole = renewed.selection().visits();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int k = 0; k < 9; ++k) {
@@ -169,7 +169,7 @@ TEST(PatchRenew, IsAsGatheringAfreshAndLooksAtChangedLayersAlone) {
     EXPECT_TRUE(renewed.outdated());
     ASSERT_TRUE(renewed.renew(layers, 3, 100000));
     EXPECT_FALSE(renewed.outdated());
-    EXPECT_LT(renewed.visits(), whole / 2);
+    EXPECT_LT(renewed.selection().visits(), whole / 2);
     ASSERT_TRUE(renewed.advance(layers_with(u + 0.05, k % 2 == 0 ? 3 : 1, 0.05)));
     ASSERT_TRUE(
         afresh.gather(layers_with(u + 0.05, k % 2 == 0 ? 3 : 1, 0.05), 3, Vector3d::Zero(), extra));
@@ -208,11 +208,11 @@ TEST(PatchAdvance, GatheringStopsWhenItsVisitsAreSpent) {
   const auto layers = layers_at(0.5, points);
   Patch patch(2048);
   ASSERT_TRUE(patch.gather(layers, 2, Vector3d::Zero(), 5e-3));
-  const int needed = patch.visits();
+  const int needed = patch.selection().visits();
   const std::size_t count = patch.points();
   for (int most = 0; most < needed; most += 7) {
     EXPECT_FALSE(patch.gather(layers, 2, Vector3d::Zero(), 5e-3, {.most_visits = most}));
-    EXPECT_LE(patch.visits(), most);
+    EXPECT_LE(patch.selection().visits(), most);
     EXPECT_FALSE(patch.covers({Vector3d::Zero(), 0}));
   }
   EXPECT_TRUE(patch.gather(layers, 2, Vector3d::Zero(), 5e-3, {.most_visits = needed}));
@@ -235,7 +235,7 @@ TEST(PatchAdvance, ManyPointsAreThinnedInOneWalk) {
   ASSERT_TRUE(patch.gather(std::vector<ActiveLayer>{{&points}}, 1, {3e-3, 3e-3, 0}, 10e-3));
   EXPECT_TRUE(patch.thinned());
   EXPECT_GT(patch.points(), 1024u);
-  EXPECT_LT(patch.visits(), 30000);  // of 360 000 points
+  EXPECT_LT(patch.selection().visits(), 30000);  // of 360 000 points
 }
 
 /// The bound of is_free_space by brute force: can the united weights reach the level?
