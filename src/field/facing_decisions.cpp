@@ -1,14 +1,10 @@
 // Decides the signs of parts that come into view, and the labels of their sheets.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <span>
 
 #include "field/facing.hpp"
 #include "field/formulas.hpp"
-#include "palpate/field/field_options.hpp"
 
 namespace palpate {
 namespace {
@@ -16,10 +12,6 @@ namespace {
 using Eigen::Vector3f;
 
 // Signs (docs/method.md 2.7); all are judgement.
-constexpr float kLift = 0.3f;        // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;        // R beyond the nearest point, within which points tell
-constexpr float kUnsharp = 2;        // residuals that a height has to exceed to tell a side
-constexpr double kFades = 1;         // R of way on which what was seen fades to a third
 constexpr double kAgainst = 0.5;     // share of the agreement with a contact that turns a part
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
@@ -30,15 +22,10 @@ constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction betwee
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one sheet
 constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
-constexpr float kHiddenView = 2.6f;     // R from the eye: points within tell if a sheet is hidden
 
 // They bound the pairs that are compared (judgement).
 constexpr std::uint32_t kTried = 16;       // points of a sheet
 constexpr std::uint32_t kReferences = 64;  // decided points
-
-double weight(float squared, float reach) noexcept {
-  return wyvill(static_cast<double>(squared / (reach * reach))).w;
-}
 
 std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
   return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
@@ -48,15 +35,14 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
 
 /// Calls visit(p, q, way, w) for points p of the sheet and decided ones q that are near it: the way
 /// from q to p and how much it counts.
-template <class Visit>
-void Facing::each_meeting(const Sheet& sheet, const Visit& visit) noexcept {
+void Facing::each_meeting(const Sheet& sheet, const auto& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
   const std::uint32_t skip = stride_for(sheet.count, kTried);
   for (std::uint32_t k = 0; k < sheet.count; k += skip) {
-    const Point& p = points_[order_[sheet.begin + k]];
+    const Point& p = view_.points[view_.order[sheet.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
       const Vector3f way = p.place - references_[r].place;
-      const double w = weight(way.squaredNorm(), kMeetReach * p.radius);
+      const double w = weight_within(way.squaredNorm(), kMeetReach * p.radius);
       if (w > 0) visit(p, references_[r], way, w);
     }
   }
@@ -66,7 +52,7 @@ void Facing::each_meeting(const Sheet& sheet, const Visit& visit) noexcept {
 /// its normals; an arc joins points of one time.
 double Facing::across(std::uint32_t part) noexcept {
   double sum = 0;
-  for (const Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
+  for (const Sheet& sheet : view_.table.sheets) {
     if (sheet.part != part) continue;
     each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
       const float a = q.is_of_another_time(sheet) ? p.normal.dot(q.normal)
@@ -78,118 +64,25 @@ double Facing::across(std::uint32_t part) noexcept {
   return sum;
 }
 
-bool Facing::is_one_sided(const Point& point) const noexcept {
-  return now_.parts[now_.sheets[point.sheet].part].key == kOneSided;
-}
-
-/// The height of the surface above a point, m.
-float Facing::rise_of(const Point& point) const noexcept {
-  return static_cast<float>(rise_.length + rise_.share * static_cast<double>(point.radius));
-}
-
-/// Is the eye in front of the point's surface?
-bool Facing::is_above(const Point& point) const noexcept {
-  return height_over(point) >= rise_of(point);
-}
-
-/// How high the eye is above the surface at a point, m. What was seen from one side alone is never
-/// turned, and close above a bulge the planes of most of its points are higher than the eye: half
-/// of what the closest point says keeps these down.
-float Facing::height_over(const Point& point) const noexcept {
-  const Vector3f way = eye_.place - point.place;
-  const float height = point.normal.dot(way);
-  const bool bent = is_one_sided(point) && point.normal.dot(eye_.beside) > 0.5f;
-  return bent ? 0.5f * (height + eye_.beside.dot(way)) : height;
-}
-
-/// The tool looks from where it is or, where it touches, from a little above; between two sheets
-/// from no further than halfway.
-void Facing::choose_eye(const Stance& stance) noexcept {
-  const Vector3f normal = stance.normal.cast<float>();
-  float lift = stance.touches() ? kLift * radius_ : 0;
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const Point& point : points_) {
-    const Sheet& sheet = now_.sheets[point.sheet];
-    const int sign = now_.parts[sheet.part].factor();
-    const float squared = point.place.squaredNorm();
-    if (!stance.touches() || sheet.label == kOpen || sign == 0 || squared >= nearest) continue;
-    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
-    nearest = squared;
-    lift = std::min(kLift * radius_, 0.5f * (sign > 0 ? point.above : point.below));
-  }
-  eye_.place = lift * normal;
-  float closest = std::numeric_limits<float>::infinity();
-  float closest_seen = closest;
-  for (const Point& point : points_) {
-    const float squared = (point.place - eye_.place).squaredNorm();
-    closest = std::min(closest, squared);
-    if (!is_one_sided(point) || squared >= closest_seen) continue;
-    closest_seen = squared;
-    eye_.beside = point.normal;
-  }
-  eye_.view = std::sqrt(closest) + kView * radius_;
-}
-
-/// Has the sheet a label, and is it seen from its one side? Then what is seen of it decides
-/// nothing.
-bool Facing::is_decided(const Sheet& sheet) const noexcept {
-  const Part& part = now_.parts[sheet.part];
-  return sheet.label != kOpen && part.key == kOneSided && part.sign > 0;
-}
-
-/// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
-/// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
-/// of some are wrong.
-void Facing::see(const Stance& stance) noexcept {
-  const double way = (stance.proxy - remembered_from_).norm();
-  const double kept = std::exp(-way / (kFades * static_cast<double>(radius_)));
-  std::array<double, kMost> seen{};
-  for (const Point& p : points_) {
-    Sheet& sheet = now_.sheets[p.sheet];
-    if (is_decided(sheet)) continue;
-    const Vector3f back = eye_.place - p.place;
-    const float squared = back.squaredNorm();
-    const float height = height_over(p);
-    const bool hidden = p.is_hidden(height);
-    if (const double w = weight(squared, kHiddenView * radius_); w > 0) {
-      sheet.all += w;
-      if (hidden) sheet.hidden += w;
-    }
-    if (squared >= eye_.view * eye_.view) continue;
-    const double w = static_cast<double>(p.confidence) * weight(squared, eye_.view);
-    sheet.weight += w;
-    const float length = std::max(std::sqrt(squared), 1e-12f);
-    // A proxy that comes from behind is in front only above the surface, not above its points.
-    const float over = was_behind_ && is_one_sided(p) ? height - rise_of(p) : height;
-    const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    if (!hidden) seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
-  }
-  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
-    Part& part = now_.parts[k];
-    const bool fades = part.seen != 0 && part.key != kOneSided;
-    part.seen = fades ? kept * part.seen + (1 - kept) * seen[k] : seen[k];
-  }
-}
-
 /// Turns parts whose points say the opposite of a contact that begins: what it touches is in front.
 void Facing::turn_by(const Vector3f& normal) noexcept {
-  std::array<double, kMost> agreed{};
-  std::array<double, kMost> all{};
-  for (const Point& p : points_) {
+  std::array<double, SheetTable::kMost> agreed{};
+  std::array<double, SheetTable::kMost> all{};
+  for (const Point& p : view_.points) {
     const float squared = p.place.squaredNorm();
     if (squared >= p.radius * p.radius) continue;
-    const double w = static_cast<double>(p.confidence) * weight(squared, p.radius);
-    const std::uint32_t part = now_.sheets[p.sheet].part;
+    const double w = static_cast<double>(p.confidence) * weight_within(squared, p.radius);
+    const std::uint32_t part = view_.table.sheets[p.sheet].part;
     const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
-    agreed[part] += w * static_cast<double>(a * std::abs(a)) * now_.parts[part].sign;
+    agreed[part] += w * static_cast<double>(a * std::abs(a)) * view_.table.parts[part].sign;
     all[part] += w;
   }
-  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
-    Part& part = now_.parts[k];
-    if (part.key == kOneSided || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
+  for (std::size_t k = 0; k < view_.table.parts.size(); ++k) {
+    Part& part = view_.table.parts[k];
+    if (part.is_one_sided() || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
     part.sign = -part.sign;
-    for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
-      if (sheet.part == k) sheet.label = kOpen;
+    for (Sheet& sheet : view_.table.sheets) {
+      if (sheet.part == k) sheet.label = SheetTable::kOpen;
     }
   }
 }
@@ -197,14 +90,15 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
 /// `continued`: take a part's sign from its decided neighbours, not from visibility, which decides
 /// where they do not. One-sided parts always use visibility.
 void Facing::decide_signs(bool continued) noexcept {
+  std::vector<Part>& parts = view_.table.parts;
   int beside = 0;  // of parts whose normals point outward, as they are seen
-  for (const Part& part : std::span(now_.parts).first(now_.part_count)) {
+  for (const Part& part : parts) {
     if (part.known) beside += part.sign;
   }
-  for (std::uint32_t k = 0; k < now_.part_count; ++k) {
-    Part& part = now_.parts[k];
+  for (std::uint32_t k = 0; k < parts.size(); ++k) {
+    Part& part = parts[k];
     if (part.sign != 0) continue;
-    const bool told = continued && part.key != kOneSided;
+    const bool told = continued && !part.is_one_sided();
     const double vote = !told ? 0 : part.known && beside != 0 ? beside : across(k);
     const double told_or_seen = std::abs(vote) > kLeastVote ? vote : part.seen;
     if (told_or_seen != 0) part.sign = told_or_seen < 0 ? -1 : 1;
@@ -231,7 +125,7 @@ struct Facing::Meeting {
 /// `beyond`: the weight of pairs where what is in front goes on beyond the sheet's plane.
 Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
   Meetings result{};
-  const auto sign = static_cast<float>(now_.parts[sheet.part].factor());
+  const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
   each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
     const float length = way.norm();
     if (!(length > kSamePlace * p.radius)) return;
@@ -282,13 +176,13 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
 void Facing::decide_labels() noexcept {
   for (;;) {
     Sheet* next = nullptr;
-    for (Sheet& sheet : std::span(now_.sheets).first(now_.sheet_count)) {
-      if (sheet.label == kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
+    for (Sheet& sheet : view_.table.sheets) {
+      if (sheet.label == SheetTable::kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
     }
     if (!next) return;
-    Part& part = now_.parts[next->part];
+    Part& part = view_.table.parts[next->part];
     // Nothing of the part is seen: what is decided beside it tells its sign.
-    const bool turned = part.sign == 0 && part.key != kOneSided && across(next->part) < 0;
+    const bool turned = part.sign == 0 && !part.is_one_sided() && across(next->part) < 0;
     if (part.sign == 0) part.sign = turned ? -1 : 1;
     next->label = label_of(*next);
     add_references(*next);

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "field/facing.hpp"
 #include "field/formulas.hpp"
 #include "field/oriented.hpp"
+#include "field/sheet_view.hpp"
 
 namespace palpate {
 

@@ -47,8 +47,7 @@ PLATFORM_FILES = {"src/base/cpu.hpp"}
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "python", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
 # Classes that were larger when this was first counted: (methods, members). They may only shrink.
-LARGE = {"Facing": (35, 16), "Proxy": (28, 18), "Servo": (21, 12),
-         "SnapshotBuilder": (20, 15), "SourceView": (20, 17)}
+LARGE = {"Proxy": (28, 18), "Servo": (21, 12), "SnapshotBuilder": (20, 15), "SourceView": (20, 17)}
 LONGEST_FILE = 300  # lines
 LARGEST_MODULE = 250  # lines of a header and its sources, about
 

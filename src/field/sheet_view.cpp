@@ -1,0 +1,261 @@
+// Lists the sheets near the tool and their points, and sums what the eye sees of them.
+
+#include "field/sheet_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "field/formulas.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Part = SheetTable::Part;
+using Sheet = SheetTable::Sheet;
+using Point = SheetView::Point;
+
+// A part keeps its sign while one of its points is within kHolds, a sheet its label within kMeets.
+// Both are above 1 R, where weights end. Labels are settled later, when more is known.
+constexpr float kHolds = 1.5f;  // R; judgement
+constexpr float kMeets = 1.1f;  // R; judgement
+
+// What the eye sees (docs/method.md 2.7); all are judgement.
+constexpr float kLift = 0.3f;        // R above the surface that a touching tool looks from
+constexpr float kView = 1.2f;        // R beyond the nearest point, within which points tell
+constexpr double kFades = 1;         // R of way on which what was seen fades to a third
+constexpr float kHiddenView = 2.6f;  // R from the eye: points within tell if a sheet is hidden
+
+/// The index of a part, which is added if it is new. Parts are never more than sheets, so there is
+/// room for them.
+std::uint32_t add_part(std::vector<Part>& parts, Part part, const SheetTable& before) noexcept {
+  for (std::size_t k = parts.size(); k-- > 0;) {
+    if (parts[k].key == part.key) return static_cast<std::uint32_t>(k);
+  }
+  for (const Part& old : before.parts) {
+    if (old.key != part.key) continue;
+    part.sign = old.sign;
+    if (old.weighs) part.seen = old.seen;
+  }
+  parts.push_back(part);
+  return static_cast<std::uint32_t>(parts.size() - 1);
+}
+
+/// Has the sheet a label, and is it seen from its one side? Then what is seen of it decides
+/// nothing.
+bool is_decided(const Sheet& sheet, const Part& part) noexcept {
+  return sheet.label != SheetTable::kOpen && part.is_one_sided() && part.sign > 0;
+}
+
+void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
+                const Vector3d& proxy) noexcept {
+  const SurfacePoints& surface = *layer.points;
+  const SurfacePoints::Sheets& own = surface.sheets;
+  const std::uint32_t none = surface.one_sided ? SheetView::kUnsure : SheetView::kNone;
+  std::uint32_t last = SurfacePoints::Sheets::kNone;
+  std::uint32_t slot = SheetView::kNone;
+  for (const std::uint32_t i : places) {
+    const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
+    const std::uint32_t sheet = own.empty() ? 0 : own.sheet[i];
+    if (confidence <= 0 || sheet == SurfacePoints::Sheets::kNone) {
+      view.sheet_of_place.push_back(none);
+      continue;
+    }
+    if (sheet != last) slot = view.table.add(layer, last = sheet, view.before);
+    view.sheet_of_place.push_back(slot == SheetView::kNone ? none : slot);
+    if (slot == SheetView::kNone) continue;
+    Point point{};
+    point.place = position_now(layer, i, proxy).cast<float>();
+    point.normal = normal_now(layer, i).cast<float>();
+    point.confidence = static_cast<float>(confidence);
+    point.radius = static_cast<float>(radius_now(layer, i));
+    point.sheet = slot;
+    point.residual = own.empty() ? 0 : own.residual[i];
+    point.above = own.empty() ? std::numeric_limits<float>::infinity() : own.above[i];
+    point.below = own.empty() ? std::numeric_limits<float>::infinity() : own.below[i];
+    view.points.push_back(point);
+    Sheet& s = view.table.sheets[slot];
+    const float distance = point.place.norm();
+    Part& part = view.table.parts[s.part];
+    // A part that all points share keeps its side until free space.
+    part.near |= own.empty() || part.is_one_sided() || distance <= kHolds * point.radius;
+    part.weighs |= distance <= point.radius;
+    if (own.empty() || distance <= kMeets * point.radius) s.near = true;
+    ++s.count;
+  }
+}
+
+void group(SheetView& view) noexcept {
+  std::uint32_t begin = 0;
+  for (Sheet& sheet : view.table.sheets) {
+    sheet.begin = begin;
+    begin += sheet.count;
+    sheet.count = 0;
+  }
+  view.order.resize(view.points.size());
+  for (std::uint32_t i = 0; i < view.points.size(); ++i) {
+    Sheet& sheet = view.table.sheets[view.points[i].sheet];
+    view.order[sheet.begin + sheet.count++] = i;
+  }
+}
+
+/// The height of the surface above a point, m.
+float rise_of(const SheetView& view, const Point& point) noexcept {
+  return static_cast<float>(view.rise.length + view.rise.share * static_cast<double>(point.radius));
+}
+
+/// How high the eye is above the surface at a point, m. What was seen from one side alone is never
+/// turned, and close above a bulge the planes of most of its points are higher than the eye: half
+/// of what the closest point says keeps these down.
+float height_over(const SheetView& view, const Point& point) noexcept {
+  const Vector3f way = view.eye.place - point.place;
+  const float height = point.normal.dot(way);
+  const bool bent = view.is_one_sided(point) && point.normal.dot(view.eye.beside) > 0.5f;
+  return bent ? 0.5f * (height + view.eye.beside.dot(way)) : height;
+}
+
+/// The tool looks from where it is or, where it touches, from a little above; between two sheets
+/// from no further than halfway.
+void choose_eye(SheetView& view, const Stance& stance) noexcept {
+  const Vector3f normal = stance.normal.cast<float>();
+  float lift = stance.touches() ? kLift * view.radius : 0;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const Point& point : view.points) {
+    const Sheet& sheet = view.table.sheets[point.sheet];
+    const int sign = view.table.parts[sheet.part].factor();
+    const float squared = point.place.squaredNorm();
+    const bool open = sheet.label == SheetTable::kOpen || sign == 0;
+    if (!stance.touches() || open || squared >= nearest) continue;
+    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
+    nearest = squared;
+    lift = std::min(kLift * view.radius, 0.5f * (sign > 0 ? point.above : point.below));
+  }
+  view.eye.place = lift * normal;
+  float closest = std::numeric_limits<float>::infinity();
+  float closest_seen = closest;
+  for (const Point& point : view.points) {
+    const float squared = (point.place - view.eye.place).squaredNorm();
+    closest = std::min(closest, squared);
+    if (!view.is_one_sided(point) || squared >= closest_seen) continue;
+    closest_seen = squared;
+    view.eye.beside = point.normal;
+  }
+  view.eye.view = std::sqrt(closest) + kView * view.radius;
+}
+
+}  // namespace
+
+SheetTable::SheetTable() {
+  parts.reserve(kMost);
+  sheets.reserve(kMost);
+  clear();
+}
+
+void SheetTable::clear_sheets() noexcept {
+  sheets.clear();
+  slots.fill(kMost);
+}
+
+void SheetTable::clear() noexcept {
+  parts.clear();
+  clear_sheets();
+}
+
+std::uint8_t SheetTable::find(const Key& key) const noexcept {
+  auto at = static_cast<std::uint8_t>((key.number * 2654435761u) >> 24);
+  while (slots[at] < kMost && sheets[slots[at]].key != key) ++at;
+  return at;
+}
+
+std::uint32_t SheetTable::add(const ActiveLayer& layer, std::uint32_t number,
+                              const SheetTable& before) noexcept {
+  const SurfacePoints& points = *layer.points;
+  const SurfacePoints::Sheets& own = points.sheets;
+  const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
+  std::uint8_t& slot = slots[find(key)];
+  if (slot < kMost || sheets.size() == kMost) return slot;
+  Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
+  part.unsure = points.one_sided && !part.known;
+  if (!own.empty() && (part.unsure || !points.one_sided)) part.key = {&points, own.part[number]};
+  Sheet sheet{.key = key, .source = layer.source, .part = add_part(parts, part, before)};
+  const std::uint8_t old = before.slots[before.find(key)];
+  if (old < kMost) sheet.label = before.sheets[old].label;
+  slot = static_cast<std::uint8_t>(sheets.size());
+  sheets.push_back(sheet);
+  return slot;
+}
+
+SheetView::SheetView(std::size_t capacity) {
+  points.reserve(capacity);
+  sheet_of_place.reserve(capacity);
+  order.reserve(capacity);
+}
+
+void SheetView::list(std::span<const ActiveLayer> layers, const Selection& chosen,
+                     const Rise& height, const Vector3d& proxy) noexcept {
+  rise = height;
+  std::swap(before, table);
+  table.clear();
+  points.clear();
+  sheet_of_place.clear();
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    list_layer(*this, layers[k], chosen.places(chosen.runs()[k]), proxy);
+  }
+  float radii = 0;
+  for (const Point& point : points) radii += point.radius;
+  if (!points.empty()) radius = radii / static_cast<float>(points.size());
+  group(*this);
+}
+
+bool SheetView::has_lost_one() const noexcept {
+  return std::ranges::any_of(before.sheets, [this](const Sheet& old) {
+    return old.near && table.slots[table.find(old.key)] == kNone;
+  });
+}
+
+bool SheetView::is_above(const Point& point) const noexcept {
+  return height_over(*this, point) >= rise_of(*this, point);
+}
+
+/// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
+/// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
+/// of some are wrong.
+void SheetView::look(const Stance& stance, double way, bool from_behind) noexcept {
+  const auto decided = [this](const Sheet& sheet) {
+    return is_decided(sheet, table.parts[sheet.part]);
+  };
+  if (std::ranges::all_of(table.sheets, decided)) return;
+  choose_eye(*this, stance);
+  const double kept = std::exp(-way / (kFades * static_cast<double>(radius)));
+  std::array<double, kNone> seen{};
+  for (const Point& p : points) {
+    Sheet& sheet = table.sheets[p.sheet];
+    if (decided(sheet)) continue;
+    const Vector3f back = eye.place - p.place;
+    const float squared = back.squaredNorm();
+    const float height = height_over(*this, p);
+    const bool hidden = p.is_hidden(height);
+    if (const double w = weight_within(squared, kHiddenView * radius); w > 0) {
+      sheet.all += w;
+      if (hidden) sheet.hidden += w;
+    }
+    if (squared >= eye.view * eye.view) continue;
+    const double w = static_cast<double>(p.confidence) * weight_within(squared, eye.view);
+    sheet.weight += w;
+    const float length = std::max(std::sqrt(squared), 1e-12f);
+    // A proxy that comes from behind is in front only above the surface, not above its points.
+    const float over = from_behind && is_one_sided(p) ? height - rise_of(*this, p) : height;
+    const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
+    if (!hidden) seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
+  }
+  for (std::size_t k = 0; k < table.parts.size(); ++k) {
+    Part& part = table.parts[k];
+    const bool fades = part.seen != 0 && !part.is_one_sided();
+    part.seen = fades ? kept * part.seen + (1 - kept) * seen[k] : seen[k];
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,171 @@
+// The sheets near a tool, and what it sees of them from where it is (docs/method.md 2.7).
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "field/selection.hpp"
+#include "field/simd/sums.hpp"
+
+namespace palpate {
+
+/// The position of a proxy, in free space or on the surface, and its contact normal.
+struct Stance {
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the contact; zero: it touches nothing
+
+  [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
+};
+
+/// The height of the surface above its points: length (m) + share * R of the point.
+struct Rise {
+  double length = 0;
+  double share = 0;
+};
+
+inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to tell a side; judgement
+
+/// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
+enum Label : std::uint8_t {
+  kInFront = 0,  ///< what is above it is free
+  kBehind = 1,   ///< it meets what is in front at a convex edge, or is hidden by it: solid is
+                 ///< what is below both
+  kAcross = 2,   ///< it meets what is in front in a crease, or that goes on beyond its plane: free
+                 ///< is what is above both
+};
+static_assert(kAcross == simd::kLabels - 1);
+
+/// Sheets whose normals face away from each other by this cosine or more may be the sides of a
+/// plate, which is kept from cutting itself off (docs/method.md 2.8); judgement.
+inline constexpr double kBackToBack = 0.8;
+
+/// The sheets near the tool, in the order in which they were added, and their parts. All memory is
+/// taken by the constructor.
+struct SheetTable {
+  static constexpr std::size_t kMost = 96;     ///< sheets; further ones are in front; judgement
+  static constexpr std::uint8_t kOpen = 0xff;  ///< a label that is not decided; above every Label
+
+  /// Names a sheet or a part: the surface points that it is of, and its number among theirs. Layers
+  /// without sheets of their own share one (key_of_all()), and all that was seen from one side
+  /// alone is one part (kOneSided).
+  struct Key {
+    const void* owner = nullptr;
+    std::uint32_t number = 0;
+    bool operator==(const Key&) const = default;
+  };
+  static constexpr Key kOneSided{nullptr, 1};  ///< the part of all points seen from one side only
+  struct Part {
+    Key key;
+    int sign = 0;         // 0: not decided
+    bool known = false;   // do its normals point outward for sure?
+    bool unsure = false;  // was it seen in one view that does not tell its side?
+    bool near = false;    // has one of its points weight at the proxy, or nearly?
+    bool weighs = false;  // has one of them weight there?
+    double seen = 0;      // what speaks for the side of its normals, less what speaks against it
+
+    [[nodiscard]] bool is_one_sided() const noexcept { return key == kOneSided; }
+    // Is it seen from behind, the side that no sensor saw?
+    [[nodiscard]] bool is_absent() const noexcept { return is_one_sided() && sign < 0; }
+    // The factor for its normals, 1 or -1; 0: not decided. One-sided parts are never turned.
+    [[nodiscard]] int factor() const noexcept { return is_absent() ? 1 : sign; }
+  };
+  struct Sheet {
+    Key key;
+    int source = 0;
+    std::uint32_t part = 0;
+    std::uint8_t label = kOpen;
+    bool near = false;
+    std::uint32_t begin = 0;  // of its points in the view's order
+    std::uint32_t count = 0;
+    double weight = 0;
+    double all = 0;     // sum of its points' weights
+    double hidden = 0;  // the same of those that another sheet hides
+  };
+
+  SheetTable();
+  void clear() noexcept;
+  void clear_sheets() noexcept;
+
+  /// The place of a layer's sheet, which is added if it is new, with what `before` has decided of
+  /// it; kMost: there are too many.
+  std::uint32_t add(const ActiveLayer& layer, std::uint32_t number,
+                    const SheetTable& before) noexcept;
+  /// Where the sheet is in `slots`, or would be.
+  [[nodiscard]] std::uint8_t find(const Key& key) const noexcept;
+  [[nodiscard]] bool sees_from_behind() const noexcept {
+    return std::ranges::any_of(parts, &Part::is_absent);
+  }
+  /// The key of the one sheet and part that points without sheets of their own belong to.
+  [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept {
+    return points.one_sided ? kOneSided : Key{};
+  }
+
+  std::vector<Part> parts;
+  std::vector<Sheet> sheets;
+  std::array<std::uint8_t, 256> slots;  // of sheets, by their keys' hashes and what follows
+};
+
+/// The sheets of the chosen points, and what an eye at the tool sees of them. All memory is taken
+/// by the constructor.
+struct SheetView {
+  static constexpr std::uint32_t kNone = SheetTable::kMost;        ///< a point of no sheet
+  static constexpr std::uint32_t kUnsure = SheetTable::kMost + 1;  ///< and of a single view
+
+  /// One point with confidence, and what is asked of it again and again.
+  struct Point {
+    Eigen::Vector3f place;  // from the proxy, m
+    Eigen::Vector3f normal;
+    float confidence;
+    float radius;
+    float residual;
+    float above;
+    float below;
+    std::uint32_t sheet;
+
+    // Is another sheet between its plane and an eye at this height above it?
+    [[nodiscard]] bool is_hidden(float height) const noexcept {
+      return std::abs(height) > (height > 0 ? above : below) + residual;
+    }
+  };
+
+  // Where the tool looks from.
+  struct Eye {
+    Eigen::Vector3f place = Eigen::Vector3f::Zero();   // free, from the proxy, m
+    Eigen::Vector3f beside = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
+    float view = 0;                                    // how far from here what is seen counts, m
+  };
+
+  /// `capacity`: points at most.
+  explicit SheetView(std::size_t capacity);
+
+  /// Lists what the proxy is among, with what is decided of it by now.
+  void list(std::span<const ActiveLayer> layers, const Selection& chosen, const Rise& height,
+            const Eigen::Vector3d& proxy) noexcept;
+  /// Sums what speaks for the sides that the tool sees. `way`, m: of the proxy since the last call;
+  /// `from_behind`: it was behind what was seen from one side only.
+  void look(const Stance& stance, double way, bool from_behind) noexcept;
+  /// Is a sheet gone that was near the proxy when the last list was made?
+  [[nodiscard]] bool has_lost_one() const noexcept;
+  [[nodiscard]] bool is_one_sided(const Point& point) const noexcept {
+    return table.parts[table.sheets[point.sheet].part].is_one_sided();
+  }
+  /// Is the eye in front of the point's surface?
+  [[nodiscard]] bool is_above(const Point& point) const noexcept;
+
+  SheetTable table;
+  SheetTable before;  // the last list
+  std::vector<Point> points;
+  std::vector<std::uint32_t> sheet_of_place;  // of all chosen points; or kNone, kUnsure
+  std::vector<std::uint32_t> order;           // of `points`, sheet by sheet
+  Eye eye;
+  float radius = 0;  // R around the tool, m
+  Rise rise;
+};
+
+}  // namespace palpate
