@@ -80,8 +80,7 @@ bool BlockTracks::may_move(const SeenPoint& seen, std::uint32_t i, const PointSt
   if (shown_.entries()[i].kind != EntryKind::live || moved_) return false;
   const float went_on = std::min(shown_.speed_of(i), ShownPoints::kSudden) * duration_;
   const float farthest = kFastest * std::min(duration_, kLongest) + went_on;
-  return !seen.turns_from(before.normal) &&
-         seen.advance_from(before.position) <= farthest &&
+  return !seen.turns_from(before.normal) && seen.advance_from(before.position) <= farthest &&
          blocks_.vouching(seen.place) >= FrameBlocks::kVouchToMove && !came_aside(seen);
 }
 
