@@ -15,7 +15,7 @@ struct FrameTiming {
   double stamp = 0;     ///< of the data that are new in it, s, the sensor's clock
   double start = 0;     ///< s, on the fields' clock; no earlier than the last snapshot's
   double duration = 0;  ///< how long the next one is going to be waited for, s
-  double spare = 0;     ///< what of that no surface will be late for, s
+  double spare = 0;     ///< time between frames in which none was being prepared, smoothed, s
 };
 
 /// How far what began at `last` has gone at `time`, s, 0-1. Rounding does not keep it from

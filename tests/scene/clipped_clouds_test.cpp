@@ -13,6 +13,17 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A strip along x, 4 mm apart, from the `first` to the `last` point: 2 m, half of it left of x =
+/// 0.
+PointCloud strip(int first = -250, int last = 250) {
+  PointCloud cloud;
+  cloud.viewpoint = Vector3d(0, 0, 1);
+  for (int i = first; i <= last; ++i) {
+    for (int j = -5; j <= 5; ++j) cloud.positions.push_back({4e-3f * i, 4e-3f * j, 0});
+  }
+  return cloud;
+}
+
 // A hand that moves at 0.5 m/s over clouds that come five times a second, each clipped to where it
 // can be: it never comes to their end.
 TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
@@ -24,11 +35,7 @@ TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
   Scene scene;
   Source& source = scene.add("sensor", options);
   SceneField field(scene);
-  PointCloud cloud;
-  cloud.viewpoint = Vector3d(0, 0, 1);
-  for (int i = -20; i <= 500; ++i) {
-    for (int j = -5; j <= 5; ++j) cloud.positions.push_back({4e-3f * i, 4e-3f * j, 0});
-  }
+  const PointCloud cloud = strip(-20, 500);
   for (int tick = 0; tick < 1200; ++tick) {
     const double now = 1e-3 * tick;
     const Vector3d hand(0.5 * now, 0, 0);
@@ -38,16 +45,6 @@ TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
     EXPECT_GT(field.sample(hand).support, 0.9) << now;
   }
   EXPECT_LT(source.state().points, cloud.size() * 3 / 4);
-}
-
-/// A strip of 2 m, 4 mm apart; half of it is left of x = 0.
-PointCloud strip() {
-  PointCloud cloud;
-  cloud.viewpoint = Vector3d(0, 0, 1);
-  for (int i = -250; i <= 250; ++i) {
-    for (int j = -5; j <= 5; ++j) cloud.positions.push_back({4e-3f * i, 4e-3f * j, 0});
-  }
-  return cloud;
 }
 
 TEST(Scene, CloudsAreClippedOnceASurfaceCameLate) {

@@ -88,7 +88,7 @@ struct Snapshot {
   double silent_from = std::numeric_limits<double>::infinity();
   double fade = 0.5;           ///< s
   double interval = 0;         ///< time between its source's frames, s; 0: nothing follows
-  double spare = 0;            ///< `interval` less the time that they took to become surfaces, s
+  double spare = 0;            ///< part of it in which no frame was being prepared, s
   double stamp = 0;            ///< when the newest data in it was taken, s, same clock
   std::uint64_t sequence = 0;  ///< counts a source's snapshots
   /// Counts what a source published of push(), set() and keep(); 0: it came by publish().
@@ -141,7 +141,7 @@ class Source {
     /// What is there besides the surface, thinned, world frame: points of all of a store, or of a
     /// cloud beyond the tools' reach. null: the surface is all.
     std::shared_ptr<const PointCloud> overview = {};
-    bool clipped = false;    ///< the last cloud was, to where tools can be
+    bool clipped = false;    ///< the last cloud was clipped to where tools can be
     double noise = 0;        ///< sigma of one pixel at `depth`, m; 0: no depth frame yet
     double depth = 0;        ///< median depth of the last frame, m
     double correlation = 0;  ///< c of NoiseModel

@@ -14,10 +14,6 @@ constexpr float kBeside = 0.5f;  // R by which depths of one surface differ from
 // (judgement; docs/method.md 7.3).
 constexpr float kFastest = 1;
 
-// It does so for so long at most, s: the longer nothing was seen, the likelier is what is nearer
-// now something else.
-constexpr auto kLongest = static_cast<float>(kUsualInterval);
-
 }  // namespace
 
 void BlockEntries::sort(std::span<const Entry> entries, std::size_t blocks) {
@@ -79,8 +75,10 @@ std::optional<BlockTracks::Partner> BlockTracks::partner_of(const SeenPoint& see
 bool BlockTracks::may_move(const SeenPoint& seen, std::uint32_t i, const PointState& before) const {
   if (shown_.entries()[i].kind != EntryKind::live || moved_) return false;
   const float went_on = std::min(shown_.speed_of(i), ShownPoints::kSudden) * duration_;
-  const float farthest = kFastest * std::min(duration_, kLongest) + went_on;
-  return !seen.turns_from(before.normal) && seen.advance_from(before.position) <= farthest &&
+  // The longer nothing was seen, the likelier what is nearer now is something else.
+  const float sped_up = kFastest * std::min(duration_, static_cast<float>(kUsualInterval));
+  return !seen.turns_from(before.normal) &&
+         seen.advance_from(before.position) <= sped_up + went_on &&
          blocks_.vouching(seen.place) >= FrameBlocks::kVouchToMove && !came_aside(seen);
 }
 
