@@ -21,26 +21,28 @@ constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneFi
 void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                           const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
   const double depth = normal.dot(place - hip);
-  if (touching_ || !(depth > 0) || (hip - pressed).norm() > kWaits * step_length_) return;
-  if (surface_.presence > kFaded && probe.sample(place).support > 0) return;
+  if (touch_.touching || !(depth > 0) || (hip - pressed).norm() > kWaits * step_length_) return;
+  if (touch_.surface.presence > kFaded && probe.sample(place).support > 0) return;
   release(hip + depth * normal);
-  touching_ = waiting_ = true;
-  normal_ = normal;
-  pressed_ = pressed;
-  tank_.fill(0.5 * tank_.stiffness() * (place - hip).squaredNorm());
-  tank_.take_over(0);
+  touch_.touching = touch_.waiting = true;
+  touch_.normal = normal;
+  touch_.pressed = pressed;
+  spring_.wait(place - hip);
 }
 
 // Keeps the spring of a contact whose surface was not found in this step, at the place to which the
-// proxy came. It fades after kKeepLost, unless a sweep had only run out of its budget.
+// proxy came. It fades once the surface is lost for long, unless a sweep had only run out of its
+// budget.
 void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
-  contact.normal = normal_;
+  contact.normal = touch_.normal;
   if (!search_.cut_short) {
     contact.notes |= ContactNote::lost;
-    since_.lost += dt;
+    spring_.lose(dt);
   }
-  pull(hip, 0, dt, contact);
+  spring_.pull(full_stiffness(), position_ - hip, 0, dt, contact);
+  contact.drift = touch_.surface.velocity;
+  contact.source = touch_.surface.source;
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 
@@ -53,29 +55,29 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
                               const Eigen::Vector3d& hip, double dt, Contact& contact,
                               bool changed) noexcept {
   if (changed) way_out_.reset();
-  if (!changed && !touching_) way_out_.wander(probe, position_);
+  if (!changed && !touch_.touching) way_out_.wander(probe, position_);
   const bool slow = (position_ - before).norm() <= kFast * probe.step_length();
-  if (!changed && slow && is_held() && way_out_.is_shut_in(probe, position_, normal_, hip)) {
-    fading_.take(position_, tank_.stiffness());
+  if (!changed && slow && touch_.is_held() &&
+      way_out_.is_shut_in(probe, position_, touch_.normal, hip)) {
+    spring_.leave(position_, spring_.stiffness());
     release(hip);
     contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};
   }
   const double stretch = (hip - position_).norm();
   const bool hard =
-      touching_ && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
-  since_.away = hard && probe.is_free({hip, 0}) ? since_.away + dt : 0;
-  if (since_.away < kAwayTime) return;
+      touch_.touching && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
+  if (!spring_.hold_away(hard && probe.is_free({hip, 0}), dt)) return;
   contact.notes |= ContactNote::freed;
-  if (tank_.stiffness() <= kFaded * options_.stiffness) release(hip);
+  if (spring_.stiffness() <= kFaded * options_.stiffness) release(hip);
 }
 
 // Ends a contact that is lost, and never takes the proxy through what cannot be found. From a free
 // place it goes to the first contact; from inside only when the hand has come out again in front of
 // where it went in. Until then the proxy waits there, without force.
 void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
-  if (since_.lost <= kKeepLost) return;
+  if (!spring_.is_lost()) return;
   if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);
-  if ((hip - position_).dot(normal_) >= 0 && !probe.inside(hip)) release(hip);
+  if ((hip - position_).dot(touch_.normal) >= 0 && !probe.inside(hip)) release(hip);
 }
 
 }  // namespace palpate

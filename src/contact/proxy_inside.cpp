@@ -11,12 +11,10 @@ namespace {
 
 constexpr double kLeastTime = 1e-9;    // s; friction divides by the time of a step
 constexpr double kTextureStep = 0.25;  // of the wavelength, so that no sub-step skips a groove
-constexpr double kMuchSofter = 0.95;   // of the wanted stiffness; less is felt (judgement)
 // The proxy has not caught up with the hand.
 constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
-constexpr double kFastest = 1;    // m/s: a surface that moves faster has jumped (judgement)
-constexpr double kFreeing = 0.5;  // s, in which its spring fades (judgement)
-constexpr double kFall = 0.5;     // of the stretch, the least that is noted as a fall (judgement)
+constexpr double kFastest = 1;  // m/s: a surface that moves faster has jumped (judgement)
+constexpr double kFall = 0.5;   // of the stretch, the least that is noted as a fall (judgement)
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
 bool in_range(const Eigen::Vector3d& place) {
@@ -28,13 +26,20 @@ double factor(double value) {
   return value >= 0 ? std::min(value, 1.0) : 0.0;
 }
 
+Contact faulted(const Eigen::Vector3d& proxy) {
+  Contact contact;
+  contact.proxy = proxy;
+  contact.notes = ContactNote::fault;
+  return contact;
+}
+
 }  // namespace
 
 void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
   step_length_ = 0;
-  fading_ = {};
+  spring_.reset();
   way_out_.reset();
   revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
@@ -43,72 +48,62 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
 
 Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
   if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
-  if (fault_) return faulted();
+  if (fault_) {
+    touch_.touching = false;
+    return faulted(position_);
+  }
   if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
-  const bool held = is_held();
+  const bool held = touch_.is_held();
   const Eigen::Vector3d before = position_;
-  const Eigen::Vector3d side = normal_;
-  const EnergyTank tank = tank_;
-  if (!touching_) follow(probe, hip, contact);
-  if (touching_) hold(probe, hip, std::max(dt, kLeastTime), contact);
-  await(probe, before, side, held ? hand_ : pressed_, hip);
+  const Eigen::Vector3d side = touch_.normal;
+  const EnergyTank tank = spring_.tank();
+  if (!touch_.touching) follow(probe, hip, contact);
+  if (touch_.touching) hold(probe, hip, std::max(dt, kLeastTime), contact);
+  await(probe, before, side, held ? hand_ : touch_.pressed, hip);
   step_length_ = probe.step_length();
   const bool first = !revision_;  // step since a reset, which may put the proxy into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
   free_hand(probe, before, hip, dt, contact, changed);
   revision_ = probe.traits().revision;
-  field.end_step(position_, touching_ ? normal_ : Eigen::Vector3d::Zero().eval());
+  field.end_step(position_, touch_.touching ? touch_.normal : Eigen::Vector3d::Zero().eval());
   contact.proxy = position_;
-  contact.touching = is_held();
+  contact.touching = touch_.is_held();
   contact.evaluations = probe.evaluations();
   const double jump = unexplained_jump(before, hip, dt);
   if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
   if (changed && jump > std::max(probe.traits().step, kFastest * dt)) {
-    if (held) fading_.take(before, tank.stiffness());
-    take_over(held ? tank : tank_, hip, contact);
-  } else if (!held && touching_ && !first && !changed) {
+    if (held) spring_.leave(before, tank.stiffness());
+    take_over(held ? tank : spring_.tank(), hip, contact);
+  } else if (!held && touch_.touching && !first && !changed) {
     // The surface may have come to the hand, and not the hand to it.
-    if (initial_stiffness(position_, hip) < tank_.stiffness()) take_over(tank_, hip, contact);
+    if (initial_stiffness(position_, hip) < spring_.stiffness()) {
+      take_over(spring_.tank(), hip, contact);
+    }
   }
-  tank_.fill(fading_.fade(hip, dt));
-  contact.force += fading_.force(hip);
-  contact.stiffness += fading_.stiffness();
+  spring_.add_fading(hip, dt, contact);
   if (!has(contact.notes, kUnfinished)) hand_ = hip;
   if (contact.force.allFinite() && in_range(position_)) return contact;
   fault_ = true;
   release(hip);
-  return faulted();
+  return faulted(position_);
 }
 
 // How far the proxy went beyond what motion of hand and surface explains, m: on a plane no farther
 // than the hand, on a bulge twice as far, up to half of its radius deep.
 double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
                                        double dt) const noexcept {
-  const double explained = 2 * (hip - hand_).norm() + surface_.velocity.norm() * dt;
-  const double jump = ((waiting_ ? hip : position_) - before).norm() - explained;
+  const double explained = 2 * (hip - hand_).norm() + touch_.surface.velocity.norm() * dt;
+  const double jump = ((touch_.waiting ? hip : position_) - before).norm() - explained;
   return jump > kLeastFall * step_length_ ? jump : 0;
 }
 
-// Lets the contact that there is now go on with the tank of `before`. What the spring that ended
-// gives up while it fades pays for the stiffness that this one still lacks.
+// Lets the contact that there is now go on with the tank of `before`.
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
-  tank_ = before;
-  tank_.take_over(is_held() ? initial_stiffness(position_, hip) : 0);
-  contact.stiffness = tank_.stiffness();
-  const double least = waiting_ ? 0 : kMuchSofter * wanted_stiffness();
-  if (contact.stiffness < least) contact.notes |= ContactNote::softer;
-  contact.force = contact.stiffness * (position_ - hip);
-}
-
-Contact Proxy::Inside::faulted() noexcept {
-  touching_ = false;
-  Contact contact;
-  contact.proxy = position_;
-  contact.notes = ContactNote::fault;
-  return contact;
+  spring_.go_on(before, touch_.is_held() ? initial_stiffness(position_, hip) : 0,
+                touch_.waiting ? 0 : full_stiffness(), position_ - hip, contact);
 }
 
 // Free space: to the hand, or to the first contact on the way.
@@ -126,27 +121,26 @@ double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
                                         const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
   const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
-  return wanted_stiffness() * (stretch > moved ? moved / stretch : 1);
+  return spring_.wanted(full_stiffness()) * (stretch > moved ? moved / stretch : 1);
 }
 
 void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
                           const Eigen::Vector3d& hip) noexcept {
   release(place);
-  touching_ = true;
-  surface_ = probe.field().surface(place);
+  touch_.touching = true;
+  touch_.surface = probe.field().surface(place);
   step_length_ = probe.step_length();
-  tank_.restart(initial_stiffness(place, hip));
+  spring_.begin(initial_stiffness(place, hip));
 }
 
 void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
   position_ = place;
-  normal_.setZero();
-  since_.lost = 0;
-  since_.away = 0;
-  touching_ = false;
-  sliding_ = false;
+  touch_.normal.setZero();
+  spring_.rest();
+  touch_.touching = false;
+  touch_.sliding = false;
   search_ = {};
-  waiting_ = false;
+  touch_.waiting = false;
 }
 
 // The next step has the whole budget for where this one stopped: it does not re-anchor first.
@@ -159,13 +153,13 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   const std::optional<SurfacePoint> at = find_surface(probe, hip, contact);
   if (!at) {
-    if (is_held()) keep(probe, hip, dt, contact);
+    if (touch_.is_held()) keep(probe, hip, dt, contact);
     return;
   }
-  waiting_ = false;
-  since_.lost = 0;
-  const FrictionLaw law =
-      friction_law(options_.friction, factor(surface_.friction_factor), tank_.stiffness(), dt);
+  touch_.waiting = false;
+  spring_.find();
+  const FrictionLaw law = friction_law(options_.friction, factor(touch_.surface.friction_factor),
+                                       spring_.stiffness(), dt);
   const SlideOptions options{.method = options_.method,
                              .max_iterations = options_.max_iterations,
                              .tangent_tolerance = options_.tangent_tolerance,
@@ -173,11 +167,13 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
                                                  ? kTextureStep * options_.texture.wavelength
                                                  : 0,
                              .friction = law};
-  const Slide motion = slide(probe, *at, hip, sliding_, options);
+  const Slide motion = slide(probe, *at, hip, touch_.sliding, options);
   contact.iterations = motion.iterations;
   if (!settle(motion, contact)) return;
-  surface_ = probe.field().surface(position_);
-  pull(hip, motion.dissipated, dt, contact);
+  touch_.surface = probe.field().surface(position_);
+  spring_.pull(full_stiffness(), position_ - hip, motion.dissipated, dt, contact);
+  contact.drift = touch_.surface.velocity;
+  contact.source = touch_.surface.source;
 }
 
 // Where the surface is now, near where the proxy touched it. Empty: the contact ended, or is lost.
@@ -185,13 +181,13 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
                                                         Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
   const bool changed = probe.traits().revision != revision_;
-  const bool moved = !search_.cut_short && surface_moved(probe, here, normal_, changed);
+  const bool moved = !search_.cut_short && surface_moved(probe, here, touch_.normal, changed);
   const double radius = probe.step_length();  // at the proxy: Newton may end where it is another
   std::optional<SurfacePoint> at = project(probe, position_, here);
   if (moved) {
-    const bool same = at && is_same_place(*at, position_, normal_);
+    const bool same = at && is_same_place(*at, position_, touch_.normal);
     bool cut = false;
-    const auto found = same ? at : reanchor(probe, position_, normal_, radius, cut);
+    const auto found = same ? at : reanchor(probe, position_, touch_.normal, radius, cut);
     if (cut) at.reset();  // another place may be the underside of what the sweep did not come to
     if (found) {
       at = found;
@@ -201,7 +197,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   if (at) {
     search_.looked = 0;
   } else {
-    at = recover(probe, position_, normal_, search_.looked);
+    at = recover(probe, position_, touch_.normal, search_.looked);
   }
   search_.cut_short = false;
   if (at || !(here.value > 0)) return at;
@@ -229,30 +225,17 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
     contact.notes |= ContactNote::not_converged;
   }
   position_ = motion.at.position;
-  normal_ = motion.at.normal;
-  sliding_ = motion.sliding;
-  contact.normal = normal_;
-  contact.sliding = sliding_;
+  touch_.normal = motion.at.normal;
+  touch_.sliding = motion.sliding;
+  contact.normal = touch_.normal;
+  contact.sliding = touch_.sliding;
   return true;
 }
 
-void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
-                         Contact& contact) noexcept {
-  const Eigen::Vector3d stretch = position_ - hip;
-  const double wanted = wanted_stiffness();
-  contact.stiffness = tank_.follow(wanted, stretch.norm(), dissipated, dt);
-  if (contact.stiffness < kMuchSofter * wanted) contact.notes |= ContactNote::softer;
-  contact.force = contact.stiffness * stretch;
-  contact.drift = surface_.velocity;
-  contact.source = surface_.source;
-}
-
-double Proxy::Inside::wanted_stiffness() const noexcept {
-  if (since_.lost > kKeepLost) return 0;
-  const double wanted =
-      options_.stiffness * factor(surface_.stiffness_factor) * factor(surface_.presence);
-  const double left = factor(1 - (since_.away - kAwayTime) / kFreeing);
-  return std::max(0.0, left * wanted - fading_.stiffness());
+// The stiffness that the surface allows, N/m.
+double Proxy::Inside::full_stiffness() const noexcept {
+  return options_.stiffness * factor(touch_.surface.stiffness_factor) *
+         factor(touch_.surface.presence);
 }
 
 }  // namespace palpate

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "contact/proxy_inside.hpp"
+#include "contact/spring.hpp"
 
 namespace palpate {
 namespace {

@@ -1,0 +1,107 @@
+// The spring between proxy and hand, the tank that pays for its stiffness, and springs that fade.
+#include "contact/spring.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kGone = 0.002;       // of the stiffness: 3 mN of 1.5 N
+constexpr double kMuchSofter = 0.95;  // of the wanted stiffness; less is felt (judgement)
+constexpr double kAwayTime = 1;       // s in free air, after which a hand is let go (judgement)
+constexpr double kFreeing = 0.5;      // s, in which its spring fades (judgement)
+
+}  // namespace
+
+void EnergyTank::restart(double stiffness) noexcept {
+  stiffness_ = stiffness;
+  energy_ = 0;
+}
+
+double EnergyTank::follow(double wanted, double stretch, double dissipated, double dt) noexcept {
+  const double half_square = 0.5 * stretch * stretch;
+  fill(dissipated);
+  if (wanted < stiffness_) fall(wanted, half_square, dt);
+  if (wanted > stiffness_) rise(wanted, half_square, dt);
+  return stiffness_;
+}
+
+void EnergyTank::fall(double wanted, double half_square, double dt) noexcept {
+  const double next = std::max(wanted, stiffness_ * std::exp(-dt / kTime));
+  fill((stiffness_ - next) * half_square);
+  stiffness_ = next;
+}
+
+void EnergyTank::rise(double wanted, double half_square, double dt) noexcept {
+  const double step = std::min(wanted - stiffness_, wanted * std::min(1.0, dt / kTime));
+  const double price = step * half_square;
+  const double paid = std::min(price, energy_);
+  if (paid < price) {
+    stiffness_ += step * (paid / price);
+  } else {
+    stiffness_ = step < wanted - stiffness_ ? stiffness_ + step : wanted;
+  }
+  energy_ -= paid;
+}
+
+void EnergyTank::fill(double energy) noexcept {
+  energy_ = std::min(kCapacity, energy_ + energy);
+}
+
+void FadingSpring::take(const Eigen::Vector3d& place, double stiffness) noexcept {
+  const double both = stiffness_ + stiffness;
+  if (both > 0) place_ += stiffness / both * (place - place_);
+  stiffness_ = both;
+  gone_ = kGone * both;
+}
+
+double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
+  const double left = stiffness_ * std::exp(-dt / EnergyTank::kTime);
+  const double energy = 0.5 * (stiffness_ - left) * (place_ - hip).squaredNorm();
+  stiffness_ = left > gone_ ? left : 0;
+  return energy;
+}
+
+bool Spring::hold_away(bool away, double dt) noexcept {
+  away_ = away ? away_ + dt : 0;
+  return away_ >= kAwayTime;
+}
+
+double Spring::wanted(double full) const noexcept {
+  if (is_lost()) return 0;
+  const double left = std::clamp(1 - (away_ - kAwayTime) / kFreeing, 0.0, 1.0);
+  return std::max(0.0, left * full - fading_.stiffness());
+}
+
+void Spring::go_on(const EnergyTank& before, double stiffness, double full,
+                   const Eigen::Vector3d& stretch, Contact& contact) noexcept {
+  tank_ = before;
+  tank_.take_over(stiffness);
+  pull(full, stretch, contact);
+}
+
+void Spring::wait(const Eigen::Vector3d& stretch) noexcept {
+  tank_.fill(0.5 * tank_.stiffness() * stretch.squaredNorm());
+  tank_.take_over(0);
+}
+
+void Spring::pull(double full, const Eigen::Vector3d& stretch, double dissipated, double dt,
+                  Contact& contact) noexcept {
+  tank_.follow(wanted(full), stretch.norm(), dissipated, dt);
+  pull(full, stretch, contact);
+}
+
+void Spring::pull(double full, const Eigen::Vector3d& stretch, Contact& contact) const noexcept {
+  contact.stiffness = tank_.stiffness();
+  contact.force = contact.stiffness * stretch;
+  if (contact.stiffness < kMuchSofter * wanted(full)) contact.notes |= ContactNote::softer;
+}
+
+void Spring::add_fading(const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {
+  tank_.fill(fading_.fade(hip, dt));
+  contact.force += fading_.force(hip);
+  contact.stiffness += fading_.stiffness();
+}
+
+}  // namespace palpate
