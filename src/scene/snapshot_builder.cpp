@@ -100,20 +100,20 @@ double time_of(const char* what, double time) {
 
 SnapshotBuilder::SnapshotBuilder(const SourceOptions& options)
     : options_((check(options), options)),
-      frames_(options.policy.policy.value_or(kDepthPolicy)),
-      clouds_(options.policy.policy.value_or(kCloudPolicy)),
+      policies_{options.policy.policy.value_or(kDepthPolicy),
+                options.policy.policy.value_or(kCloudPolicy)},
       filter_(options.depth),
       morph_({.silence = options.policy.silence,
               .fade = options.policy.fade,
               .kernel = options.prepare.kernel,
               .minimum_radius =
                   std::max(options.prepare.minimum_radius, options.prepare.radius.value_or(0))}),
-      layers_(clouds_, clouds_ == Policy::replace ? 1 : options.policy.history) {
+      layers_(policies_.clouds, policies_.clouds == Policy::replace ? 1 : options.policy.history) {
   last_.presence_end = 0;  // there is none
 }
 
 std::size_t SnapshotBuilder::most_snapshots(bool clouds, std::size_t fields) const {
-  const Policy policy = clouds ? clouds_ : frames_;
+  const Policy policy = clouds ? policies_.clouds : policies_.frames;
   const bool weighs = policy == Policy::average || policy == Policy::crossfade;
   return (weighs ? static_cast<std::size_t>(options_.policy.history) : 1) + 2 + fields;
 }
@@ -125,12 +125,12 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const DepthFrame& frame, const A
                                    ? filter_.filter(frame, arrival.T_world_sensor)
                                    : filter_.filter(frame, arrival.T_world_sensor, arrival.reach);
   note_noise(depth);
-  pinhole_ = frame.camera.pinhole;
-  const MorphInput input{depth, pinhole_, arrival.reach, everywhere};
+  measured_.pinhole = frame.camera.pinhole;
+  const MorphInput input{depth, measured_.pinhole, arrival.reach, everywhere};
   morph_.look(input);
   const FrameTiming moment = next_timing(frame.stamp, arrival.start);
-  if (frames_ == Policy::morph) return morphed(input, moment);
-  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, frames_);
+  if (policies_.frames == Policy::morph) return morphed(input, moment);
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, policies_.frames);
   std::shared_ptr<SurfacePoints> points = points_.take();
   morph_.fill_still(input, moment, points);
   layers_.add(std::move(points), moment, snapshot->layers);
@@ -153,17 +153,17 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of(const Snapshot& newest,
   if (!notes.whole.empty()) {
     Prepared prepared = prepare(notes.whole, options_.prepare, notes.T_world_sensor);
     std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), notes.whole);
-    std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
+    std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, policies_.clouds);
     for (const Snapshot::Layer& layer : newest.layers) {
       if (layer.weight_end > 0) snapshot->layers.push_back({layer.points, layer.weight_end, 0});
     }
     snapshot->layers.push_back({std::move(points), 0, 1});
     return snapshot;
   }
-  if (frames_ != Policy::morph) return nullptr;
+  if (policies_.frames != Policy::morph) return nullptr;
   const FilteredDepth* const depth = filter_.fit_all();
   if (depth == nullptr) return nullptr;
-  const MorphInput input{.depth = *depth, .pinhole = pinhole_, .last = true};
+  const MorphInput input{.depth = *depth, .pinhole = measured_.pinhole, .last = true};
   morph_.look(input);
   return morphed(input, moment);
 }
@@ -171,12 +171,12 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of(const Snapshot& newest,
 std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double stamp,
                                                 const Arrival& arrival, CloudNotes& notes) {
   time_of("stamp", stamp);
-  if (clouds_ == Policy::morph) {
+  if (policies_.clouds == Policy::morph) {
     throw Error(
         "policy morph works only with depth frames; give replace, average or crossfade for clouds");
   }
   const bool clips =
-      (options_.policy.clip_to_reach || late_ == kEnoughLate) && !arrival.reach.empty();
+      (options_.policy.clip_to_reach || seen_.late == kEnoughLate) && !arrival.reach.empty();
   const Split parts = clips ? split(cloud, options_.prepare.clip, arrival) : Split{};
   const PointCloud clipped = select(cloud, parts.near);
   const PointCloud& wanted = clips ? clipped : cloud;
@@ -190,8 +190,8 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   notes.report = prepared.report;
   std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), cloud);
   const FrameTiming moment = next_timing(stamp, arrival.start);
-  if (late_ < kEnoughLate) late_ = moment.start - stamp > kLateCloud ? late_ + 1 : 0;
-  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, clouds_);
+  if (seen_.late < kEnoughLate) seen_.late = moment.start - stamp > kLateCloud ? seen_.late + 1 : 0;
+  std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, policies_.clouds);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
 }
@@ -215,8 +215,8 @@ bool SnapshotBuilder::knows_sides() const {
 /// viewpoint is given, one cloud that proves it counts for all after it; few pixels prove nothing.
 bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
   if (options_.prepare.viewpoint) return knows_sides();
-  view_ = view_ || is_view(cloud);
-  return view_ && cloud.normals.empty() && knows_sides();
+  seen_.view = seen_.view || is_view(cloud);
+  return seen_.view && cloud.normals.empty() && knows_sides();
 }
 
 FrameTiming SnapshotBuilder::next_timing(double stamp, const Source::StartTime& start) {

@@ -104,11 +104,21 @@ class SnapshotBuilder {
   [[nodiscard]] double median_depth() const { return measured_.median_depth; }
 
  private:
+  struct Policies {
+    Policy frames;
+    Policy clouds;
+  };
   /// What the last depth frame told.
   struct Measured {
+    Pinhole pinhole;
     NoiseModel noise;
     double median_depth = 0;    // m
     std::vector<float> depths;  // a sample, m; scratch
+  };
+  /// What the clouds so far told.
+  struct Clouds {
+    bool view = false;  // has one proved to be seen from its viewpoint?
+    int late = 0;       // in a row, whose surfaces came late; from kEnoughLate on it stays
   };
   struct Empty {
     void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
@@ -126,19 +136,16 @@ class SnapshotBuilder {
   [[nodiscard]] bool is_one_view(const PointCloud& cloud);
 
   SourceOptions options_;
-  Policy frames_;  // the policies for depth frames and for clouds
-  Policy clouds_;
+  Policies policies_;
   FrameIntervalFilter interval_filter_;
   DepthFilter filter_;
   Morph morph_;
   LayerHistory layers_;
   Recycler<SurfacePoints> points_;
   Recycler<Snapshot, Empty> snapshots_;
-  Snapshot last_;      // without its layers
-  Pinhole pinhole_;    // of the last frame
-  bool view_ = false;  // has a cloud proved to be seen from its viewpoint?
-  int late_ = 0;       // clouds in a row whose surfaces came late; from kEnoughLate on it stays
+  Snapshot last_;  // without its layers
   Measured measured_;
+  Clouds seen_;
 };
 
 /// The parts of a source. Its scene and the fields of that scene use them.

@@ -27,38 +27,65 @@ constexpr double kCatchUpMore = 0.5;  // judgement, both
 
 }  // namespace
 
-SourceView::SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
-                       const std::string& name)
-    : handoff_(&handoff), wanted_radius_(&least_radius), reader_(handoff.join(name)) {
-  if (reader_ == Handoff<Snapshot>::kReaders) {
+SnapshotReader::SnapshotReader(Handoff<Snapshot>& handoff, const std::string& name)
+    : handoff_(&handoff), place_(handoff.join(name)) {
+  if (place_ == Handoff<Snapshot>::kReaders) {
     throw Error(fmt::format("the scene already has {} fields; destroy one before creating another",
                             Handoff<Snapshot>::kReaders));
   }
 }
 
-SourceView::~SourceView() {
-  handoff_->leave(reader_);
+SnapshotReader::~SnapshotReader() {
+  handoff_->leave(place_);
+}
+
+bool SnapshotReader::advance(double now) noexcept {
+  look(now);
+  if (!next_ || (current_ && now < next_->start)) return false;
+  handoff_->release(place_, slot_);
+  slot_ = 1 - slot_;
+  current_ = next_;
+  next_ = nullptr;
+  return true;
+}
+
+void SnapshotReader::look(double now) noexcept {
+  const Snapshot* newest = handoff_->peek();
+  if (newest == current_ && !next_) return;
+  if (newest && (newest == current_ || newest == next_)) return;
+  if (!newest) {
+    handoff_->release(place_, slot_);
+    handoff_->release(place_, 1 - slot_);
+    current_ = next_ = nullptr;
+    return;
+  }
+  if (next_ && next_->start - now <= kPatience) return;
+  next_ = handoff_->acquire(place_, 1 - slot_);
+  if (next_) taken_ = next_->publication;
 }
 
 bool SourceView::advance(double now) noexcept {
-  const Snapshot* const snapshot_before = current_;
+  const Snapshot* const snapshot_before = snapshots_.current();
+  const Times before = snapshot_before ? Times{snapshot_before->start, snapshot_before->end,
+                                               snapshot_before->sequence}
+                                       : Times{};
   const double progress_before = progress_;
   const double share_before = share_;
   const double radius_before = std::exchange(least_radius_, wanted_radius_->load());
-  look(now);
-  change_over(now);
+  if (snapshots_.advance(now)) begin(before);
   move(now);
   fade(now, now - shown_);
   shown_ = now;
-  return current_ != snapshot_before || progress_ != progress_before || share_ != share_before ||
-         least_radius_ != radius_before;
+  return snapshots_.current() != snapshot_before || progress_ != progress_before ||
+         share_ != share_before || least_radius_ != radius_before;
 }
 
 /// Finds how far the points have gone. The lag that a snapshot began with shrinks in a straight
 /// line.
 void SourceView::move(double now) noexcept {
-  progress_ = current_ ? progress(*current_, now) : 0;
-  const double duration = current_ ? current_->end - current_->start : 0;
+  const Snapshot* const shown = snapshots_.current();
+  progress_ = shown ? progress(*shown, now) : 0;
+  const double duration = shown ? shown->end - shown->start : 0;
   rate_ = duration > 0 && progress_ > 0 && progress_ < 1 ? 1 / duration : 0;
   const double left = 1 - (now - begun_) / catch_up_;
   if (!(lag_ > 0) || left <= 0) return;
@@ -67,62 +94,35 @@ void SourceView::move(double now) noexcept {
 }
 
 void SourceView::fade(double now, double dt) noexcept {
-  const double wanted = current_ ? palpate::presence(*current_, now) : 0;
-  const double duration = current_ ? current_->end - current_->start : 0;
-  const double rise =
-      duration > 0 ? (current_->presence_end - current_->presence_start) / duration : 0;
-  const bool rises = current_ && share_ > 0 && wanted > presence_ && current_->fade > 0;
+  const Snapshot* const shown = snapshots_.current();
+  const double wanted = shown ? palpate::presence(*shown, now) : 0;
+  const double duration = shown ? shown->end - shown->start : 0;
+  const double rise = duration > 0 ? (shown->presence_end - shown->presence_start) / duration : 0;
+  const bool rises = shown && share_ > 0 && wanted > presence_ && shown->fade > 0;
   // A step from one snapshot to the next is made as slowly as a surface fades; what a snapshot
   // says of itself is followed.
-  const double rate = rises ? std::max(1 / current_->fade, rise) : 0;
+  const double rate = rises ? std::max(1 / shown->fade, rise) : 0;
   presence_ = rises ? std::min(wanted, presence_ + std::max(dt, 0.0) * rate) : wanted;
   faded_ = presence_ > 0 ? 0 : share_ > 0 ? faded_ + std::max(dt, 0.0) : faded_;
-  share_ = !current_       ? 0
+  share_ = !shown          ? 0
            : presence_ > 0 ? 1
            : share_ > 0    ? std::clamp(1 - (faded_ - kLinger) / kLeave, 0.0, 1.0)
                            : 0;
 }
 
-void SourceView::look(double now) noexcept {
-  const Snapshot* newest = handoff_->peek();
-  if (newest == current_ && !next_) return;
-  if (newest && (newest == current_ || newest == next_)) return;
-  if (!newest) return forget();
-  if (next_ && next_->start - now <= kPatience) return;
-  next_ = handoff_->acquire(reader_, 1 - slot_);
-  if (next_) taken_ = next_->publication;
-}
-
-void SourceView::forget() noexcept {
-  handoff_->release(reader_, slot_);
-  handoff_->release(reader_, 1 - slot_);
-  current_ = nullptr;
-  next_ = nullptr;
-}
-
-void SourceView::change_over(double now) noexcept {
-  if (!next_ || (current_ && now < next_->start)) return;
-  const Times before = current_ ? Times{current_->start, current_->end, current_->sequence}
-                                : Times{next_->start, next_->start, 0};
-  handoff_->release(reader_, slot_);
-  slot_ = 1 - slot_;
-  current_ = next_;
-  next_ = nullptr;
-  begin(before);
-}
-
 /// Begins a snapshot. One that was published after its start begins where the surface is and
 /// catches up. Its lag is less by the part of A to B that the old surface has moved since then.
 void SourceView::begin(const Times& before) noexcept {
-  const bool same = before.sequence > 0 && before.sequence == current_->sequence;
-  if (same && before.start == current_->start) return;  // the one that was shown, kept on
+  const Snapshot& shown = *snapshots_.current();
+  const bool same = before.sequence > 0 && before.sequence == shown.sequence;
+  if (same && before.start == shown.start) return;  // the one that was shown, kept on
   begun_ = shown_;
   lag_ = 0;
-  const double duration = current_->end - current_->start;
-  const double delay = shown_ - current_->start;
+  const double duration = shown.end - shown.start;
+  const double delay = shown_ - shown.start;
   if (!(delay > 0) || !(duration > 0)) return;
   const double span = before.end - before.start;
-  const double left = span > 0 ? std::clamp((before.end - current_->start) / span, 0.0, 1.0) : 0;
+  const double left = span > 0 ? std::clamp((before.end - shown.start) / span, 0.0, 1.0) : 0;
   const double gone = span > 0 ? std::min(delay / span, left) / (1 + left) : 0;
   lag_ = std::clamp(delay / duration - gone, 0.0, 1.0);
   catch_up_ = duration * (kCatchUp + kCatchUpMore * lag_);
@@ -137,7 +137,7 @@ bool SourceView::misses(const Ball& ball) const noexcept {
 }
 
 ActiveLayer SourceView::layer(std::size_t k, int source) const noexcept {
-  const Snapshot::Layer& layer = current_->layers[k];
+  const Snapshot::Layer& layer = snapshots_.current()->layers[k];
   const double weight = layer.weight_start + progress_ * (layer.weight_end - layer.weight_start);
   return {.points = layer.points.get(),
           .source = source,

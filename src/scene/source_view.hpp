@@ -16,25 +16,53 @@
 
 namespace palpate {
 
-/// One source's snapshots as one reader sees them: the current one and, while its start lies ahead,
-/// the next. Everything but construction and destruction is real-time.
+/// A reader's place at a source: it keeps the current snapshot and, while its start lies ahead, the
+/// next. Everything but construction and destruction is real-time.
+class SnapshotReader {
+ public:
+  /// @throws Error when the source has no reader's place left.
+  SnapshotReader(Handoff<Snapshot>& handoff, const std::string& name);
+  ~SnapshotReader();
+  SnapshotReader(const SnapshotReader&) = delete;
+  SnapshotReader& operator=(const SnapshotReader&) = delete;
+
+  /// Looks for a new snapshot. True when the next one has become the current one. A snapshot that
+  /// waits for its start is replaced by a newer one only when it starts unreasonably late.
+  bool advance(double now) noexcept;
+
+  [[nodiscard]] const Snapshot* current() const noexcept { return current_; }  ///< or nullptr
+  [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
+  [[nodiscard]] std::size_t place() const noexcept { return place_; }
+
+ private:
+  void look(double now) noexcept;
+
+  Handoff<Snapshot>* handoff_;
+  std::size_t place_;
+  std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
+  const Snapshot* current_ = nullptr;
+  const Snapshot* next_ = nullptr;
+  std::uint64_t taken_ = 0;
+};
+
+/// One source's surface in time, as one reader sees it. Everything but construction and destruction
+/// is real-time.
 class SourceView {
  public:
   /// `least_radius`: of all its layers' points, m; may change. `name`: of the reader.
   /// @throws Error when the source has no reader's place left.
   SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
-             const std::string& name);
-  ~SourceView();
-  SourceView(const SourceView&) = delete;
-  SourceView& operator=(const SourceView&) = delete;
+             const std::string& name)
+      : snapshots_(handoff, name), wanted_radius_(&least_radius) {}
 
   /// Looks for a new snapshot and brings everything to time `now`, s, which is finite. True when
-  /// that moved or changed the surface. A snapshot that waits for its start is replaced by a newer
-  /// one only when it starts unreasonably late; one that came after its start makes up for it.
+  /// that moved or changed the surface. A snapshot that came after its start makes up for it.
   bool advance(double now) noexcept;
 
   /// nullptr: no surface now; one that has faded away is none.
-  [[nodiscard]] const Snapshot* current() const noexcept { return share_ > 0 ? current_ : nullptr; }
+  [[nodiscard]] const Snapshot* current() const noexcept {
+    return share_ > 0 ? snapshots_.current() : nullptr;
+  }
 
   /// How sure the current snapshot is now, 0-1; 0 without one. Rises no faster than it would fade.
   [[nodiscard]] double presence() const noexcept { return presence_; }
@@ -47,40 +75,32 @@ class SourceView {
   [[nodiscard]] bool misses(const Ball& ball) const noexcept;
 
   /// Snapshot::publication of the newest snapshot that it took; 0: none yet.
-  [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
+  [[nodiscard]] std::uint64_t taken() const noexcept { return snapshots_.taken(); }
 
   /// The radius to which all supports are widened now, m.
   [[nodiscard]] double least_radius() const noexcept { return least_radius_; }
 
   /// The reader's place at the source.
-  [[nodiscard]] std::size_t reader() const noexcept { return reader_; }
+  [[nodiscard]] std::size_t reader() const noexcept { return snapshots_.place(); }
 
  private:
-  /// Remembers the times of a snapshot that is released.
+  /// What is remembered of a snapshot that is released.
   struct Times {
     double start = 0;
     double end = 0;
     std::uint64_t sequence = 0;
   };
 
-  void look(double now) noexcept;
-  void forget() noexcept;
-  void change_over(double now) noexcept;
   void begin(const Times& before) noexcept;
   void move(double now) noexcept;
   void fade(double now, double dt) noexcept;
 
-  Handoff<Snapshot>* handoff_;
+  SnapshotReader snapshots_;
   const std::atomic<double>* wanted_radius_;
-  std::size_t reader_;
-  std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
-  const Snapshot* current_ = nullptr;
-  const Snapshot* next_ = nullptr;
   double shown_ = -std::numeric_limits<double>::infinity();  // time of the last advance(), s
   double begun_ = 0;     // when the current one began to be shown, s
   double lag_ = 0;       // how far its surface lagged then, in durations, ...
   double catch_up_ = 1;  // ... and the time in which it catches up, s
-  std::uint64_t taken_ = 0;
   double least_radius_ = 0;
   double progress_ = 0;
   double rate_ = 0;  // of progress, 1/s
