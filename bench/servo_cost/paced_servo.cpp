@@ -50,7 +50,7 @@ ServoRun PacedServo::run(std::optional<int> processor) {
     result.skipped = thread.skipped();
   }
   std::ranges::sort(result.computing);
-  result.lateness = servo_.lateness();
+  result.lateness = servo_.durations().lateness;
   result.steps = servo_.state().step;
   result.faults = servo_.state().guard.counts.faults;
   result.lock_waits = device_.other_waits();

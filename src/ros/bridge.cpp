@@ -125,7 +125,7 @@ struct RosBridge::Inside {
       topics.push_back(std::make_unique<HandTopics>(participant, [&](const std::string& name) {
         return topic(options.ns + "/" + hand.name + "/" + name);
       }));
-      reports.push_back({});
+      reported.push_back({});
     }
     for (std::size_t i = 0; i < scene.size(); ++i) {
       const std::string name = scene.size() == 1 ? "/surface" : "/surface_" + std::to_string(i);
@@ -145,11 +145,6 @@ struct RosBridge::Inside {
     std::unique_ptr<Writer<PointCloud2>> writer;
     std::shared_ptr<const SurfacePoints> told;
   };
-  struct Report {
-    Durations computing;
-    Durations lateness;
-  };
-
   [[nodiscard]] std::string topic(const std::string& name) {
     unused.erase(name);
     const auto found = options.remap.find(name);
@@ -171,7 +166,7 @@ struct RosBridge::Inside {
   const std::function<std::vector<StreamState>()> streams;
   Participant participant;
   std::vector<std::unique_ptr<HandTopics>> topics;  // one a hand
-  std::vector<Report> reports;                      // one a hand: what was told already
+  std::vector<StepDurations> reported;              // one a hand: what was told already
   std::vector<Surface> surfaces;                    // one a source
   Writer<MarkerArray> markers;
   Writer<DiagnosticArray> diagnostics;
@@ -267,11 +262,10 @@ void RosBridge::Inside::tell_diagnostics(const Header& header) {
   DiagnosticArray message{header, {}};
   for (std::size_t i = 0; i < hands.size(); ++i) {
     const Servo& servo = *hands[i].servo;
-    const Report now{servo.computing(), servo.lateness()};
-    message.status.push_back(ros::hand_status(hands[i].name, servo.state(),
-                                              now.computing.since(reports[i].computing),
-                                              now.lateness.since(reports[i].lateness)));
-    reports[i] = now;
+    const StepDurations now = servo.durations();
+    message.status.push_back(
+        ros::hand_status(hands[i].name, servo.state(), now.since(reported[i])));
+    reported[i] = now;
   }
   for (const StreamState& stream : streams ? streams() : std::vector<StreamState>()) {
     message.status.push_back(ros::stream_status(stream));

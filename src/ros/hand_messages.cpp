@@ -117,7 +117,7 @@ PointCloud2 surface_message(const Header& header, const Source& source, std::siz
 }
 
 DiagnosticStatus hand_status(const std::string& name, const ServoState& state,
-                             const Durations& computing, const Durations& lateness) {
+                             const StepDurations& last) {
   DiagnosticStatus status;
   const bool ended = has_ended(state.device);
   const std::string guard = in_words(state.guard);
@@ -130,8 +130,8 @@ DiagnosticStatus hand_status(const std::string& name, const ServoState& state,
                                                                  : guard;
   if (status.message.empty()) status.message = "ok";
   status.hardware_id = name;
-  status.values = {fact("computing p99.9", 1e6 * computing.quantile(0.999), "us"),
-                   fact("lateness p99.9", 1e6 * lateness.quantile(0.999), "us"),
+  status.values = {fact("computing p99.9", 1e6 * last.computing.quantile(0.999), "us"),
+                   fact("lateness p99.9", 1e6 * last.lateness.quantile(0.999), "us"),
                    fact("force", state.force.norm(), "N"),
                    {"guard", guard.empty() ? "nothing to do" : guard}};
   return status;

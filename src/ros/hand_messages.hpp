@@ -39,11 +39,10 @@ void add_markers(const message::Header& header, const ServoState& state, int ind
 [[nodiscard]] message::PointCloud2 surface_message(const message::Header& header,
                                                    const Source& source, std::size_t most);
 
-/// A hand's timing and guard; `computing` and `lateness` of the last second.
+/// A hand's timing and guard; `last`: of the last second.
 [[nodiscard]] message::DiagnosticStatus hand_status(const std::string& name,
                                                     const ServoState& state,
-                                                    const Durations& computing,
-                                                    const Durations& lateness);
+                                                    const StepDurations& last);
 /// A stream's phase, ages and drops.
 [[nodiscard]] message::DiagnosticStatus stream_status(const StreamState& state);
 /// Says whether a robot follows, and how long it waited for each reason.

@@ -247,11 +247,8 @@ double Servo::stiffness_limit() const noexcept {
 ServoState Servo::state() const noexcept {
   return inside_->shown.get();
 }
-Durations Servo::lateness() const noexcept {
-  return inside_->lateness.look();
-}
-Durations Servo::computing() const noexcept {
-  return inside_->computing.look();
+StepDurations Servo::durations() const noexcept {
+  return {inside_->lateness.look(), inside_->computing.look()};
 }
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
   return inside_->recent_forces.since(seen);

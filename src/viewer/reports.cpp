@@ -91,8 +91,9 @@ std::optional<StateMessage> StateReporter::next(double now, double radius, bool 
   message.force = state.force.cast<float>();
   message.radius = static_cast<float>(radius);
   message.rate = static_cast<float>(rate(now, state.step));
-  message.computing = quantiles(servo_.computing(), computing_);
-  message.lateness = quantiles(servo_.lateness(), lateness_);
+  const StepDurations durations = servo_.durations();
+  message.computing = quantiles(durations.computing, durations_.computing);
+  message.lateness = quantiles(durations.lateness, durations_.lateness);
   message.interval = static_cast<float>(interval(state));
   message.forces = forces_until(state.step);
   if (servo_.device().info().has_orientation) {

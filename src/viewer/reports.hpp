@@ -52,8 +52,7 @@ class StateReporter {
   double time_ = 0;         // of it, s
   std::uint64_t forces_seen_ = 0;
   Guard::State::Counts counts_;
-  Durations computing_;
-  Durations lateness_;
+  StepDurations durations_;
   std::deque<std::pair<double, std::uint64_t>> steps_;  // when which step was the newest
 };
 

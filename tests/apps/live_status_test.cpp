@@ -25,8 +25,8 @@ LiveMoment second() {
   hand.name = "hand 1";
   hand.force = 1.234;
   hand.rate = 1000;
-  hand.computing = computing;
-  hand.lateness = lateness;
+  hand.durations.computing = computing;
+  hand.durations.lateness = lateness;
   StreamState stream;
   stream.source = "table";
   stream.phase = StreamState::Phase::running;

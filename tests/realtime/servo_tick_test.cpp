@@ -108,7 +108,7 @@ TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
   std::jthread others([&](const std::stop_token& stop) {
     for (int i = 0; !stop.stop_requested(); ++i) {
       static_cast<void>(servo_->state());
-      static_cast<void>(servo_->lateness());
+      static_cast<void>(servo_->durations());
       servo_->set_contact({.stiffness = 200.0 + i % 100, .texture = {.amplitude = 1e-5 * (i % 3)}});
       servo_->set_field(
           {.kind = i % 200 < 100 ? FieldOptions::Kind::balanced : FieldOptions::Kind::metaball});

@@ -58,8 +58,8 @@ TEST(ServoThread, StepsOnTheClocksGridUntilTheDeviceIsDone) {
   EXPECT_EQ(state.step, 2001u);
   EXPECT_NEAR(state.time, 101, 1e-9);
   EXPECT_NEAR(state.dt, 5e-4, 1e-9);
-  EXPECT_EQ(servo.lateness().longest, 0);
-  EXPECT_EQ(servo.computing().count, 2001u);
+  EXPECT_EQ(servo.durations().lateness.longest, 0);
+  EXPECT_EQ(servo.durations().computing.count, 2001u);
   EXPECT_EQ(state.guard.counts.silences, 0u);
   EXPECT_GT(state.force.norm(), 0.5);
   EXPECT_EQ(device.force(), Vector3d::Zero()) << "whatever ended it";
@@ -77,8 +77,8 @@ TEST(ServoThread, MakesNoBurstAfterAGap) {
   EXPECT_EQ(thread.skipped(), 100u);
   EXPECT_EQ(servo.state().guard.counts.silences, 1u);
   EXPECT_NEAR(servo.state().time, 101.099, 1e-4) << "a step a millisecond, before it and after";
-  EXPECT_NEAR(servo.lateness().longest, 0.1, 1e-6);
-  EXPECT_NEAR(servo.lateness().quantile(0.5), 20e-6, 1e-6);
+  EXPECT_NEAR(servo.durations().lateness.longest, 0.1, 1e-6);
+  EXPECT_NEAR(servo.durations().lateness.quantile(0.5), 20e-6, 1e-6);
 }
 
 TEST(ServoThread, IsPacedByADeviceThatKeepsTime) {
@@ -139,7 +139,7 @@ TEST(ServoThread, MayBeWatchedAndChangedWhileItRuns) {
     EXPECT_GE(state.step, before);
     EXPECT_TRUE(state.force.allFinite());
     before = state.step;
-    EXPECT_LE(servo.computing().quantile(0.5), servo.computing().longest);
+    EXPECT_LE(servo.durations().computing.quantile(0.5), servo.durations().computing.longest);
     EXPECT_EQ(thread.skipped(), 0u);
   }
 }

@@ -83,8 +83,7 @@ class LiveHand {
   double start_ = 0;
   double looked_ = 0;
   double force_ = 0;  // the longest since then, N
-  Durations lateness_;
-  Durations computing_;
+  StepDurations durations_;
   ServoThread thread_;  // last: it uses all of the above
 };
 
@@ -129,14 +128,10 @@ HandMoment LiveHand::moment(double now) {
   moment.name = hand_.name;
   moment.servo = servo_.state();
   moment.force = std::exchange(force_, 0);
-  const Durations lateness = servo_.lateness();
-  const Durations computing = servo_.computing();
-  moment.lateness = lateness.since(lateness_);
-  moment.computing = computing.since(computing_);
+  const StepDurations durations = servo_.durations();
+  moment.durations = durations.since(std::exchange(durations_, durations));
   const double span = now - std::exchange(looked_, now);
-  moment.rate = span > 0 ? static_cast<double>(moment.computing.count) / span : 0;
-  lateness_ = lateness;
-  computing_ = computing;
+  moment.rate = span > 0 ? static_cast<double>(moment.durations.computing.count) / span : 0;
   if (moment.servo.device == DeviceState::Status::silent) moment.silence = hand_.device->reason();
   moment.ended = !thread_.running();
   return moment;
@@ -146,7 +141,7 @@ LiveReport LiveHand::report() const {
   LiveReport report;
   report.realtime = thread_.realtime();
   report.rate = rate_;
-  report.lateness = servo_.lateness();
+  report.lateness = servo_.durations().lateness;
   report.skipped = thread_.skipped();
   report.unwritten = steps_.dropped();
   report.limits = servo_.options().guard;

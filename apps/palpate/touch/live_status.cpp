@@ -32,11 +32,12 @@ std::size_t columns() {
 std::string hand_words(const HandMoment& moment) {
   if (!moment.silence.empty()) return moment.silence;
   std::string words =
-      moment.ended ? "ended"
-                   : fmt::format("{:.2f} N  {:.0f} Hz, {:.0f} us (p99 {:.0f}), late p99 {:.2f} ms",
-                                 moment.force, moment.rate, 1e6 * moment.computing.quantile(0.5),
-                                 1e6 * moment.computing.quantile(0.99),
-                                 1e3 * moment.lateness.quantile(0.99));
+      moment.ended
+          ? "ended"
+          : fmt::format("{:.2f} N  {:.0f} Hz, {:.0f} us (p99 {:.0f}), late p99 {:.2f} ms",
+                        moment.force, moment.rate, 1e6 * moment.durations.computing.quantile(0.5),
+                        1e6 * moment.durations.computing.quantile(0.99),
+                        1e3 * moment.durations.lateness.quantile(0.99));
   const Guard::State& guard = moment.servo.guard;
   if (moment.servo.clutched) words += "  clutch held: the hand moves without the tool";
   if (guard.fault != Guard::Fault::none) {

@@ -13,12 +13,11 @@ namespace palpate::app {
 /// State of one hand during a run.
 struct HandMoment {
   std::string name;
-  ServoState servo;    ///< its last step
-  double force = 0;    ///< the longest since the moment before, N
-  double rate = 0;     ///< steps a second since then, Hz
-  Durations lateness;  ///< of the steps since then
-  Durations computing;
-  std::string silence;  ///< why its device is not heard; empty: it is
+  ServoState servo;         ///< its last step
+  double force = 0;         ///< the longest since the moment before, N
+  double rate = 0;          ///< steps a second since then, Hz
+  StepDurations durations;  ///< of the steps since then
+  std::string silence;      ///< why its device is not heard; empty: it is
   bool ended = false;
 };
 

@@ -144,6 +144,17 @@ struct Durations {
   [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
 };
 
+/// Of a servo's steps, where measured.
+struct StepDurations {
+  Durations lateness;
+  Durations computing;
+
+  /// Durations added after `earlier` was taken.
+  [[nodiscard]] StepDurations since(const StepDurations& earlier) const noexcept {
+    return {lateness.since(earlier.lateness), computing.since(earlier.computing)};
+  }
+};
+
 struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
@@ -215,9 +226,8 @@ class Servo {
 
   /// The newest state. Any thread.
   [[nodiscard]] ServoState state() const noexcept;
-  /// Lateness and computing time of steps, where measured. Any thread.
-  [[nodiscard]] Durations lateness() const noexcept;
-  [[nodiscard]] Durations computing() const noexcept;
+  /// Lateness and computing time of all steps so far. Any thread.
+  [[nodiscard]] StepDurations durations() const noexcept;
 
   /// Forces that left the guard in the steps after the first `seen`, oldest first, N, world frame;
   /// sets `seen` to the number of steps shown. Holds the last kRecentForces steps; rarer calls miss
