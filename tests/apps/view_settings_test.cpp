@@ -133,6 +133,14 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   EXPECT_EQ(*options.policy.policy, Policy::replace);
 }
 
+TEST(ViewSettings, MoreSmoothingNeverMakesTheRadiusSmaller) {
+  const Prepared::Report noisy{.spacing = 2e-3, .radius = 8e-3};  // R is four spacings
+  ViewSettings settings;
+  set(settings, kAll, "smoothing", 1.1);
+  const SourceOptions options = prepared_by(settings.preparation, {}, {}, noisy);
+  EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 1.1 * 4);
+}
+
 TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
   const std::vector<std::pair<std::string, Setting::Value>> felt = {
       {"field", std::string("metaball")},

@@ -199,8 +199,9 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
 }
 
 SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
-                          const ViewSettings::Preparation& initial, const SourceOptions& own) {
-  constexpr double kRadiusMultiple = 2.5;
+                          const ViewSettings::Preparation& initial, const SourceOptions& own,
+                          const Prepared::Report& first) {
+  constexpr double kUsual = 2.5;  // where no cloud has come yet (PrepareOptions::radius_multiple)
   SourceOptions options = own;
   if (wanted.policy != initial.policy) options.policy.policy = wanted.policy;
   if (wanted.history != initial.history) options.policy.history = wanted.history;
@@ -211,7 +212,8 @@ SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
   if (options.prepare.radius) {
     *options.prepare.radius *= wider;
   } else {
-    options.prepare.radius_multiple = own.prepare.radius_multiple.value_or(kRadiusMultiple) * wider;
+    options.prepare.radius_multiple =
+        (first.spacing > 0 ? first.radius / first.spacing : kUsual) * wider;
   }
   return options;
 }
@@ -271,8 +273,10 @@ void Preparer::work(const std::stop_token& stop) {
 // Streams are prepared so from their next frame on.
 void Preparer::change_all(const Preparation& wanted) {
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
+    Source& source = run_.loaded.scene.source(i);
+    if (first_.size() == i) first_.push_back(source.report());
     const SourceOptions& options = run_.loaded.sources[i].plan.options;
-    run_.loaded.scene.source(i).change(prepared_by(wanted, initial_, options));
+    source.change(prepared_by(wanted, initial_, options, first_[i]));
   }
 }
 
