@@ -19,7 +19,7 @@ void let_go(SheetTable& table, const Stance& stance) noexcept {
     if (!part.near || (part.is_absent() && !stance.touches())) part.sign = 0;
   }
   for (SheetTable::Sheet& sheet : table.sheets) {
-    if (!sheet.near) sheet.label = SheetTable::kOpen;
+    if (!sheet.near) sheet.label = SheetTable::kUndecided;
   }
 }
 
@@ -54,7 +54,7 @@ void Facing::follow(const Facing& other) noexcept {
 void Facing::add_references(const Sheet& sheet) noexcept {
   const Part& part = view_.table.parts[sheet.part];
   const int sign = part.factor();
-  if (sheet.label == SheetTable::kOpen || sign == 0) return;
+  if (sheet.label == SheetTable::kUndecided || sign == 0) return;
   for (std::uint32_t k = 0; k < sheet.count; ++k) {
     const Point& p = view_.points[view_.order[sheet.begin + k]];
     if (references_.size() == references_.capacity()) return;
@@ -101,6 +101,7 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   const bool begins = stance.touches() && !touched_;
   touched_ = stance.touches();
   if (begins) turn_by(stance.normal.cast<float>());
+  view_.table.put_in_front(view_.touched_label(stance.normal.cast<float>()));
   const auto older = static_cast<std::ptrdiff_t>(remembered_.size());
   const bool vanished = view_.has_lost_one();
   list_references(stance.proxy, vanished);
@@ -111,8 +112,8 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   remembered_from_ = stance.proxy;
 }
 
-/// Does what is near say whether the proxy is behind? Points of views that do not tell their side
-/// do not: they are absent for a proxy that is.
+/// Does what is near say whether the proxy is behind it? Points of one view whose side is not known
+/// say nothing: for a proxy behind them they count for nothing.
 bool Facing::tells() const noexcept {
   const std::vector<Part>& parts = view_.table.parts;
   return std::ranges::any_of(parts, &Part::is_one_sided) ||

@@ -37,7 +37,7 @@ class Facing {
 
   /// Is the proxy behind what was seen from the other side alone? Such points are not there for it
   /// until it comes out in front of them.
-  [[nodiscard]] bool behind() const noexcept { return was_behind_; }
+  [[nodiscard]] bool is_behind() const noexcept { return was_behind_; }
 
   /// Has all decided again, for a proxy that is where nothing is solid. What was seen on the way
   /// counts.
@@ -77,7 +77,7 @@ class Facing {
   void add_references(const Sheet& sheet) noexcept;
   void each_meeting(const Sheet& sheet, const auto& visit) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
-  [[nodiscard]] double across(std::uint32_t part) noexcept;
+  [[nodiscard]] double votes_on(std::uint32_t part) noexcept;
   void decide_signs(bool continued) noexcept;
   void decide_labels() noexcept;
   struct Meeting;
@@ -92,7 +92,7 @@ class Facing {
   std::vector<Reference> remembered_;                          // of the last call
   Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then
   bool touched_ = false;                                       // at the last call
-  bool was_behind_ = false;  // when there was last something to see; absent points do not show it
+  bool was_behind_ = false;  // when points near it last told; those behind which it is do not count
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared
 };

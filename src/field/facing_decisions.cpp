@@ -50,7 +50,7 @@ void Facing::each_meeting(const Sheet& sheet, const auto& visit) noexcept {
 
 /// Sums the votes of decided points around a part on its sign; below 0: turn it. What moved keeps
 /// its normals; an arc joins points of one time.
-double Facing::across(std::uint32_t part) noexcept {
+double Facing::votes_on(std::uint32_t part) noexcept {
   double sum = 0;
   for (const Sheet& sheet : view_.table.sheets) {
     if (sheet.part != part) continue;
@@ -82,7 +82,7 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
     if (part.is_one_sided() || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
     part.sign = -part.sign;
     for (Sheet& sheet : view_.table.sheets) {
-      if (sheet.part == k) sheet.label = SheetTable::kOpen;
+      if (sheet.part == k) sheet.label = SheetTable::kUndecided;
     }
   }
 }
@@ -99,7 +99,7 @@ void Facing::decide_signs(bool continued) noexcept {
     Part& part = parts[k];
     if (part.sign != 0) continue;
     const bool told = continued && !part.is_one_sided();
-    const double vote = !told ? 0 : part.known && beside != 0 ? beside : across(k);
+    const double vote = !told ? 0 : part.known && beside != 0 ? beside : votes_on(k);
     const double told_or_seen = std::abs(vote) > kLeastVote ? vote : part.seen;
     if (told_or_seen != 0) part.sign = told_or_seen < 0 ? -1 : 1;
   }
@@ -177,12 +177,13 @@ void Facing::decide_labels() noexcept {
   for (;;) {
     Sheet* next = nullptr;
     for (Sheet& sheet : view_.table.sheets) {
-      if (sheet.label == SheetTable::kOpen && (!next || sheet.weight > next->weight)) next = &sheet;
+      if (sheet.label == SheetTable::kUndecided && (!next || sheet.weight > next->weight))
+        next = &sheet;
     }
     if (!next) return;
     Part& part = view_.table.parts[next->part];
     // Nothing of the part is seen: what is decided beside it tells its sign.
-    const bool turned = part.sign == 0 && !part.is_one_sided() && across(next->part) < 0;
+    const bool turned = part.sign == 0 && !part.is_one_sided() && votes_on(next->part) < 0;
     if (part.sign == 0) part.sign = turned ? -1 : 1;
     next->label = label_of(*next);
     add_references(*next);

@@ -83,7 +83,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFaint = 1e-9;  // share of all weight: a source with less is not there; judgement
-constexpr double kFloor = 0.1;   // of Phi, which divides and must not vanish; judgement
+constexpr double kFloor = 0.1;   // of T, which divides and must not vanish; judgement
 constexpr double kFine = 4;      // power of 1 / R_s in c_s; judgement (docs/method.md 2.9)
 // |sum lambda n| where heights begin to unite and where they do so fully: the cosines of 23 / 2 and
 // 11 / 2 degrees, half the angle between two sources' normals. The angles are judgement.

@@ -92,13 +92,13 @@ struct FieldPlace {
 /// which counts by how much of the source's surface there is, whatever its height, and how finely
 /// the source sees it:
 ///
-///   c_s = V_s / (Phi(f_s / R) R_s^4),  lambda_s = c_s / sum c,
+///   c_s = V_s / (sqrt(T(|f_s| / R)^2 + 0.1^2) R_s^4),  lambda_s = c_s / sum c,
 ///   shift = tau (sum lambda_s f_s - sum V_s f_s / V)
 ///
-/// Phi is what the weights of a plane at that height sum to. R_s, the source's mean radius, grows
-/// as its rays graze, so that a source has faded before its surface ends at a silhouette. tau,
-/// taken from |sum lambda_s n_s|, is 1 where normals of two sources differ by less than 11 degrees
-/// and 0 from 23 on: the faces of an edge or of a thin plate do not disagree.
+/// T is what the weights of a plane at that height sum to, and 0.1 its floor. R_s, the source's
+/// mean radius, grows as its rays graze, so that a source has faded before its surface ends at a
+/// silhouette. tau, taken from |sum lambda_s n_s|, is 1 where normals of two sources differ by less
+/// than 11 degrees and 0 from 23 on: the faces of an edge or of a thin plate do not disagree.
 [[nodiscard]] Value united_shift(const FieldPlace& place) noexcept;
 
 /// A surface of the label's points with its edges sharp: where points lie beside an edge, the mean
@@ -112,11 +112,11 @@ struct FieldPlace {
 ///
 /// Where two sheets face each other within a support, their normals and heights cancel: the mean of
 /// both stays near 0, or is free, far behind either of them, and a proxy slips through. With the
-/// mean normal Nb and the concavity h = (Nb . A - sum v n.q / V) / R, signed by the side,
+/// mean normal N and the concavity h = (N . A - sum v n.q / V) / R, signed by the side,
 ///
-///   closure = 0.2 R chi(1 - |Nb|^2 / 0.7) chi(100 h),  chi(u) = u^2 (3 - 2u), u within 0 and 1
+///   closure = 0.2 R S(1 - |N|^2 / 0.7) S(100 h),  S(u) = u^2 (3 - 2u), u within 0 and 1
 ///
-/// |Nb|^2 is 1/2 between two equal sheets at 90 degrees and 0 between parallel ones; the gate opens
+/// |N|^2 is 1/2 between two equal sheets at 90 degrees and 0 between parallel ones; the gate opens
 /// before that, as sheets are seldom equal. h is half the gap, over R, between sheets that face
 /// each other, and below 0 in the plate between sheets that face away, which keeps its shape.
 [[nodiscard]] Value crease_closure(const FieldPlace& place) noexcept;

@@ -47,7 +47,7 @@ std::uint32_t add_part(std::vector<Part>& parts, Part part, const SheetTable& be
 /// Has the sheet a label, and is it seen from its one side? Then what is seen of it decides
 /// nothing.
 bool is_decided(const Sheet& sheet, const Part& part) noexcept {
-  return sheet.label != SheetTable::kOpen && part.is_one_sided() && part.sign > 0;
+  return sheet.label != SheetTable::kUndecided && part.is_one_sided() && part.sign > 0;
 }
 
 void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
@@ -127,7 +127,7 @@ void choose_eye(SheetView& view, const Stance& stance) noexcept {
     const Sheet& sheet = view.table.sheets[point.sheet];
     const int sign = view.table.parts[sheet.part].factor();
     const float squared = point.place.squaredNorm();
-    const bool open = sheet.label == SheetTable::kOpen || sign == 0;
+    const bool open = sheet.label == SheetTable::kUndecided || sign == 0;
     if (!stance.touches() || open || squared >= nearest) continue;
     if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
     nearest = squared;
@@ -162,6 +162,23 @@ void SheetTable::clear_sheets() noexcept {
 void SheetTable::clear() noexcept {
   parts.clear();
   clear_sheets();
+}
+
+void SheetTable::put_in_front(std::uint8_t touched) noexcept {
+  const auto any = [this](std::uint8_t label) {
+    return std::ranges::any_of(sheets, [=](const Sheet& sheet) { return sheet.label == label; });
+  };
+  const bool across = any(kAcross);
+  const std::uint8_t left = across ? kAcross : kBehind;
+  const std::uint8_t first = any(kInFront) ? touched : left;
+  if (first == kInFront || (first == kBehind && across)) return;
+  for (Sheet& sheet : sheets) {
+    if (sheet.label == kInFront) {
+      sheet.label = first;
+    } else if (sheet.label == first) {
+      sheet.label = kInFront;
+    }
+  }
 }
 
 std::uint8_t SheetTable::find(const Key& key) const noexcept {
@@ -208,6 +225,19 @@ void SheetView::list(std::span<const ActiveLayer> layers, const Selection& chose
   for (const Point& point : points) radii += point.radius;
   if (!points.empty()) radius = radii / static_cast<float>(points.size());
   group(*this);
+}
+
+std::uint8_t SheetView::touched_label(const Vector3f& normal) const noexcept {
+  std::array<double, simd::kLabels> touched{};
+  for (const Point& p : points) {
+    const Sheet& sheet = table.sheets[p.sheet];
+    const auto sign = static_cast<float>(table.parts[sheet.part].factor());
+    const float cosine = sign * p.normal.dot(normal);
+    if (sheet.label == SheetTable::kUndecided || cosine <= 0) continue;
+    touched[sheet.label] +=
+        static_cast<double>(cosine) * weight_within(p.place.squaredNorm(), p.radius);
+  }
+  return static_cast<std::uint8_t>(std::ranges::max_element(touched) - touched.begin());
 }
 
 bool SheetView::has_lost_one() const noexcept {

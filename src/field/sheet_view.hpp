@@ -48,8 +48,8 @@ inline constexpr double kBackToBack = 0.8;
 /// The sheets near the tool, in the order in which they were added, and their parts. All memory is
 /// taken by the constructor.
 struct SheetTable {
-  static constexpr std::size_t kMost = 96;     ///< sheets; further ones are in front; judgement
-  static constexpr std::uint8_t kOpen = 0xff;  ///< a label that is not decided; above every Label
+  static constexpr std::size_t kMost = 96;  ///< sheets; further ones are in front; judgement
+  static constexpr std::uint8_t kUndecided = 0xff;  ///< no label yet; above every Label
 
   /// Names a sheet or a part: the surface points that it is of, and its number among theirs. Layers
   /// without sheets of their own share one (key_of_all()), and all that was seen from one side
@@ -79,7 +79,7 @@ struct SheetTable {
     Key key;
     int source = 0;
     std::uint32_t part = 0;
-    std::uint8_t label = kOpen;
+    std::uint8_t label = kUndecided;
     bool near = false;
     std::uint32_t begin = 0;  // of its points in the view's order
     std::uint32_t count = 0;
@@ -96,6 +96,10 @@ struct SheetTable {
   /// it; kMost: there are too many.
   std::uint32_t add(const ActiveLayer& layer, std::uint32_t number,
                     const SheetTable& before) noexcept;
+  /// Puts in front the sheets of the label `touched`, or those that are left where none is in
+  /// front: what comes into view is told by how it meets them. Labels that change places leave the
+  /// field as it is, but for front and behind where something lies across: they stay.
+  void put_in_front(std::uint8_t touched) noexcept;
   /// Where the sheet is in `slots`, or would be.
   [[nodiscard]] std::uint8_t find(const Key& key) const noexcept;
   [[nodiscard]] bool sees_from_behind() const noexcept {
@@ -150,6 +154,8 @@ struct SheetView {
   /// Sums what speaks for the sides that the tool sees. `way`, m: of the proxy since the last call;
   /// `from_behind`: it was behind what was seen from one side only.
   void look(const Stance& stance, double way, bool from_behind) noexcept;
+  /// The label of what a proxy with this contact normal touches most; kInFront: of nothing.
+  [[nodiscard]] std::uint8_t touched_label(const Eigen::Vector3f& normal) const noexcept;
   /// Is a sheet gone that was near the proxy when the last list was made?
   [[nodiscard]] bool has_lost_one() const noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept {

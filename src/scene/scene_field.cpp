@@ -149,7 +149,7 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
-  if (near.points() > 0 && near.sides().behind()) found = found | FieldNote::behind;
+  if (near.points() > 0 && near.sides().is_behind()) found = found | FieldNote::behind;
   if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
   const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
   if (near.points() > 0 && surface.options.tool_radius > tool * near.columns().smallest_radius) {
@@ -191,7 +191,7 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   }
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
-    if (options_.nearest_radius) state.patches.choose_radius(proxy, state.typical_radius);
+    if (options_.nearest_radius) state.patches.take_nearest_radius(proxy, state.typical_radius);
     state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();

@@ -73,16 +73,16 @@ TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
     ASSERT_GT(patch.points(), 10u);
   };
   stand(-15e-3, -2e-3);
-  EXPECT_TRUE(patch.sides().behind());
+  EXPECT_TRUE(patch.sides().is_behind());
   stand(0, -2e-3);
   stand(15e-3, -2e-3);  // no other points in reach
-  EXPECT_TRUE(patch.sides().behind());
+  EXPECT_TRUE(patch.sides().is_behind());
   stand(15e-3, 2e-3);
-  EXPECT_TRUE(patch.sides().behind());
+  EXPECT_TRUE(patch.sides().is_behind());
   stand(0, 4e-3);
-  EXPECT_FALSE(patch.sides().behind());
+  EXPECT_FALSE(patch.sides().is_behind());
   stand(15e-3, 2e-3);
-  EXPECT_FALSE(patch.sides().behind());
+  EXPECT_FALSE(patch.sides().is_behind());
 }
 
 /// How much of the normals in the patch points along z, as they are turned.
