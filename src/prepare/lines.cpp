@@ -21,6 +21,7 @@ constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite s
 constexpr int kLineWidenings = 4;  // reaches tried, each twice the last: lines up to 30 points away
 constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
 constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
+constexpr int kLineScales = 4;          // 4, 8, 16, 32 others: noise hides a line among few
 constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
 constexpr std::size_t kAlongLine = 16;  // nearest, over which the way to the next line is averaged
 constexpr std::size_t kTried = 64;      // nearest points beside a line
@@ -71,10 +72,9 @@ float widen(const CellGrid& grid, std::uint32_t i, float reach, int times,
   return 0;
 }
 
-}  // namespace
-
-Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
-  nearest_places(grid, i, kOnLine, nearest);
+/// The line that a point and those of the `nearest` are on, itself among them, the farthest last.
+Line line_among(const CellGrid& grid, std::uint32_t i,
+                std::span<const CellGrid::Neighbor> nearest) {
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   Line line;
   for (const CellGrid::Neighbor& found : nearest) {
@@ -82,6 +82,7 @@ Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighb
     squares += way * way.transpose();
     line.spacing = std::sqrt(found.squared_distance);
   }
+  line.step = 2 * line.spacing / static_cast<float>(std::max<std::size_t>(nearest.size(), 2) - 1);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(squares);
   line.along = solver.eigenvectors().col(2);
@@ -89,6 +90,30 @@ Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighb
   line.off = spread[2] > 0 ? std::sqrt(spread[1] / spread[2]) : 1;
   return line;
 }
+
+}  // namespace
+
+Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
+  nearest_places(grid, i, kOnLine, nearest);
+  return line_among(grid, i, nearest);
+}
+
+namespace {
+
+/// The line at the smallest scale at which there is one.
+Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
+                   std::vector<CellGrid::Neighbor>& nearest) {
+  Line line = line_at(grid, i, nearest);
+  std::size_t others = kOnLine - 1;
+  for (int k = 1; k < kLineScales && line.off >= kThin; ++k) {
+    others *= 2;
+    grid.nearest(grid.points()[i], others + 1, nearest);
+    line = line_among(grid, i, nearest);
+  }
+  return line;
+}
+
+}  // namespace
 
 float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
                  std::vector<std::uint32_t>& near) {
@@ -101,7 +126,7 @@ bool lies_in_lines(const CellGrid& grid) {
   std::size_t looked = 0;
   each_sample(grid, [&](std::uint32_t i) {
     ++looked;
-    if (line_at(grid, i, nearest).off < kThin) ++lines;
+    if (noisy_line_at(grid, i, nearest).off < kThin) ++lines;
   });
   return looked > 0 && static_cast<float>(lines) >= kLines * static_cast<float>(looked);
 }
@@ -135,10 +160,10 @@ std::vector<float> sides_of_squares(const CellGrid& grid) {
     std::vector<std::uint32_t> near;
     for (std::size_t i = begin; i < end; ++i) {
       const auto at = static_cast<std::uint32_t>(i);
-      const Line line = line_at(grid, at, found);
+      const Line line = noisy_line_at(grid, at, found);
       if (line.off >= kThin) continue;
       const float gap = gap_across(grid, at, line, 2 * line.spacing, kLineWidenings, near);
-      if (gap > 0) sides[i] = side_of_square(gap, line.spacing / 2);
+      if (gap > 0) sides[i] = side_of_square(gap, line.step);
     }
   });
   return sides;
@@ -173,7 +198,7 @@ void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
       const auto at = static_cast<std::uint32_t>(i);
       float side = sides[i];
       if (side <= 0) {
-        const Line line = line_at(grid, at, found);
+        const Line line = noisy_line_at(grid, at, found);
         if (line.off < kThin) side = spacing_beside(grid, at, line, sides, near);
       }
       spacings[i] = std::max(spacings[i], side);

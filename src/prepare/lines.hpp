@@ -13,6 +13,7 @@ namespace palpate {
 struct Line {
   Eigen::Vector3f along = Eigen::Vector3f::UnitX();
   float spacing = 0;  ///< m, to the farthest of the nearest
+  float step = 0;     ///< m, from one of them to the next
   float off = 1;      ///< deviation across the line, against that along it
 };
 

@@ -17,8 +17,9 @@ using Eigen::Vector3f;
 
 constexpr float kGap = 0.01f;
 
-/// `lines` lines a gap apart, their points `ratio` times as near each other, turned somewhere.
-CellGrid lines_of(int lines, float ratio) {
+/// `lines` lines a gap apart, their points `ratio` times as near each other and up to `noise` of
+/// that off the lines, turned somewhere.
+CellGrid lines_of(int lines, float ratio, float noise = 0) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> off(-0.2f, 0.2f);
   const Eigen::AngleAxisf turn(0.7f, Vector3f(1, 2, 3).normalized());
@@ -26,7 +27,8 @@ CellGrid lines_of(int lines, float ratio) {
   for (int i = 0; i < lines; ++i) {
     for (int j = 0; j < 25 * static_cast<int>(ratio); ++j) {
       const float along = (static_cast<float>(j) + off(random)) / ratio;
-      points.emplace_back(turn * Vector3f(kGap * along, kGap * static_cast<float>(i), 0));
+      const float beside = static_cast<float>(i) + 5 * noise * off(random) / ratio;
+      points.emplace_back(turn * (kGap * Vector3f(along, beside, 5 * noise * off(random) / ratio)));
     }
   }
   return CellGrid(points);
@@ -46,6 +48,13 @@ TEST(Lines, HaveTheSpacingOfTheSquareGridWithTheSameHoles) {
     const float expected = kGap * std::sqrt((1 + 1 / (ratio * ratio)) / 2);
     EXPECT_NEAR(median(spacings), expected, 0.1 * expected) << ratio;
     EXPECT_LT(*std::ranges::max_element(spacings), 1.5f * expected) << ratio;
+  }
+}
+
+TEST(Lines, AreFoundThoughNoiseHidesThemAmongTheNearest) {
+  for (const float ratio : {10.f, 20.f, 30.f}) {
+    const float expected = kGap * std::sqrt((1 + 1 / (ratio * ratio)) / 2);
+    EXPECT_NEAR(median(widened(lines_of(25, ratio, 0.8f))), expected, 0.1 * expected) << ratio;
   }
 }
 
