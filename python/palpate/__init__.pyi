@@ -141,13 +141,13 @@ class Scene:
     def __len__(self) -> int: ...
     def add(self, name: str, cloud: _Cloud, pose: _Matrix = ..., *, normals: _Reals | None = ...,
             colors: NDArray[np.uint8] | None = ..., intensities: _Reals | None = ..., voxel: float | None = ...,
-            radius: float | None = ..., radius_multiple: float | None = ..., minimum_radius: float = ..., normal_error: float = ...,
+            radius: float | None = ..., smoothing: float = ..., minimum_radius: float = ..., normal_error: float = ...,
             viewpoint: _Three | None = ..., orientation: _Orientation = ..., clip: tuple[_Three, _Three] | None = ...,
             remove_speckle: bool = ..., estimate_normals: bool = ..., material_from_intensity: bool = ..., paper: bool = ...,
             kernel: _Kernel = ..., organised: bool = ..., soft_stiffness: float = ..., soft_friction: float = ...) -> Source: ...
     def add_stream(self, name: str, pose: _Matrix = ..., *, policy: _Policy = ..., history: int = ..., silence: float = ...,
                    fade: float = ..., clip_to_reach: bool = ..., voxel: float | None = ..., radius: float | None = ...,
-                   radius_multiple: float | None = ..., minimum_radius: float = ..., normal_error: float = ...,
+                   smoothing: float = ..., minimum_radius: float = ..., normal_error: float = ...,
                    viewpoint: _Three | None = ..., orientation: _Orientation = ..., clip: tuple[_Three, _Three] | None = ...,
                    remove_speckle: bool = ..., estimate_normals: bool = ..., material_from_intensity: bool = ...,
                    paper: bool = ..., kernel: _Kernel = ...) -> CloudStream: ...
@@ -303,7 +303,7 @@ def write_cloud(path: _Path, cloud: _Cloud, *, ascii: bool = ..., normals: _Real
                 colors: NDArray[np.uint8] | None = ..., intensities: _Reals | None = ...) -> None: ...
 def prepare(cloud: _Cloud, pose: _Matrix = ..., *, normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
             intensities: _Reals | None = ..., voxel: float | None = ..., radius: float | None = ...,
-            radius_multiple: float | None = ..., minimum_radius: float = ..., normal_error: float = ...,
+            smoothing: float = ..., minimum_radius: float = ..., normal_error: float = ...,
             viewpoint: _Three | None = ..., orientation: _Orientation = ..., clip: tuple[_Three, _Three] | None = ...,
             remove_speckle: bool = ..., estimate_normals: bool = ..., material_from_intensity: bool = ..., paper: bool = ...,
             kernel: _Kernel = ...) -> Prepared: ...

@@ -143,7 +143,7 @@ Arrays are views that cannot be written to.)";
 constexpr const char* kPrepare = R"(Filters and indexes a cloud and finds its sheets, on every core.
 
 cloud: a PointCloud, a file, or an (n, 3) array with the keywords of PointCloud. pose: (4, 4), cloud to world.
-Keywords: voxel (m), radius (m), radius_multiple, minimum_radius (m), normal_error (rad), viewpoint (3,), orientation
+Keywords: voxel (m), radius (m), smoothing (factor on the R that is chosen), minimum_radius (m), normal_error (rad), viewpoint (3,), orientation
 (automatic, viewpoint, outward, given), clip (lower, upper), remove_speckle, estimate_normals,
 material_from_intensity, paper, kernel (wyvill, wendland).)";
 

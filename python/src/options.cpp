@@ -50,7 +50,7 @@ void take(Keywords& keywords, PrepareOptions& options) {
   std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> clip;
   keywords.take("voxel", options.voxel);
   keywords.take("radius", options.radius);
-  keywords.take("radius_multiple", options.radius_multiple);
+  keywords.take("smoothing", options.smoothing);
   keywords.take("minimum_radius", options.minimum_radius);
   keywords.take("normal_error", options.normal_error);
   keywords.take("viewpoint", options.viewpoint);

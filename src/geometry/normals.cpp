@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/requirement.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
-#include "palpate/geometry/spacing.hpp"
 
 namespace palpate {
 namespace {
@@ -81,49 +79,6 @@ Normals estimate_normals(const CellGrid& grid, std::span<const float> radii, flo
         }
       });
   return result;
-}
-
-namespace {
-
-void check(const SupportOptions& options) {
-  const Requirement require{"support radius"};
-  if (options.multiple) {
-    require.positive("the multiple", *options.multiple, "it must be positive; 2 to 5 are usual");
-  }
-  require.not_negative("the noise", options.noise, "give metres, 0 or more");
-  require.not_negative("the footprint", options.footprint, "give metres, 0 or more");
-  require.not_negative("the minimum", options.minimum, "give metres, 0 or more");
-  require.positive("the normal error", options.normal_error, "give radians above 0");
-  require(options.most_spacings > 0, "the most spacings", options.most_spacings,
-          "it must be positive; 6 is usual");
-  require(options.finest_shape > 0, "the finest shape", options.finest_shape,
-          "give metres above 0");
-}
-
-}  // namespace
-
-double support_multiple(double noise, double spacing) {
-  if (noise > 0.4 * spacing) return 4;
-  return noise > 0.15 * spacing ? 3 : 2.5;
-}
-
-double noise_radius(double noise, double footprint, double normal_error) {
-  return std::sqrt(3.2 * noise * footprint / normal_error);
-}
-
-std::vector<float> support_radii(std::span<const float> spacings, const SupportOptions& options) {
-  check(options);
-  const double multiple =
-      options.multiple ? *options.multiple : support_multiple(options.noise, median(spacings));
-  std::vector<float> radii(spacings.size());
-  detail::parallel_each(radii.size(), std::size_t{1} << 16, [&](std::size_t i) {
-    const auto spacing = static_cast<double>(spacings[i]);
-    const double footprint = options.footprint > 0 ? options.footprint : spacing;
-    const double smoothing = std::min({noise_radius(options.noise, footprint, options.normal_error),
-                                       options.most_spacings * spacing, options.finest_shape});
-    radii[i] = static_cast<float>(std::max({multiple * spacing, options.minimum, smoothing}));
-  });
-  return radii;
 }
 
 }  // namespace palpate

@@ -77,7 +77,7 @@ void complete(Prepared& prepared) {
   }
 }
 
-Prepared assemble(Sampling sampling, Radii radii, OwnSheets fits, Weights weights, Sheets sheets,
+Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights, Sheets sheets,
                   const PrepareOptions& options, Prepared::Report report) {
   SurfacePoints points;
   points.origin = sampling.origin;

@@ -12,7 +12,7 @@
 namespace palpate {
 
 /// Moves all columns into their places; adds the twins; completes the `report`.
-[[nodiscard]] Prepared assemble(Sampling sampling, Radii radii, OwnSheets fits, Weights weights,
+[[nodiscard]] Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights,
                                 Sheets sheets, const PrepareOptions& options,
                                 Prepared::Report report);
 

@@ -129,7 +129,7 @@ namespace {
 
 PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
   options.clip.reset();
-  // Given normals count beside a file's viewpoint.
+  // A viewpoint of the file must not become one that was asked for: that would silence its normals.
   if (options.viewpoint) options.viewpoint = placed.viewpoint;
   if (options.facts) {
     detail::require_finite(placed.cloud().positions);

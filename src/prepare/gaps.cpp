@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "geometry/parallel.hpp"
+#include "prepare/limit_growth.hpp"
 #include "prepare/lines.hpp"
 #include "prepare/sheet_fit.hpp"
 
@@ -20,7 +21,7 @@ constexpr int kWidenings = 2;        // reaches tried, each twice the last: gaps
 }  // namespace
 
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own,
+                       std::vector<float>& spacings, std::vector<float>& radii, PointFits& own,
                        float largest) {
   std::vector<std::uint32_t> faint;
   for (std::uint32_t i = 0; i < radii.size(); ++i) {
@@ -51,7 +52,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
 }
 
 WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
-                      OwnSheets& fits) {
+                      PointFits& fits) {
   constexpr float kSlope = 1;  // of R over distance, once gaps are closed; judgement
   WeightSums sums(sampling.grid, radii.values, options.kernel);
   if (options.radius || options.paper || !options.estimate_normals) return sums;

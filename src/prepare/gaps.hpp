@@ -1,4 +1,5 @@
-// The step back of prepare(): R and planes where a sheet is thin.
+// Between the fourth and the fifth step of prepare(): larger R, and planes, where points are
+// sparse.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace palpate {
 /// Closes gaps where radii and planes are chosen by preparation. Returns the sums of weights that
 /// the radii give then.
 [[nodiscard]] WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
-                                    OwnSheets& fits);
+                                    PointFits& fits);
 
 /// Raises the support radii (m) of points that hardly any other's support reaches, though others
 /// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
@@ -27,7 +28,7 @@ namespace palpate {
 /// sheet. None is raised above `largest`, m. Returns how many were raised. Does not depend on the
 /// number of threads.
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, OwnSheets& own,
+                       std::vector<float>& spacings, std::vector<float>& radii, PointFits& own,
                        float largest = std::numeric_limits<float>::infinity());
 
 }  // namespace palpate

@@ -33,7 +33,7 @@ struct Pair {
 class Growth {
  public:
   /// `hosts`: of each point the one whose fit it has; kNoHost: it is on no sheet.
-  Growth(const SheetInput& input, const OwnSheets& own, const std::vector<std::uint32_t>& hosts)
+  Growth(const SheetInput& input, const PointFits& own, const std::vector<std::uint32_t>& hosts)
       : input_(input), own_(own), hosts_(hosts), sets_(input.grid.size()) {}
 
   detail::SignedSets& run() {
@@ -97,21 +97,21 @@ class Growth {
   }
 
   const SheetInput& input_;
-  const OwnSheets& own_;
+  const PointFits& own_;
   const std::vector<std::uint32_t>& hosts_;
   detail::SignedSets sets_;
 };
 
 }  // namespace
 
-float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
+float sheet_tolerance(const SheetInput& input, const PointFits& own, std::uint32_t i,
                       std::uint32_t j) {
   const float least = std::max(std::max(input.noise[i], input.noise[j]),
                                kLeastTolerance * std::min(input.spacings[i], input.spacings[j]));
   return 3 * std::min(std::max(own.residuals[i], own.residuals[j]), least);
 }
 
-Growths grow_sheets(const SheetInput& input, OwnSheets& own) {
+Growths grow_sheets(const SheetInput& input, PointFits& own) {
   Growths result;
   Snapped snapped = snap_to_planes(input, own);
   result.sure = std::move(snapped.sure);

@@ -37,7 +37,7 @@ constexpr int kVotesEach = 3;           // points of each, the nearest
 /// Looks from the points of one block at other sheets.
 class Outlook {
  public:
-  Outlook(const SheetInput& input, const OwnSheets& own, Growths& grown)
+  Outlook(const SheetInput& input, const PointFits& own, Growths& grown)
       : input_(input), own_(own), sheets_(grown.sheets), sure_(grown.sure) {}
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
@@ -152,7 +152,7 @@ class Outlook {
   }
 
   const SheetInput& input_;
-  const OwnSheets& own_;
+  const PointFits& own_;
   SurfacePoints::Sheets& sheets_;
   const std::vector<std::uint8_t>& sure_;
   detail::NearPairs pairs_;
@@ -162,7 +162,7 @@ class Outlook {
 
 }  // namespace
 
-std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own, Growths& grown) {
+std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own, Growths& grown) {
   grown.sheets.above.assign(input.grid.size(), kNoneNear);
   grown.sheets.below.assign(input.grid.size(), kNoneNear);
   const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);

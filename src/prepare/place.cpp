@@ -74,12 +74,12 @@ void check(const PrepareOptions& options, const PointCloud& cloud) {
   if (options.radius) {
     require.positive("radius", *options.radius, "give a length above 0, in metres");
   }
-  if (options.radius_multiple) {
-    require.positive("radius_multiple", *options.radius_multiple,
-                     "give a number above 0 (usually 2.5)");
-  }
+  require.positive("smoothing", options.smoothing, "give a factor above 0 (usually 1)");
   require.not_negative("minimum_radius", options.minimum_radius, "give 0 or a length in metres");
   require.positive("normal_error", options.normal_error, "give an angle above 0, in radians");
+  if (options.facts) {
+    require.not_negative("facts.noise.sigma", options.facts->noise.sigma, "give metres, 0 or more");
+  }
   if (options.orientation == PrepareOptions::Orientation::viewpoint && !options.viewpoint &&
       !cloud.viewpoint) {
     throw Error("orienting normals to the viewpoint needs one; give a viewpoint");

@@ -20,17 +20,17 @@ constexpr double kNoisyFit = 1.2;  // of the noise, for the same use; judgement
 
 }  // namespace
 
-void take_fit(const SheetFit& fit, std::size_t i, OwnSheets& own) {
+void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
   own.normals[i] = fit.normal.cast<float>();
   own.confidences[i] = static_cast<float>(fit.planarity);
   own.residuals[i] = static_cast<float>(fit.residual);
   own.bends[i] = static_cast<float>(fit.bend);
 }
 
-OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                         std::span<const float> radii, std::span<const float> noise) {
+PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
+                     std::span<const float> radii, std::span<const float> noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);
-  OwnSheets sheets{std::move(planes.normals),
+  PointFits sheets{std::move(planes.normals),
                    std::move(planes.confidences),
                    std::move(planes.residuals),
                    {},
@@ -65,10 +65,10 @@ OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
   return sheets;
 }
 
-OwnSheets fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {
+PointFits fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {
   if (!options.estimate_normals) return {};
-  OwnSheets fits =
-      fit_own_sheets(sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas);
+  PointFits fits =
+      fit_points(sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas);
   if (!sampling.normals.empty()) {
     take_given_normals(sampling.grid, sampling.normals, fits.normals);
   }

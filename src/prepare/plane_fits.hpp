@@ -13,8 +13,8 @@
 
 namespace palpate {
 
-/// The fit of each point's own sheet, in sorted order.
-struct OwnSheets {
+/// The plane of each point, of its own sheet alone, in sorted order.
+struct PointFits {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1
   std::vector<float> residuals;          ///< from the plane, m
@@ -25,19 +25,19 @@ struct OwnSheets {
 struct SheetFit;
 
 /// Makes a fit that of point i; `others` stays as it is.
-void take_fit(const SheetFit& fit, std::size_t i, OwnSheets& own);
+void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
 // judgement (docs/method.md 5.5).
 inline constexpr float kNormalsReach = 1.15f;
 
 /// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
-[[nodiscard]] OwnSheets fit_own_sheets(const CellGrid& grid, std::span<const float> spacings,
-                                       std::span<const float> radii, std::span<const float> noise);
+[[nodiscard]] PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
+                                   std::span<const float> radii, std::span<const float> noise);
 
 /// Fits the points' planes and lets given normals take part; strays get no confidence. Empty where
 /// no normals are asked for.
-[[nodiscard]] OwnSheets fit_planes(const Sampling& sampling, const Radii& radii,
+[[nodiscard]] PointFits fit_planes(const Sampling& sampling, const Radii& radii,
                                    const PrepareOptions& options);
 
 }  // namespace palpate

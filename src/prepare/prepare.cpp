@@ -26,7 +26,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   Stopwatch watch;
   Radii radii = choose_radii(sampling, options);
   watch.lap(report.seconds_spacing);
-  OwnSheets fits = fit_planes(sampling, radii, options);
+  PointFits fits = fit_planes(sampling, radii, options);
   watch.lap(report.seconds_normals);
   const WeightSums sums = close_gaps(options, sampling, radii, fits);
   Weights weights = weigh(sampling, radii, sums, options);

@@ -3,19 +3,16 @@
 #include "prepare/radii.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <utility>
 
-#include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "prepare/limit_growth.hpp"
 #include "prepare/places.hpp"
-#include "prepare/plane_fits.hpp"
 #include "prepare/strays.hpp"
 
 namespace palpate {
@@ -44,107 +41,6 @@ double nearest_share(const CellGrid& grid, std::span<const float> spacings) {
 
 bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
   return nearest_share(grid, spacings) < kIrregular;
-}
-
-namespace {
-
-constexpr float kMatters = 0.8f;  // of the point's R: only a smaller limit is applied; judgement
-constexpr std::uint32_t kBlockPoints = 64;  // that share one list of leaves; judgement, for speed
-constexpr float kPlane = 0.5f;   // confidence from which on a point has a plane; judgement
-constexpr float kResiduals = 3;  // off the plane, in its residuals: three sigma
-constexpr float kOff = 0.12f;    // off the plane, of the distance (7 degrees); judgement
-
-/// The limits of one block after another.
-class Limiter {
- public:
-  Limiter(const CellGrid& grid, float slope, const std::vector<float>& radii,
-          const std::vector<float>& smallest, const OwnSheets* own)
-      : grid_(grid), slope_(slope), radii_(radii), smallest_(smallest), own_(own) {}
-
-  /// limits: of all points; those of the block are written.
-  void limit(const detail::Block& block, std::vector<float>& limits) {
-    find_leaves(block);
-    for (std::uint32_t i = block.begin; i < block.end; ++i) limits[i] = limit_at(i);
-  }
-
- private:
-  /// A leaf and the least that its points can limit those of the block to, m.
-  struct Leaf {
-    float bound;
-    std::uint32_t cell;
-  };
-
-  /// The leaves that may limit a point of the block, the strictest first.
-  void find_leaves(const detail::Block& block) {
-    const auto own = radii_.begin();
-    const float largest = kMatters * *std::max_element(own + block.begin, own + block.end);
-    leaves_.clear();
-    std::array<std::uint32_t, CellGrid::kMaxStack> stack;
-    std::size_t open = 0;
-    stack[open++] = 0;
-    while (open > 0) {
-      const std::uint32_t index = stack[--open];
-      if (smallest_[index] >= largest) continue;
-      const CellGrid::Cell& cell = grid_.cells()[index];
-      const float squared = detail::squared_distance(cell, block.lower, block.upper);
-      const float bound = smallest_[index] + slope_ * std::sqrt(squared);
-      if (bound >= largest) continue;
-      for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
-      if (cell.children == 0) leaves_.push_back({bound, index});
-    }
-    std::sort(leaves_.begin(), leaves_.end(),
-              [](const Leaf& a, const Leaf& b) { return a.bound < b.bound; });
-  }
-
-  /// min_j (R_j + distance / 2).
-  [[nodiscard]] float limit_at(std::uint32_t i) const {
-    const Eigen::Vector3f& p = grid_.points()[i];
-    const float matters = kMatters * radii_[i];
-    float limit = matters;
-    for (const Leaf& leaf : leaves_) {
-      if (leaf.bound >= limit) break;
-      const CellGrid::Cell& cell = grid_.cells()[leaf.cell];
-      const float bound = slope_ * std::sqrt(detail::squared_distance(cell, p));
-      if (smallest_[leaf.cell] + bound >= limit) continue;
-      for (std::uint32_t j = cell.begin; j < cell.end; ++j) {
-        const float distance = std::sqrt(detail::squared_distance(grid_.points()[j], p));
-        const float limited = radii_[j] + slope_ * distance;
-        if (limited < limit && !on_plane(i, j, distance)) limit = limited;
-      }
-    }
-    return limit < matters ? limit : radii_[i];
-  }
-
-  /// Does j lie on the plane of i, as far as one can tell?
-  [[nodiscard]] bool on_plane(std::uint32_t i, std::uint32_t j, float distance) const {
-    if (!own_ || own_->confidences[i] < kPlane) return false;
-    const float off = std::abs(own_->normals[i].dot(grid_.points()[j] - grid_.points()[i]));
-    return off <= std::max(kResiduals * own_->residuals[i], kOff * distance);
-  }
-
-  const CellGrid& grid_;
-  float slope_;  // of R over distance
-  const std::vector<float>& radii_;
-  const std::vector<float>& smallest_;
-  const OwnSheets* own_;
-  std::vector<Leaf> leaves_;
-};
-
-}  // namespace
-
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
-                  const OwnSheets* own) {
-  if (radii.empty()) return;
-  const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
-  if (*low >= kMatters * *high) return;
-  const std::vector<float> smallest = detail::smallest_in_cells(grid, radii);
-  const std::vector<detail::Block> blocks = detail::make_blocks(grid, kBlockPoints);
-  std::vector<float> limited(radii.size());
-  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    Limiter limiter(grid, slope, radii, smallest, own);
-    for (std::size_t b = begin; b < end; ++b) limiter.limit(blocks[b], limited);
-  });
-  radii = std::move(limited);
 }
 
 namespace {
@@ -201,65 +97,86 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
 
 namespace {
 
-// The paper's multiple m of spacings (section V); docs/method.md 5.3.
-constexpr double kPaperMultiple = 2.5;
+constexpr double kUsualMultiple = 2.5;   // m in R = m s: the paper's (section V)
+constexpr double kLittleNoise = 0.15;    // noise in spacings; judgement (docs/method.md 5.3)
+constexpr double kNoisyMultiple = 3;     // m above that; judgement
+constexpr double kMuchNoise = 0.4;       // noise in spacings; judgement
+constexpr double kNoisiestMultiple = 4;  // m above that; judgement
 
-// Noise is not smoothed away at the price of shape of this part of the cloud's size; judgement.
+// No R is above so many spacings for noise's sake: more would cost time and shape (judgement) ...
+constexpr double kMostSpacings = 6;
+// ... nor above this part of the cloud's size; judgement.
 constexpr double kFinestShape = 25;
 
 // R in spacings at least, where points lie irregularly: gaps between random points are wider than
 // 2.5 spacings' support bridges. Measured: tests/scene/no_holes_test.cpp.
 constexpr double kIrregularMultiple = 3;
 
-// R of strays, in typical spacings: they are not to reach what is sampled finely; judgement.
-constexpr float kStrayRadius = 2.5f;
-
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
+
+double multiple_of(double noise, double spacing) {
+  if (noise > kMuchNoise * spacing) return kNoisiestMultiple;
+  return noise > kLittleNoise * spacing ? kNoisyMultiple : kUsualMultiple;
+}
 
 /// R by spacing and noise, which is taken from place to place where the cloud was thinned for it.
 std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
   const CloudFacts& facts = sampling.facts;
   const bool by_place = !sampling.local.products.empty();
   const double noise = by_place ? 0 : facts.noise.sigma;
-  const double multiple = support_multiple(noise, sampling.spacing);
   const bool irregular = facts.irregular && sampling.voxel <= 0;
-  const SupportOptions support{
-      .multiple = options.radius_multiple.value_or(
-          irregular ? std::max(kIrregularMultiple, multiple) : multiple),
-      .noise = noise,
-      .footprint = sampling.voxel > 0 ? facts.spacing : 0,
-      .normal_error = options.normal_error,
-      .minimum = options.minimum_radius,
-      .finest_shape = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape};
-  std::vector<float> radii = support_radii(sampling.spacings, support);
+  const double multiple = std::max(irregular ? kIrregularMultiple : kUsualMultiple,
+                                   multiple_of(noise, sampling.spacing));
+  const double finest = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape;
+  std::vector<float> radii(sampling.spacings.size());
+  std::ranges::transform(sampling.spacings, radii.begin(), [&](float of_point) {
+    const auto spacing = static_cast<double>(of_point);
+    const double footprint = sampling.voxel > 0 ? facts.spacing : spacing;
+    const double for_noise =
+        std::min({std::sqrt(kNoiseToTilt * noise * footprint / options.normal_error),
+                  kMostSpacings * spacing, finest});
+    return static_cast<float>(std::max({multiple * spacing, options.minimum_radius, for_noise}));
+  });
   if (!by_place) return radii;
   return noisy_radii(sampling.grid, sampling.local, options.normal_error, std::move(radii));
+}
+
+/// R of all points; which of them are strays is not known yet.
+std::vector<float> radii_of(const Sampling& sampling, const PrepareOptions& options) {
+  const auto all = [&](double radius) {
+    return std::vector<float>(sampling.grid.size(), static_cast<float>(radius));
+  };
+  if (options.radius) return all(std::max(*options.radius, options.minimum_radius));
+  if (options.paper) return all(options.smoothing * kUsualMultiple * sampling.spacing);
+  std::vector<float> radii = radii_by_noise(sampling, options);
+  for (float& radius : radii) {
+    radius = std::max(static_cast<float>(options.smoothing) * radius,
+                      static_cast<float>(options.minimum_radius));
+  }
+  limit_growth(sampling.grid, kSlope, radii);
+  const auto largest = static_cast<float>(largest_radius(sampling.facts));
+  for (float& radius : radii) radius = std::min(radius, largest);
+  return radii;
 }
 
 }  // namespace
 
 double largest_radius(const CloudFacts& facts) {
-  // Typical R: twice those of the sparsest points of a level (Division), as gaps ask for; derived.
+  // Typical ones: the sparsest points of a level have 6 (Division), and closing a gap may double
+  // that; derived.
   constexpr double kMost = 12;
   return facts.radius > 0 ? kMost * facts.radius : std::numeric_limits<double>::infinity();
 }
 
 Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
-  const auto all = [&](double radius) {
-    return Radii{std::vector<float>(sampling.grid.size(), static_cast<float>(radius)), {}};
-  };
-  if (options.radius) return all(std::max(*options.radius, options.minimum_radius));
-  if (options.paper)
-    return all(options.radius_multiple.value_or(kPaperMultiple) * sampling.spacing);
-  Radii radii{radii_by_noise(sampling, options), {}};
-  limit_growth(sampling.grid, kSlope, radii.values);
-  const auto largest = static_cast<float>(largest_radius(sampling.facts));
-  for (float& radius : radii.values) radius = std::min(radius, largest);
-  if (!options.remove_speckle || !options.estimate_normals) return radii;
+  Radii radii{radii_of(sampling, options), {}};
+  if (options.paper || !options.remove_speckle || !options.estimate_normals) return radii;
   radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
+  if (options.radius) return radii;
   for (std::size_t i = 0; i < radii.strays.size(); ++i) {
     if (radii.strays[i] != 0) {
-      radii.values[i] = kStrayRadius * static_cast<float>(sampling.spacing);
+      // Strays are not to reach what is sampled finely.
+      radii.values[i] = static_cast<float>(kUsualMultiple) * static_cast<float>(sampling.spacing);
     }
   }
   return radii;

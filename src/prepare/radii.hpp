@@ -11,12 +11,11 @@
 
 namespace palpate {
 
-struct OwnSheets;
-
 /// The support radii.
 struct Radii {
   std::vector<float> values;         ///< R_i in sorted order, m
-  std::vector<std::uint8_t> strays;  ///< 1: a stray, whose R is small; empty: not looked for
+  std::vector<std::uint8_t> strays;  ///< 1: a stray, whose R is small unless one is given; empty:
+                                     ///< not looked for
 };
 
 /// The largest R that a point may have, m: 12 of the typical ones that the facts tell, since a
@@ -36,16 +35,8 @@ struct Radii {
 /// Do the points lie so irregularly that the gaps between them need a larger support?
 [[nodiscard]] bool is_irregular(const CellGrid& grid, std::span<const float> spacings);
 
-/// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
-/// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
-/// what is sampled finely. In sorted order, m.
-/// `own`: points on the plane of a point do not limit it, since it tells nothing else of them;
-/// nullptr: all do.
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
-                  const OwnSheets* own = nullptr);
-
 /// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
-/// `normal_error` (rad), and at least four sigma, nowhere below a point's `floor` nor above
+/// `normal_error` (rad), and at least four sigma, nowhere below a point's of `floors` nor above
 /// 2.4 times that. All in sorted order, m.
 [[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
                                              double normal_error, std::vector<float> floors);

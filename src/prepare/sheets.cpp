@@ -42,7 +42,7 @@ struct Evidence {
 
 /// For each sheet: given normals where nearly all agree, else what the eye sees of it.
 std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& known,
-                                  const OwnSheets& own, const SurfacePoints::Sheets& sheets) {
+                                  const PointFits& own, const SurfacePoints::Sheets& sheets) {
   struct Counts {
     double points = 0;
     double hidden = 0;
@@ -135,7 +135,7 @@ Side side_of(const PartSums& part, const Evidence& evidence, const Vector3d& cen
 }
 
 /// The sums of every part, its normals turned by `signs` of the sheets, and of all.
-std::vector<PartSums> sums_of_parts(const SheetInput& input, const OwnSheets& own,
+std::vector<PartSums> sums_of_parts(const SheetInput& input, const PointFits& own,
                                     const SurfacePoints::Sheets& sheets,
                                     const std::vector<int>& signs, PartSums& all) {
   std::vector<PartSums> sums(signs.size());
@@ -157,7 +157,7 @@ std::vector<PartSums> sums_of_parts(const SheetInput& input, const OwnSheets& ow
 }
 
 /// Turns the normals of whole sheets.
-void turn(const std::vector<int>& sign_of_sheet, OwnSheets& own, SurfacePoints::Sheets& sheets) {
+void turn(const std::vector<int>& sign_of_sheet, PointFits& own, SurfacePoints::Sheets& sheets) {
   for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
     if (sheets.sheet[i] == SurfacePoints::Sheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0)
       continue;
@@ -189,7 +189,7 @@ detail::SignedSets join_links(const std::vector<Link>& links, std::vector<Eviden
 /// Makes parts of linked sheets and turns their normals to the free side.
 void join_parts(const SheetInput& input, const std::vector<Link>& links,
                 std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
-                OwnSheets& own, SurfacePoints::Sheets& sheets) {
+                PointFits& own, SurfacePoints::Sheets& sheets) {
   detail::SignedSets sets = join_links(links, evidence);
   std::vector<int> signs;
   std::vector<std::uint32_t> roots;  // of the parts
@@ -213,7 +213,7 @@ void join_parts(const SheetInput& input, const std::vector<Link>& links,
 
 }  // namespace
 
-SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, OwnSheets& own,
+SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, PointFits& own,
                                   std::vector<Twin>& twins) {
   Growths grown = grow_sheets(input, own);
   twins = std::move(grown.twins);
@@ -226,7 +226,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
 }
 
 Sheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
-                   const KnownSigns& known, OwnSheets& fits) {
+                   const KnownSigns& known, PointFits& fits) {
   if (fits.normals.empty()) return {};
   for (std::size_t i = 0; i < weights.values.size(); ++i) {
     if (weights.values[i] <= 0) fits.confidences[i] = 0;
@@ -246,7 +246,8 @@ KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
   const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
   if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
   const bool given = how == Orientation::automatic || how == Orientation::given;
-  if (given && !options.viewpoint) known.given = sampling.normals;
+  const bool asked = options.viewpoint && how != Orientation::given;
+  if (given && !asked) known.given = sampling.normals;
   if (options.facts) known.middle = options.facts->extent.center() - sampling.origin;
   return known;
 }

@@ -54,7 +54,7 @@ struct Twin {
 /// joined the two. Where the signs of nearly all points of a sheet are known, these count instead.
 /// `twins`: gets the points that lie on two sheets, in rising order.
 [[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
-                                                OwnSheets& own, std::vector<Twin>& twins);
+                                                PointFits& own, std::vector<Twin>& twins);
 
 /// Which sheet each point lies on.
 struct Growths {
@@ -65,10 +65,10 @@ struct Growths {
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.
-[[nodiscard]] Growths grow_sheets(const SheetInput& input, OwnSheets& own);
+[[nodiscard]] Growths grow_sheets(const SheetInput& input, PointFits& own);
 
 /// How far the points i and j may be off each other's plane when they lie on one sheet, m.
-[[nodiscard]] float sheet_tolerance(const SheetInput& input, const OwnSheets& own, std::uint32_t i,
+[[nodiscard]] float sheet_tolerance(const SheetInput& input, const PointFits& own, std::uint32_t i,
                                     std::uint32_t j);
 
 /// What a pair of points says of two sheets: should their normals keep (> 0) or change (< 0) their
@@ -81,7 +81,7 @@ struct SheetVote {
 
 /// Measures how far the next sheet is above and below each point; returns what sheets say of each
 /// other, in the order of their numbers.
-[[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const OwnSheets& own,
+[[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
                                                  Growths& grown);
 
 inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index
@@ -97,11 +97,11 @@ struct Snapped {
 /// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,
 /// a point takes over the fit of the sure one on whose plane it lies. One that lies on none has no
 /// confidence left, unless hardly anything is sure around it.
-[[nodiscard]] Snapped snap_to_planes(const SheetInput& input, OwnSheets& own);
+[[nodiscard]] Snapped snap_to_planes(const SheetInput& input, PointFits& own);
 
 /// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is
 /// off its plane by k a^2 / sqrt(48) RMS.
-[[nodiscard]] float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i);
+[[nodiscard]] float bow(const SheetInput& input, const PointFits& own, std::uint32_t i);
 
 // How far normals may turn where both fits are bowed, over what their arc turns.
 inline constexpr float kTurnMargin = 1.5f;  // judgement
@@ -116,7 +116,7 @@ struct Sheets {
 
 /// make_sheets() of the points that weigh something. None where there are no fits.
 [[nodiscard]] Sheets join_sheets(const Sampling& sampling, const Radii& radii,
-                                 const Weights& weights, const KnownSigns& known, OwnSheets& fits);
+                                 const Weights& weights, const KnownSigns& known, PointFits& fits);
 
 /// The signs that the options allow sheets to use.
 [[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,

@@ -41,7 +41,7 @@ constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 /// Finds a plane for each point that its own fit does not put on a sheet.
 class Snapping {
  public:
-  Snapping(const SheetInput& input, OwnSheets& own)
+  Snapping(const SheetInput& input, PointFits& own)
       : input_(input), own_(own), sure_(input.grid.size()) {
     detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) sure_[i] = is_sure(i) ? 1 : 0;
@@ -206,7 +206,7 @@ class Snapping {
   }
 
   const SheetInput& input_;
-  OwnSheets& own_;
+  PointFits& own_;
   std::vector<std::uint8_t> sure_;
   CellGrid sure_places_;
   std::vector<std::uint32_t> sure_points_;  // in the order that the index was given them
@@ -216,13 +216,13 @@ class Snapping {
 
 }  // namespace
 
-float bow(const SheetInput& input, const OwnSheets& own, std::uint32_t i) {
+float bow(const SheetInput& input, const PointFits& own, std::uint32_t i) {
   const float reach = kNormalsReach * input.radii[i];
   const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
   return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
 }
 
-Snapped snap_to_planes(const SheetInput& input, OwnSheets& own) {
+Snapped snap_to_planes(const SheetInput& input, PointFits& own) {
   Snapping snapping(input, own);
   snapping.run();
   return std::move(snapping).finish();

@@ -1,4 +1,5 @@
-// The weights of points on a surface that is sampled more or less densely.
+// The fifth step of prepare(): the weights of points on a surface that is sampled more or less
+// densely.
 #pragma once
 
 #include <cstddef>

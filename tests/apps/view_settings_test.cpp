@@ -128,17 +128,9 @@ TEST(ViewSettings, PreparationFollowsThoseThatAreItsOwn) {
   set(settings, kAll, "policy", std::string("replace"));
   const SourceOptions options = prepared_by(settings.preparation, {}, {});
   EXPECT_DOUBLE_EQ(options.depth.normal_error, DepthFilterOptions().normal_error / 2);
-  EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 5);
+  EXPECT_DOUBLE_EQ(options.prepare.smoothing, 2);
   EXPECT_DOUBLE_EQ(*options.prepare.voxel, 5e-3);
   EXPECT_EQ(*options.policy.policy, Policy::replace);
-}
-
-TEST(ViewSettings, MoreSmoothingNeverMakesTheRadiusSmaller) {
-  const Prepared::Report noisy{.spacing = 2e-3, .radius = 8e-3};  // R is four spacings
-  ViewSettings settings;
-  set(settings, kAll, "smoothing", 1.1);
-  const SourceOptions options = prepared_by(settings.preparation, {}, {}, noisy);
-  EXPECT_DOUBLE_EQ(*options.prepare.radius_multiple, 1.1 * 4);
 }
 
 TEST(ViewSettings, WhatIsOnlyFeltPreparesNothingAnew) {
@@ -189,7 +181,7 @@ TEST(ViewSettings, WhatASourceHasOfItsOwnStaysUnlessThePageChangesIt) {
   SourceOptions options = prepared_by(settings.preparation, initial.preparation, own);
   EXPECT_EQ(options.depth.normal_error, 0.01);
   EXPECT_EQ(options.prepare.radius, 0.02);
-  EXPECT_FALSE(options.prepare.radius_multiple);
+  EXPECT_EQ(options.prepare.smoothing, 1);
   EXPECT_EQ(options.prepare.voxel, 3e-3);
   EXPECT_EQ(options.policy.policy, Policy::replace);
   EXPECT_EQ(options.policy.history, 6);

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "geometry/clouds.hpp"
-#include "geometry/normals.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/spacing.hpp"
@@ -38,7 +37,8 @@ TEST(Clip, KeepsWhatIsInsideWithAllItsColumns) {
 }
 
 std::vector<std::uint8_t> mask_of(const CellGrid& grid) {
-  const std::vector<float> radii = support_radii(local_spacings(grid));
+  std::vector<float> radii = local_spacings(grid);
+  for (float& radius : radii) radius *= 2.5f;
   return speckle_mask(grid, radii, WeightSums(grid, radii));
 }
 
@@ -88,58 +88,6 @@ TEST(WeightSums, FollowRadiiThatChangeAsIfSummedAnew) {
   const WeightSums anew(grid, after);
   EXPECT_EQ(sums.own, anew.own);
   EXPECT_EQ(sums.around, anew.around);
-}
-
-TEST(SupportRadii, AreTheLargestOfSpacingNoiseAndMinimum) {
-  const std::vector<float> spacings{1e-3f, 2e-3f, 4e-3f};
-  const auto expect = [&](SupportOptions options, std::size_t i, double radius) {
-    EXPECT_NEAR(support_radii(spacings, options)[i], radius, 1e-8);
-  };
-  SupportOptions options;
-  expect(options, 0, 2.5e-3);
-  expect(options, 2, 10e-3);
-  options.minimum = 6e-3;
-  expect(options, 0, 6e-3);
-  options = {};
-  options.multiple = 4;
-  expect(options, 1, 8e-3);
-  options = {};
-  options.noise = 0.35e-3;  // above 0.15 of the median spacing: m = 3
-  options.normal_error = 1;
-  expect(options, 1, 6e-3);
-  options.normal_error = 0.02;
-  expect(options, 1, std::sqrt(3.2 * 0.35e-3 * 2e-3 / 0.02));
-  options.footprint = 8e-3;
-  expect(options, 0, 6e-3);  // six spacings of its own and no more
-  options.most_spacings = 100;
-  expect(options, 1, std::sqrt(3.2 * 0.35e-3 * 8e-3 / 0.02));
-  options.finest_shape = 7e-3;
-  expect(options, 1, 7e-3);
-  expect(options, 2, 12e-3);  // its spacing needs more
-}
-
-TEST(SupportRadii, FollowFieldChoiceSection5) {
-  // sigma_n 0.62 mm, delta 1.98 mm: theta = 2, 1, 0.7 degrees need 10.6, 15, 18 mm.
-  const double degree = 3.14159265 / 180;
-  EXPECT_NEAR(noise_radius(0.62e-3, 1.98e-3, 2 * degree), 10.6e-3, 0.1e-3);
-  EXPECT_NEAR(noise_radius(0.62e-3, 1.98e-3, 1 * degree), 15.0e-3, 0.1e-3);
-  EXPECT_NEAR(noise_radius(0.62e-3, 1.98e-3, 0.7 * degree), 18.0e-3, 0.1e-3);
-  EXPECT_EQ(support_multiple(0.1, 1), 2.5);
-  EXPECT_EQ(support_multiple(0.2, 1), 3);
-  EXPECT_EQ(support_multiple(0.5, 1), 4);
-}
-
-TEST(SupportRadii, RefuseOptionsWithoutSense) {
-  const std::vector<float> spacings{1};
-  std::vector<SupportOptions> bad(4);
-  bad[0].multiple = 0;
-  bad[1].noise = -1;
-  bad[2].normal_error = 0;
-  bad[3].finest_shape = 0;
-  for (const SupportOptions& options : bad) {
-    EXPECT_THROW((void)support_radii(spacings, options), Error);
-  }
-  EXPECT_TRUE(support_radii({}).empty());
 }
 
 }  // namespace

@@ -39,17 +39,17 @@ Case make_case(const Vector3f& odd, float radius) {
 }
 
 /// How many radii were raised.
-std::size_t close(Case& made, OwnSheets& own) {
+std::size_t close(Case& made, PointFits& own) {
   std::vector<float> spacings(made.grid.size(), kGapSpacing);
   const std::vector<float> noise(made.grid.size(), 0.f);
-  own = fit_own_sheets(made.grid, spacings, made.radii, noise);
+  own = fit_points(made.grid, spacings, made.radii, noise);
   const WeightSums sums(made.grid, made.radii);
   return close_gaps(made.grid, sums.own, spacings, made.radii, own);
 }
 
 TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {
   Case made = make_case(Vector3f::Zero(), 0.5f * kGapSpacing);
-  OwnSheets own;
+  PointFits own;
   EXPECT_GT(close(made, own), 200u);
   EXPECT_NEAR(made.radii[made.odd], 2.5f * kGapSpacing, 1e-6f);
   EXPECT_GT(std::abs(own.normals[made.odd].z()), 0.999f);
@@ -60,14 +60,14 @@ TEST(CloseGaps, LeavesStrayPointsAndWholeSheetsAlone) {
   for (const float height : {0.0f, 3 * kGapSpacing}) {
     Case made = make_case({0, 0, height}, 2.5f * kGapSpacing);
     const std::vector<float> before = made.radii;
-    OwnSheets own;
+    PointFits own;
     EXPECT_EQ(close(made, own), 0u) << height;
     EXPECT_EQ(made.radii, before);
   }
 }
 
 TEST(CloseGaps, TakesCloudsWithoutGaps) {
-  OwnSheets own;
+  PointFits own;
   Case pile{CellGrid(std::vector<Vector3f>(5, Vector3f::Ones())), std::vector<float>(5, 1e-3f)};
   EXPECT_EQ(close(pile, own), 0u);
   Case none;

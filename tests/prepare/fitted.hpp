@@ -15,7 +15,7 @@ struct Fitted {
         spacings(points.size(), 1.f),
         radii(points.size(), kFittedRadius),
         noise(points.size(), 0.f),
-        own(fit_own_sheets(grid, spacings, radii, noise)) {}
+        own(fit_points(grid, spacings, radii, noise)) {}
 
   [[nodiscard]] SheetInput input() const { return {grid, spacings, radii, noise}; }
 
@@ -23,7 +23,7 @@ struct Fitted {
   std::vector<float> spacings;
   std::vector<float> radii;
   std::vector<float> noise;
-  OwnSheets own;
+  PointFits own;
 };
 
 /// A floor of `side` x `side` points at z = 0 and a wall at x = 0 that stands on it.

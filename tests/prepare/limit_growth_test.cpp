@@ -1,12 +1,13 @@
 // R varies slowly from point to point.
 
+#include "prepare/limit_growth.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
 #include "prepare/plane_fits.hpp"
-#include "prepare/radii.hpp"
 
 namespace palpate {
 namespace {
@@ -72,7 +73,7 @@ TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
   const CellGrid grid(points);
   std::vector<float> radii;
   for (const Vector3f& p : grid.points()) radii.push_back(p.x() > 1.5f ? 5.0f : 0.08f);
-  const OwnSheets own{std::vector<Vector3f>(points.size(), Vector3f(0, 0, -1)),
+  const PointFits own{std::vector<Vector3f>(points.size(), Vector3f(0, 0, -1)),
                       std::vector<float>(points.size(), 1.0f),
                       std::vector<float>(points.size(), 0.0f),
                       {},

@@ -163,7 +163,7 @@ TEST(Prepare, RefusesWhatMakesNoSense) {
   EXPECT_THROW((void)prepare(PointCloud{}), Error);
   EXPECT_THROW((void)prepare(flat(), {.voxel = -1.0}), Error);
   EXPECT_THROW((void)prepare(flat(), {.radius = 0.0}), Error);
-  EXPECT_THROW((void)prepare(flat(), {.radius_multiple = NAN}), Error);
+  EXPECT_THROW((void)prepare(flat(), {.smoothing = NAN}), Error);
   EXPECT_THROW((void)prepare(flat(), {.normal_error = 0}), Error);
   EXPECT_THROW((void)prepare(flat(), {.orientation = PrepareOptions::Orientation::viewpoint}),
                Error);

@@ -134,6 +134,10 @@ TEST(Signs, OfAViewAreTowardsTheViewpoint) {
   EXPECT_EQ(share_right(prepare(view).points, up), 1) << "given signs come first";
   const PrepareOptions asked{.viewpoint = Eigen::Vector3d(0.2, 0.2, -2)};
   EXPECT_EQ(share_right(prepare(view, asked).points, up), 0) << "but for a viewpoint asked for";
+  for (Vector3f& normal : view.normals) normal.z() = -1;
+  const PrepareOptions both{.viewpoint = Eigen::Vector3d(0.2, 0.2, 2),
+                            .orientation = PrepareOptions::Orientation::given};
+  EXPECT_EQ(share_right(prepare(view, both).points, up), 0) << "unless they alone are asked for";
 }
 
 TEST(GivenSigns, CountsWhatIsThere) {

@@ -56,10 +56,10 @@ class Strays : public testing::Test {
   }
 
   /// How many of the grid's points and how many of the others weigh nothing once prepared.
-  std::pair<int, int> count_weightless() {
+  std::pair<int, int> count_weightless(const PrepareOptions& options = {}) {
     PointCloud cloud;
     cloud.positions = points_;
-    const SurfacePoints prepared = prepare(cloud).points;
+    const SurfacePoints prepared = prepare(cloud, options).points;
     std::pair<int, int> counts{0, 0};
     for (std::size_t i = 0; i < prepared.size(); ++i) {
       if (prepared.density_weights[i] > 0) continue;
@@ -138,6 +138,13 @@ TEST_F(Strays, BesideASheetWeighNothing) {
   const auto [own, others] = count_weightless();
   EXPECT_EQ(own, 0);
   EXPECT_GE(others, 200);
+}
+
+TEST_F(Strays, WeighNothingWhereTheRadiusIsGiven) {
+  scatter(500, 0, 5, 30);
+  const auto [own, others] = count_weightless({.radius = 3 * kSpacing});
+  EXPECT_EQ(own, 0);
+  EXPECT_GT(others, 400);
 }
 
 TEST_F(Strays, AreNoWiresThatBeginAtASheet) {

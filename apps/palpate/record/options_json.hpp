@@ -95,12 +95,12 @@ void members(auto f, CloudFacts& o) {
     lines, extent, radius);
 }
 void members(auto f, PrepareOptions& o) {
-  auto& [voxel, radius, multiple, least, error, viewpoint, signs, clip, speckle, normals, material,
+  auto& [voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
          paper, kernel, facts] = o;
-  f({"voxel", "radius", "radius_multiple", "minimum_radius", "normal_error", "viewpoint",
-     "orientation", "clip", "remove_speckle", "estimate_normals", "material_from_intensity",
-     "paper", "kernel", "facts"},
-    voxel, radius, multiple, least, error, viewpoint, signs, clip, speckle, normals, material,
+  f({"voxel", "radius", "smoothing", "minimum_radius", "normal_error", "viewpoint", "orientation",
+     "clip", "remove_speckle", "estimate_normals", "material_from_intensity", "paper", "kernel",
+     "facts"},
+    voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
     paper, kernel, facts);
 }
 void members(auto f, SourceOptions::SoftMaterial& o) {

@@ -21,7 +21,7 @@ namespace palpate::app {
 
 /// Names that a recording's parts go by.
 inline constexpr const char* kSetupName = "setup.json";
-inline constexpr const char* kSetupKind = "palpate recording 2";
+inline constexpr const char* kSetupKind = "palpate recording 3";
 [[nodiscard]] inline std::string surface_name(std::size_t source) {
   return fmt::format("surface-{}.cdr", source);
 }

@@ -199,9 +199,7 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
 }
 
 SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
-                          const ViewSettings::Preparation& initial, const SourceOptions& own,
-                          const Prepared::Report& first) {
-  constexpr double kUsual = 2.5;  // where no cloud has come yet (PrepareOptions::radius_multiple)
+                          const ViewSettings::Preparation& initial, const SourceOptions& own) {
   SourceOptions options = own;
   if (wanted.policy != initial.policy) options.policy.policy = wanted.policy;
   if (wanted.history != initial.history) options.policy.history = wanted.history;
@@ -212,8 +210,7 @@ SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
   if (options.prepare.radius) {
     *options.prepare.radius *= wider;
   } else {
-    options.prepare.radius_multiple =
-        (first.spacing > 0 ? first.radius / first.spacing : kUsual) * wider;
+    options.prepare.smoothing = own.prepare.smoothing * wider;
   }
   return options;
 }
@@ -273,10 +270,8 @@ void Preparer::work(const std::stop_token& stop) {
 // Streams are prepared so from their next frame on.
 void Preparer::change_all(const Preparation& wanted) {
   for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
-    Source& source = run_.loaded.scene.source(i);
-    if (first_.size() == i) first_.push_back(source.report());
     const SourceOptions& options = run_.loaded.sources[i].plan.options;
-    source.change(prepared_by(wanted, initial_, options, first_[i]));
+    run_.loaded.scene.source(i).change(prepared_by(wanted, initial_, options));
   }
 }
 

@@ -63,12 +63,10 @@ void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
 [[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name,
                                   const ViewScope& scope);
 
-/// `own`, which a source began with, but for what `wanted` has other than `initial`. `first`: of
-/// its cloud prepared by `own`, whose R over its spacing is what smoothing multiplies.
+/// `own`, which a source began with, but for what `wanted` has other than `initial`.
 [[nodiscard]] SourceOptions prepared_by(const ViewSettings::Preparation& wanted,
                                         const ViewSettings::Preparation& initial,
-                                        const SourceOptions& own,
-                                        const Prepared::Report& first = {});
+                                        const SourceOptions& own);
 
 /// The largest amplitude of a texture, m, that a hand can meet on the thinnest surface of `scene`;
 /// infinite where it has none.
@@ -103,7 +101,6 @@ class Preparer {
   Preparation initial_;
   Preparation held_;  // the last that sources could be prepared by
   Failed failed_;
-  std::vector<Prepared::Report> first_;  // of the sources, before anything was changed
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Preparation> wanted_;

@@ -24,14 +24,14 @@ struct PrepareOptions {
     given,      ///< the cloud's normals alone
   };
 
-  std::optional<double> voxel = {};            ///< leaf of the voxel filter, m; 0: keep every point
-  std::optional<double> radius = {};           ///< one support radius R for all points, m; of depth
-                                               ///< frames the smallest
-  std::optional<double> radius_multiple = {};  ///< m in R = m s; 2.5, irregular points 3, unless
-                                               ///< noise asks for more
-  double minimum_radius = 0;                   ///< no R below this, m (a tool's radius / 0.3)
-  double normal_error = 0.02;  ///< wanted error of normals, rad (theta: 1.15 degrees)
-  /// Position of the sensor, in the cloud's frame, m. Tells signs instead of given normals.
+  std::optional<double> voxel = {};   ///< leaf of the voxel filter, m; 0: keep every point
+  std::optional<double> radius = {};  ///< one support radius R for all points, m; of depth
+                                      ///< frames the smallest
+  double smoothing = 1;               ///< factor on the R that is chosen where none is given
+  double minimum_radius = 0;          ///< no R below this, m (a tool's radius / 0.3)
+  double normal_error = 0.02;         ///< wanted error of normals, rad (theta: 1.15 degrees)
+  /// Position of the sensor, in the cloud's frame, m. Tells signs instead of given normals,
+  /// unless these alone are asked for.
   std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
   std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m
