@@ -48,10 +48,7 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
 
 Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept {
   if (!in_range(hip) || !std::isfinite(dt) || dt < 0) fault_ = true;
-  if (fault_) {
-    touch_.touching = false;
-    return faulted(position_);
-  }
+  if (fault_) return faulted(position_);
   if (!started_) reset(hip);
   Contact contact;
   Probe probe{field, options_.texture, step_length_};
@@ -188,7 +185,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
     const bool same = at && is_same_place(*at, position_, touch_.normal);
     bool cut = false;
     const auto found = same ? at : reanchor(probe, position_, touch_.normal, radius, cut);
-    if (cut) at.reset();  // another place may be the underside of what the sweep did not come to
+    if (cut) at.reset();  // else it may be the underside of something nearer, not yet swept
     if (found) {
       at = found;
       contact.notes |= ContactNote::reanchored;

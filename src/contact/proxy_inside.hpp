@@ -26,11 +26,11 @@ class Proxy::Inside {
   [[nodiscard]] ProxyOptions& options() noexcept { return options_; }
 
  private:
-  /// What the proxy touches. It is held while it does not wait.
+  /// The contact. It holds the hand unless it waits for a surface that vanished.
   struct Touch {
-    Surface surface;                                    // where it touches
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();   // of the last contact; zero: none
-    Eigen::Vector3d pressed = Eigen::Vector3d::Zero();  // the hand, when its surface vanished
+    Surface surface;                                    // at the proxy
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();   // as the last step left it; zero: none
+    Eigen::Vector3d pressed = Eigen::Vector3d::Zero();  // the hand when the surface vanished, m
     bool touching = false;
     bool sliding = false;
     bool waiting = false;  // for a surface that has vanished

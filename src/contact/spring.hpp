@@ -26,7 +26,7 @@ class EnergyTank {
   /// A spring of this stiffness (N/m) takes over from one that ended: the tank stays as full.
   void take_over(double stiffness) noexcept { stiffness_ = stiffness; }
 
-  /// Takes in what a FadingSpring gave up, J.
+  /// Takes in energy, J, up to kCapacity.
   void fill(double energy) noexcept;
 
   /// Moves the stiffness towards `wanted` (N/m) over a step of `dt` (s) in which the spring is
@@ -82,7 +82,8 @@ class Spring {
   void lose(double dt) noexcept { lost_ += dt; }
   [[nodiscard]] bool is_lost() const noexcept { return lost_ > kKeepLost; }
 
-  /// Is the hand held hard in free air, for `dt` (s) more? True once that took too long.
+  /// Counts for how long a hand is held hard in free air; `away`: it is, in this step of `dt` (s),
+  /// too. True: it is to be let go.
   [[nodiscard]] bool hold_away(bool away, double dt) noexcept;
 
   /// The stiffness (N/m) that a contact comes to whose surface allows `full`.

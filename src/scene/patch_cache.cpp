@@ -62,7 +62,7 @@ void PatchCache::clear_far() noexcept {
   }
 }
 
-void PatchCache::choose_radius(const Vector3d& x, double first) noexcept {
+void PatchCache::take_nearest_radius(const Vector3d& x, double first) noexcept {
   const double before = std::exchange(radius_, 0);
   Patch& patch = step_.far[0].patch;
   const double nearest =

@@ -37,7 +37,7 @@ class PatchCache {
 
   /// The paper's section III-D: from now on the radius of the point nearest to x is that of all.
   /// Where x is in no point's support, it stays what it was; `first`, m, when there was none.
-  void choose_radius(const Eigen::Vector3d& x, double first) noexcept;
+  void take_nearest_radius(const Eigen::Vector3d& x, double first) noexcept;
 
   /// Sets the proxy (m, world) from which all that is gathered next is seen.
   void set_tool(const Eigen::Vector3d& proxy) noexcept;
@@ -67,7 +67,7 @@ class PatchCache {
   /// Is the ball free? Asks the index; false when the visits did not suffice.
   [[nodiscard]] bool walk_is_free(const Ball& ball) const noexcept;
 
-  /// Clears the notes; choose_radius() and gather_near() together get all visits.
+  /// Clears the notes; take_nearest_radius() and gather_near() together get all visits.
   void begin_update() noexcept;
   void begin_step() const noexcept;
   /// `tool`: where the proxy is then.

@@ -1,4 +1,4 @@
-// Keeps the sources of a scene, measures how far their surfaces are apart, and blends them.
+// Keeps the sources of a scene, and says how wide supports have to be for surfaces to be one.
 #include "palpate/scene/scene.hpp"
 
 #include <fmt/core.h>

@@ -176,7 +176,7 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
         "policy morph works only with depth frames; give replace, average or crossfade for clouds");
   }
   const bool clips =
-      (options_.policy.clip_to_reach || seen_.late == kEnoughLate) && !arrival.reach.empty();
+      (options_.policy.clip_to_reach || clouds_.late == kEnoughLate) && !arrival.reach.empty();
   const Split parts = clips ? split(cloud, options_.prepare.clip, arrival) : Split{};
   const PointCloud clipped = select(cloud, parts.near);
   const PointCloud& wanted = clips ? clipped : cloud;
@@ -190,7 +190,8 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
   notes.report = prepared.report;
   std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), cloud);
   const FrameTiming moment = next_timing(stamp, arrival.start);
-  if (seen_.late < kEnoughLate) seen_.late = moment.start - stamp > kLateCloud ? seen_.late + 1 : 0;
+  if (clouds_.late < kEnoughLate)
+    clouds_.late = moment.start - stamp > kLateCloud ? clouds_.late + 1 : 0;
   std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, policies_.clouds);
   layers_.add(std::move(points), moment, snapshot->layers);
   return snapshot;
@@ -215,8 +216,8 @@ bool SnapshotBuilder::knows_sides() const {
 /// viewpoint is given, one cloud that proves it counts for all after it; few pixels prove nothing.
 bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
   if (options_.prepare.viewpoint) return knows_sides();
-  seen_.view = seen_.view || is_view(cloud);
-  return seen_.view && cloud.normals.empty() && knows_sides();
+  clouds_.view = clouds_.view || is_view(cloud);
+  return clouds_.view && cloud.normals.empty() && knows_sides();
 }
 
 FrameTiming SnapshotBuilder::next_timing(double stamp, const Source::StartTime& start) {

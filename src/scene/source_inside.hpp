@@ -104,6 +104,7 @@ class SnapshotBuilder {
   [[nodiscard]] double median_depth() const { return measured_.median_depth; }
 
  private:
+  /// For depth frames and for clouds.
   struct Policies {
     Policy frames;
     Policy clouds;
@@ -145,7 +146,7 @@ class SnapshotBuilder {
   Recycler<Snapshot, Empty> snapshots_;
   Snapshot last_;  // without its layers
   Measured measured_;
-  Clouds seen_;
+  Clouds clouds_;
 };
 
 /// The parts of a source. Its scene and the fields of that scene use them.

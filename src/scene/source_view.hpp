@@ -26,13 +26,15 @@ class SnapshotReader {
   SnapshotReader(const SnapshotReader&) = delete;
   SnapshotReader& operator=(const SnapshotReader&) = delete;
 
-  /// Looks for a new snapshot. True when the next one has become the current one. A snapshot that
+  /// Looks for a new snapshot. True when the next one has become the current one; false, too, when
+  /// the surface was taken away, and current() is null then. A snapshot that
   /// waits for its start is replaced by a newer one only when it starts unreasonably late.
   bool advance(double now) noexcept;
 
   [[nodiscard]] const Snapshot* current() const noexcept { return current_; }  ///< or nullptr
+  /// Snapshot::publication of the newest one that it took; 0: none yet.
   [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
-  [[nodiscard]] std::size_t place() const noexcept { return place_; }
+  [[nodiscard]] std::size_t place() const noexcept { return place_; }  ///< at the source
 
  private:
   void look(double now) noexcept;

@@ -1,3 +1,4 @@
+// The drivers of cameras, and what those of real devices share.
 #pragma once
 
 #include <cstdint>

@@ -89,7 +89,7 @@ void add_surface(Report& report, const InfoReport& info) {
              "{spacing_m/nearest_three} to the three nearest, {spacing_m/from_area} from area "
              "({spacing_m/tenth} to {spacing_m/nine_tenths} in the middle 80 %)",
              s.nearest_three, s.from_area, s.tenth, s.nine_tenths);
-  report.row("noise", "{noise_m} from the local plane", info.prepared.noise);
+  report.row("noise", "{noise_m} from a smooth surface", info.prepared.noise);
   report.row("holes", "{rim_share} of the points are at a border or a hole", info.rim);
   add_trust(report, info.prepared);
 }

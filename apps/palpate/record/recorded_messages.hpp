@@ -14,7 +14,8 @@ namespace palpate::app {
 /// A step of a run of `sources` as a recording holds it.
 [[nodiscard]] message::Tick tick_of(const StepTrace& step, std::size_t sources);
 
-/// The servo's state in that step. `options`: of its servo. Counts of the guard are not recorded.
+/// The servo's state in that step. `options`: of its servo. Not recorded: the guard's counts and
+/// energy, the proxy's own force and drift, the clutch's shift, lateness.
 [[nodiscard]] ServoState state_of(const message::Tick& tick, const ServoOptions& options);
 
 /// A pose's first three rows, as messages hold it.

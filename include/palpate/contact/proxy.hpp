@@ -45,11 +45,11 @@ struct Contact {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< outward unit normal; 0 when not touching
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< velocity of the touched surface, m/s
   double stiffness = 0;                              ///< of all springs in the force, N/m
-  bool touching = false;
-  bool sliding = false;  ///< friction gave way in this step
-  int iterations = 0;    ///< constrained sub-steps taken
-  int evaluations = 0;   ///< field samples and ball tests spent
-  int source = -1;       ///< index of the touched source; -1: none
+  bool touching = false;  ///< held by a surface; not while it waits for one that vanished
+  bool sliding = false;   ///< friction gave way in this step
+  int iterations = 0;     ///< constrained sub-steps taken
+  int evaluations = 0;    ///< field samples and ball tests spent
+  int source = -1;        ///< index of the touched source; -1: none
   ContactNote notes = ContactNote::none;
 };
 
@@ -114,7 +114,8 @@ class Proxy {
   [[nodiscard]] const ProxyOptions& options() const noexcept;
 
   /// What a step spends at most: 1000 in sweeps (and what the last interval of one takes), 20 for
-  /// each constrained sub-step allowed (and what a Newton takes), and recovery.
+  /// each constrained sub-step allowed (and what a Newton takes), recovery, and 16 looks for a way
+  /// out.
   [[nodiscard]] int max_evaluations() const noexcept;
 
   /// Sets stiffness (N/m), friction and texture from the next step on; in contact,

@@ -43,7 +43,7 @@ enum class FieldNote : std::uint32_t {
 class SceneField final : public Field {
  public:
   static constexpr std::size_t kPatchPoints = 2048;  ///< room of a patch
-  /// Cells and points of the index that update() looks at, and a proxy's step, too.
+  /// The most cells and points of the index that update() looks at, and again a proxy's step.
   static constexpr int kStepVisits = 40960;
 
   /// What an update() found of each source, beside the time and what it was given.

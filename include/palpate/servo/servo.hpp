@@ -144,7 +144,7 @@ struct Durations {
   [[nodiscard]] Durations since(const Durations& earlier) const noexcept;
 };
 
-/// Of a servo's steps, where measured.
+/// How late a servo's steps began and how long they took, where measured.
 struct StepDurations {
   Durations lateness;
   Durations computing;

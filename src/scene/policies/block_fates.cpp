@@ -25,7 +25,7 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
     FourWays& ways = to.going_on.emplace_back();
     ways.place = static_cast<std::uint32_t>(place);
     const bool live = first != BlockEntries::kNone && are_live(first, ways);
-    if (live && blocks_.keeps(place) && stay(first, ways)) continue;
+    if (live && blocks_.keeps(place) && keep_going(first, ways)) continue;
     const SeenFour four = blocks_.four_at(place);
     if (live && go_on(four, ways)) continue;
     to.going_on.pop_back();
@@ -48,7 +48,7 @@ bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
 
 /// Four points that the last frame showed, and of which this one says the same, go on to where they
 /// were going.
-bool BlockFates::stay(std::uint32_t first, FourWays& ways) const {
+bool BlockFates::keep_going(std::uint32_t first, FourWays& ways) const {
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     if (shown_.entries()[first + k].confirmed != shown_.stamp()) return false;
   }
@@ -80,7 +80,7 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
   if (shown && !partner) add(moves_.appear(seen), seen, to);
   if (partner) {
     const auto& [i, before] = *partner;
-    const bool vouched = !stays(seen, before);
+    const bool vouched = !is_doubtful(seen, before);
     const Fate own = fate({.shown = true, .same = true, .vouched = vouched});
     if (own == Fate::stay) at = blocks_.depth_of(before.position);
     add(own == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
@@ -111,7 +111,7 @@ bool BlockFates::is_sure(const SeenPoint& seen,
 
 /// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
 /// shows that, too? Such a frame does not tell where the surface is.
-bool BlockFates::stays(const SeenPoint& seen, const PointState& before) const {
+bool BlockFates::is_doubtful(const SeenPoint& seen, const PointState& before) const {
   return (before.position - seen.state.position).norm() > seen.state.radius &&
          blocks_.vouching(seen.place) < FrameBlocks::kVouchToMove;
 }

@@ -39,12 +39,12 @@ class BlockFates {
 
  private:
   [[nodiscard]] bool are_live(std::uint32_t first, FourWays& ways) const;
-  [[nodiscard]] bool stay(std::uint32_t first, FourWays& ways) const;
+  [[nodiscard]] bool keep_going(std::uint32_t first, FourWays& ways) const;
   [[nodiscard]] bool go_on(const SeenFour& seen, FourWays& ways) const;
   void settle(const SeenPoint& seen, SettledPlaces& to) const;
   [[nodiscard]] bool is_sure(const SeenPoint& seen,
                              const std::optional<BlockTracks::Partner>& partner) const;
-  [[nodiscard]] bool stays(const SeenPoint& seen, const PointState& before) const;
+  [[nodiscard]] bool is_doubtful(const SeenPoint& seen, const PointState& before) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
   void add(Way way, const SeenPoint& at, SettledPlaces& to) const;
 

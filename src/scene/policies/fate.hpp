@@ -1,4 +1,4 @@
-// The table of docs/method.md 7.3 as one pure function.
+// What becomes of a point (docs/method.md 7.3) as one pure function.
 #pragma once
 
 #include <cstdint>

@@ -16,8 +16,8 @@ namespace palpate {
 /// remembered of each.
 class ShownPoints {
  public:
-  /// A surface that jumps goes on by so much faster than before, m/s: 0.3 N a millisecond at
-  /// 500 N/m.
+  /// In a frame a surface may be so much faster than in the one before, m/s: at 500 N/m 0.3 N a
+  /// millisecond, the guard's slew. No more speed than this is believed of what comes nearer.
   static constexpr float kSudden = 0.6f;
 
   /// Sets when the next snapshot starts; its points are relative to `origin`.
