@@ -38,7 +38,7 @@ class CloudStep : public testing::TestWithParam<int> {
         if (i < height()) add(0, j + off(), i + off());
       }
     }
-    scene_.add({.name = "step"}).set(cloud);
+    scene_.add("step", cloud);
     field_.emplace(scene_);
   }
 
