@@ -40,9 +40,7 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
     contact.notes |= ContactNote::lost;
     spring_.lose(dt);
   }
-  spring_.pull(full_stiffness(), position_ - hip, 0, dt, contact);
-  contact.drift = touch_.surface.velocity;
-  contact.source = touch_.surface.source;
+  pull(hip, 0, dt, contact);
   if (contact.stiffness <= kFaded * options_.stiffness) let_go(probe, hip);
 }
 

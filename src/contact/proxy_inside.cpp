@@ -100,7 +100,7 @@ double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eige
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   spring_.go_on(before, touch_.is_held() ? initial_stiffness(position_, hip) : 0,
-                touch_.waiting ? 0 : full_stiffness(), position_ - hip, contact);
+                touch_.waiting ? 0 : touch_.softened(options_.stiffness), position_ - hip, contact);
 }
 
 // Free space: to the hand, or to the first contact on the way.
@@ -118,7 +118,8 @@ double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
                                         const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
   const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
-  return spring_.wanted(full_stiffness()) * (stretch > moved ? moved / stretch : 1);
+  return spring_.wanted(touch_.softened(options_.stiffness)) *
+         (stretch > moved ? moved / stretch : 1);
 }
 
 void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
@@ -168,9 +169,7 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
   contact.iterations = motion.iterations;
   if (!settle(motion, contact)) return;
   touch_.surface = probe.field().surface(position_);
-  spring_.pull(full_stiffness(), position_ - hip, motion.dissipated, dt, contact);
-  contact.drift = touch_.surface.velocity;
-  contact.source = touch_.surface.source;
+  pull(hip, motion.dissipated, dt, contact);
 }
 
 // Where the surface is now, near where the proxy touched it. Empty: the contact ended, or is lost.
@@ -229,10 +228,15 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
   return true;
 }
 
-// The stiffness that the surface allows, N/m.
-double Proxy::Inside::full_stiffness() const noexcept {
-  return options_.stiffness * factor(touch_.surface.stiffness_factor) *
-         factor(touch_.surface.presence);
+void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
+                         Contact& contact) noexcept {
+  spring_.pull(touch_.softened(options_.stiffness), position_ - hip, dissipated, dt, contact);
+  contact.drift = touch_.surface.velocity;
+  contact.source = touch_.surface.source;
+}
+
+double Proxy::Inside::Touch::softened(double stiffness) const noexcept {
+  return stiffness * factor(surface.stiffness_factor) * factor(surface.presence);
 }
 
 }  // namespace palpate

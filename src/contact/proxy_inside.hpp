@@ -22,7 +22,7 @@ class Proxy::Inside {
   void reset(const Eigen::Vector3d& position) noexcept;
 
   [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return position_; }
-  /// Checked by whoever changes them.
+  /// The caller checks what it changes.
   [[nodiscard]] ProxyOptions& options() noexcept { return options_; }
 
  private:
@@ -36,6 +36,8 @@ class Proxy::Inside {
     bool waiting = false;  // for a surface that has vanished
 
     [[nodiscard]] bool is_held() const noexcept { return touching && !waiting; }
+    // What the surface leaves of a stiffness.
+    [[nodiscard]] double softened(double stiffness) const noexcept;
   };
 
   /// What the budget left of the last step's search.
@@ -58,7 +60,7 @@ class Proxy::Inside {
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& before, const Eigen::Vector3d& hip, double dt,
                  Contact& contact, bool changed) noexcept;
-  [[nodiscard]] double full_stiffness() const noexcept;
+  void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
   [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
                                          const Eigen::Vector3d& hip) const noexcept;
   [[nodiscard]] double unexplained_jump(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,

@@ -228,6 +228,7 @@ void SheetView::list(std::span<const ActiveLayer> layers, const Selection& chose
 }
 
 std::uint8_t SheetView::touched_label(const Vector3f& normal) const noexcept {
+  if (normal.isZero(0)) return kInFront;
   std::array<double, simd::kLabels> touched{};
   for (const Point& p : points) {
     const Sheet& sheet = table.sheets[p.sheet];

@@ -13,8 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr float kMultiple = 2.5f;  // R over the gap, as R = 2.5 s bridges grids: docs/method.md 5.3
-constexpr float kFaint = 2.5f;     // sum of weights; a square grid has 5.8; judgement
+constexpr float kFaint = 2.5f;       // sum of weights; a square grid has 5.8; judgement
 constexpr float kFirstReach = 1.5f;  // radii; judgement
 constexpr int kWidenings = 2;        // reaches tried, each twice the last: gaps up to three radii
 
@@ -37,13 +36,13 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
       const std::uint32_t i = faint[k];
       const Line line = line_at(grid, i, nearest);
       const float gap = gap_across(grid, i, line, kFirstReach * before[i], kWidenings, near);
-      const float wanted = std::min(kMultiple * gap, largest);
+      const float wanted = std::min(kUsualMultiple * gap, largest);
       if (!(wanted > before[i])) continue;
       const SheetFit fit = fitter.fit(grid, grid.points()[i], static_cast<double>(wanted),
                                       static_cast<double>(spacings[i]));
       if (!fit.is_sheet(static_cast<double>(wanted), 0)) continue;
       radii[i] = wanted;
-      spacings[i] = std::max(spacings[i], wanted / kMultiple);
+      spacings[i] = std::max(spacings[i], wanted / kUsualMultiple);
       take_fit(fit, i, own);
       raised[k] = 1;
     }

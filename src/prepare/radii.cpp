@@ -97,7 +97,6 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
 
 namespace {
 
-constexpr double kUsualMultiple = 2.5;   // m in R = m s: the paper's (section V)
 constexpr double kLittleNoise = 0.15;    // noise in spacings; judgement (docs/method.md 5.3)
 constexpr double kNoisyMultiple = 3;     // m above that; judgement
 constexpr double kMuchNoise = 0.4;       // noise in spacings; judgement
@@ -176,7 +175,7 @@ Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
   for (std::size_t i = 0; i < radii.strays.size(); ++i) {
     if (radii.strays[i] != 0) {
       // Strays are not to reach what is sampled finely.
-      radii.values[i] = static_cast<float>(kUsualMultiple) * static_cast<float>(sampling.spacing);
+      radii.values[i] = kUsualMultiple * static_cast<float>(sampling.spacing);
     }
   }
   return radii;

@@ -11,6 +11,8 @@
 
 namespace palpate {
 
+inline constexpr float kUsualMultiple = 2.5f;  ///< m in R = m s: the paper's (section V)
+
 /// The support radii.
 struct Radii {
   std::vector<float> values;         ///< R_i in sorted order, m

@@ -27,8 +27,8 @@ class SnapshotReader {
   SnapshotReader& operator=(const SnapshotReader&) = delete;
 
   /// Looks for a new snapshot. True when the next one has become the current one; false, too, when
-  /// the surface was taken away, and current() is null then. A snapshot that
-  /// waits for its start is replaced by a newer one only when it starts unreasonably late.
+  /// the surface was taken away, and current() is null then. A snapshot that waits for its start is
+  /// replaced by a newer one only when it starts unreasonably late.
   bool advance(double now) noexcept;
 
   [[nodiscard]] const Snapshot* current() const noexcept { return current_; }  ///< or nullptr
