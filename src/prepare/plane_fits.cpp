@@ -27,6 +27,15 @@ void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
   own.bends[i] = static_cast<float>(fit.bend);
 }
 
+SheetFit fit_of(const PointFits& own, std::size_t i) {
+  SheetFit fit;
+  fit.normal = own.normals[i].cast<double>();
+  fit.planarity = static_cast<double>(own.confidences[i]);
+  fit.residual = static_cast<double>(own.residuals[i]);
+  fit.bend = static_cast<double>(own.bends[i]);
+  return fit;
+}
+
 PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                      std::span<const float> radii, std::span<const float> noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);

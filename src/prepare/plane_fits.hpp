@@ -26,6 +26,8 @@ struct SheetFit;
 
 /// Makes a fit that of point i; `others` stays as it is.
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
+/// That of point i, as far as it is kept: its normal, planarity, residual and bend.
+[[nodiscard]] SheetFit fit_of(const PointFits& own, std::size_t i);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
 // judgement (docs/method.md 5.5).

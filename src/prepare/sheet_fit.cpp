@@ -88,7 +88,10 @@ double planarity_of(const Plane& plane, std::size_t points) {
 constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
 constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
 constexpr double kOnSheet = 0.12;     // judgement
-constexpr double kPlanar = 0.5;       // planarity of a plane, at least; judgement
+
+double smooth_bend(double radius, double noise) {
+  return std::max(kSmooth * radius, kNoisySmooth * noise);
+}
 
 }  // namespace
 
@@ -96,9 +99,14 @@ double flat_residual(double radius, double noise) {
   return std::max(kFlat * radius, kNoisyFlat * noise);
 }
 
+bool SheetFit::is_smooth(double radius, double noise) const {
+  return planarity >= kPlanar &&
+         (residual <= flat_residual(radius, noise) || bend <= smooth_bend(radius, noise));
+}
+
 bool SheetFit::is_sheet(double radius, double noise) const {
   return points >= SheetFitter::kEnough && planarity >= kPlanar &&
-         bend <= std::max(kSmooth * radius, kNoisySmooth * noise) && off <= kOnSheet * radius;
+         bend <= smooth_bend(radius, noise) && off <= kOnSheet * radius;
 }
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.

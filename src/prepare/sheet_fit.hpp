@@ -24,10 +24,15 @@ struct SheetFit {
   double bend = 0;       ///< rms distance from the quadric, m; of too few points, the plane's
   double footprint = 0;  ///< root of the area per point, m
 
-  /// Is there a smooth sheet, and is the place on it? Of a fit within `radius`; `noise`: of the
-  /// points, m. Curvature passes, a crease does not.
+  /// Is there a plane that leaves no more than curvature and noise do? Of a fit within `radius`;
+  /// `noise`: of the points, m. A crease leaves more.
+  [[nodiscard]] bool is_smooth(double radius, double noise) const;
+
+  /// Is there a smooth sheet of many points, and is the place on it?
   [[nodiscard]] bool is_sheet(double radius, double noise) const;
 };
+
+inline constexpr double kPlanar = 0.5;  ///< planarity of a plane, at least; judgement
 
 /// The residual up to which a plane is enough and no quadric is tried, m.
 [[nodiscard]] double flat_residual(double radius, double noise);

@@ -14,11 +14,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPlanarFit = 0.5f;  // confidence from which on a fit is a plane; judgement
-// What a quadric may leave: curvature passes, a crease does not (docs/method.md 5.6).
-constexpr float kSmoothBend = 0.03f;  // R; judgement
-constexpr float kNoisyBend = 1.6f;    // of the noise; judgement
-
 // An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
 // this many of its residuals.
 constexpr float kSnapReach = 1.6f;    // R; judgement
@@ -85,14 +80,9 @@ class Snapping {
   }
 
  private:
-  /// Is its own fit a plane that leaves no more than curvature and noise do?
   [[nodiscard]] bool is_sure(std::size_t i) const {
-    if (own_.confidences[i] < kPlanarFit) return false;
-    const float radius = input_.radii[i];
-    const float noise = input_.noise[i];
-    const double flat = flat_residual(static_cast<double>(radius), static_cast<double>(noise));
-    return static_cast<double>(own_.residuals[i]) <= flat ||
-           own_.bends[i] <= std::max(kSmoothBend * radius, kNoisyBend * noise);
+    return fit_of(own_, i).is_smooth(static_cast<double>(input_.radii[i]),
+                                     static_cast<double>(input_.noise[i]));
   }
 
   void index_sure() {
@@ -159,7 +149,7 @@ class Snapping {
 
   /// Are half of the points around without a host, too? On a thing so small a plane has to do.
   [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
-    if (own_.confidences[i] < kPlanarFit) return false;
+    if (static_cast<double>(own_.confidences[i]) < kPlanar) return false;
     near.clear();
     input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
     const auto homeless =
