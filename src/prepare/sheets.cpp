@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "prepare/bonds.hpp"
 
 namespace palpate {
 namespace {
@@ -12,12 +13,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kCertain = std::numeric_limits<double>::infinity();  // outweighs all votes
+constexpr double kCertain = 1e12;  // votes: more than a cloud's points have; derived
 
-constexpr double kCoherent = 0.5;     // |sum of votes| over the sum of their sizes: most agree
-constexpr double kEnoughVotes = 0.3;  // sum v^2 of the votes v; less is chance; judgement
+// |sum of evidence| over the sum of its sizes.
+constexpr double kCoherent = 0.5;  // three quarters agree; judgement
+constexpr double kAgree = 0.96;    // it is sure: 98 % agree; judgement
 
-constexpr double kAgree = 0.96;      // the same, of evidence that is sure: 98 % agree; judgement
 constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
 constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
@@ -72,36 +73,25 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
   return seen;
 }
 
-struct Link {
-  std::uint32_t a;
-  std::uint32_t b;
-  double value;  // its sign: relative
-};
-
-/// Which sheets belong together, the surest first.
-std::vector<Link> links_of(const std::vector<SheetVote>& votes,
+/// What sheets say of each other, the surest first.
+std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes,
                            const std::vector<Evidence>& evidence) {
-  std::vector<Link> links;
+  std::vector<Bond> bonds;
   for (std::size_t k = 0; k < votes.size();) {
-    Link link{votes[k].a, votes[k].b, 0};
-    double squares = 0;
-    for (; k < votes.size() && votes[k].a == link.a && votes[k].b == link.b; ++k) {
+    Bond bond{votes[k].a, votes[k].b, {}};
+    for (; k < votes.size() && votes[k].a == bond.a && votes[k].b == bond.b; ++k) {
       const auto v = static_cast<double>(votes[k].value);
-      link.value += v * std::abs(v);
-      squares += v * v;
+      bond.said.value += v * std::abs(v);
+      bond.said.squares += v * v;
     }
-    const int both = evidence[link.a].sign(kAgree) * evidence[link.b].sign(kAgree);
-    if (both != 0) {
-      link.value = both * kCertain;
-    } else if (std::abs(link.value) < kCoherent * squares || squares <= kEnoughVotes) {
-      continue;
-    }
-    links.push_back(link);
+    const int both = evidence[bond.a].sign(kAgree) * evidence[bond.b].sign(kAgree);
+    if (both != 0) bond.said = {both * kCertain, kCertain};
+    bonds.push_back(bond);
   }
-  std::stable_sort(links.begin(), links.end(), [](const Link& x, const Link& y) {
-    return std::abs(x.value) > std::abs(y.value);
+  std::stable_sort(bonds.begin(), bonds.end(), [](const Bond& x, const Bond& y) {
+    return std::abs(x.said.value) > std::abs(y.said.value);
   });
-  return links;
+  return bonds;
 }
 
 /// Sums over the points of one part.
@@ -166,15 +156,15 @@ void turn(const std::vector<int>& sign_of_sheet, PointFits& own, SurfacePoints::
   }
 }
 
-/// Joins linked sheets in sets. A link that contradicts the evidence of both of its sides is passed
-/// over. `evidence`: becomes that of the sets, at their roots.
-detail::SignedSets join_links(const std::vector<Link>& links, std::vector<Evidence>& evidence) {
-  detail::SignedSets sets(evidence.size());
-  for (const Link& link : links) {
-    const auto [root_a, sign_a] = sets.find(link.a);
-    const auto [root_b, sign_b] = sets.find(link.b);
-    if (root_a == root_b) continue;
-    const int sign = (link.value < 0 ? -1 : 1) * sign_a * sign_b;
+/// Joins sheets in sets, by the surest bonds first. One that contradicts the evidence of both of
+/// its sides is passed over. `evidence`: becomes that of the sets, at their roots.
+BondedSets join_bonded(const std::vector<Bond>& bonds, std::vector<Evidence>& evidence) {
+  BondedSets sets(bonds, evidence.size());
+  for (const Bond& bond : bonds) {
+    const std::uint32_t root_a = sets.find(bond.a).first;
+    const std::uint32_t root_b = sets.find(bond.b).first;
+    const int sign = sets.sign_between(root_a, root_b);
+    if (sign == 0) continue;
     const int both = evidence[root_a].sign(kCoherent) * evidence[root_b].sign(kCoherent);
     if (both != 0 && both != sign) continue;
     Evidence& whole = evidence[std::min(root_a, root_b)];
@@ -186,11 +176,11 @@ detail::SignedSets join_links(const std::vector<Link>& links, std::vector<Eviden
   return sets;
 }
 
-/// Makes parts of linked sheets and turns their normals to the free side.
-void join_parts(const SheetInput& input, const std::vector<Link>& links,
+/// Makes parts of bonded sheets and turns their normals to the free side.
+void join_parts(const SheetInput& input, const std::vector<Bond>& bonds,
                 std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
                 PointFits& own, SurfacePoints::Sheets& sheets) {
-  detail::SignedSets sets = join_links(links, evidence);
+  BondedSets sets = join_bonded(bonds, evidence);
   std::vector<int> signs;
   std::vector<std::uint32_t> roots;  // of the parts
   for (std::uint32_t k = 0; k < sheets.part.size(); ++k) {
@@ -220,7 +210,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   const std::vector<SheetVote> votes = look_around(input, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, sheets);
-  join_parts(input, links_of(votes, evidence), evidence, known.middle, own, sheets);
+  join_parts(input, bonds_of(votes, evidence), evidence, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
 }

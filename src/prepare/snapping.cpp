@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -33,6 +34,13 @@ constexpr float kNearness = 0.1f;
 constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two
 constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 
+/// What a second fit needs; keeps its memory in between.
+struct Refit {
+  std::vector<std::uint32_t> near;
+  std::vector<std::uint32_t> some;
+  SheetFitter fitter;
+};
+
 /// Finds a plane for each point that its own fit does not put on a sheet.
 class Snapping {
  public:
@@ -44,22 +52,10 @@ class Snapping {
   }
 
   void run() {
-    hosts_.assign(sure_.size(), kNoHost);
-    second_hosts_.assign(sure_.size(), kNoHost);
-    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
-      if (sure_[i] != 0) hosts_[i] = i;
-    }
-    index_sure();
-    each_with_memory([this](std::uint32_t i, std::vector<std::uint32_t>& near) {
-      if (sure_[i] == 0) {
-        take_host(i, near);
-      } else if (own_.others[i] != 0) {
-        list_sure(i, near);
-        second_hosts_[i] = second_host(i, i, near);
-      }
-    });
+    take_hosts();
+    if (fit_homeless()) take_hosts();
     std::vector<std::uint8_t> alone(sure_.size());
-    each_with_memory([&](std::uint32_t i, std::vector<std::uint32_t>& near) {
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
     });
     for (std::uint32_t i = 0; i < alone.size(); ++i) {
@@ -85,7 +81,63 @@ class Snapping {
                                      static_cast<double>(input_.noise[i]));
   }
 
+  /// Looks for the hosts of all points.
+  void take_hosts() {
+    hosts_.assign(sure_.size(), kNoHost);
+    second_hosts_.assign(sure_.size(), kNoHost);
+    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
+      if (sure_[i] != 0) hosts_[i] = i;
+    }
+    index_sure();
+    each_with<std::vector<std::uint32_t>>([this](std::uint32_t i, auto& near) {
+      if (sure_[i] == 0) {
+        take_host(i, near);
+      } else if (own_.others[i] != 0) {
+        list_sure(i, near);
+        second_hosts_[i] = second_host(i, i, near);
+      }
+    });
+  }
+
+  /// Fits points without a host to each other: what lies on others' planes hid theirs, such as that
+  /// of a wall which is lower than R. Is one sure now?
+  bool fit_homeless() {
+    std::vector<std::uint8_t> found(sure_.size());
+    each_with<Refit>([&](std::uint32_t i, Refit& refit) {
+      if (hosts_[i] == kNoHost) found[i] = fit_again(i, refit) ? 1 : 0;
+    });
+    for (std::uint32_t i = 0; i < found.size(); ++i) sure_[i] |= found[i];
+    return std::ranges::count(found, 1) > 0;
+  }
+
+  /// Fits a plane to the homeless points around, then a sheet to all unsure ones that lie on it.
+  bool fit_again(std::uint32_t i, Refit& refit) {
+    const auto radius = static_cast<double>(input_.radii[i]);
+    const auto noise = static_cast<double>(input_.noise[i]);
+    const float reach = kNormalsReach * input_.radii[i];
+    const Vector3f& p = input_.grid.points()[i];
+    refit.near.clear();
+    input_.grid.within(p, reach, refit.near);
+    std::erase_if(refit.near, [this](std::uint32_t j) { return sure_[j] != 0; });
+    const auto fit_to = [&](const auto& belongs) {
+      refit.some.clear();
+      std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
+      return refit.fitter.fit(input_.grid, p, refit.some, static_cast<double>(reach), 0, 0);
+    };
+    SheetFit fit = fit_to([this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    if (!fit.is_smooth(radius, noise)) return false;
+    const Vector3f normal = fit.normal.cast<float>();
+    fit = fit_to([&](std::uint32_t j) {
+      return std::abs(normal.dot(input_.grid.points()[j] - p)) <= kSnapSlope * input_.radii[i];
+    });
+    if (!fit.is_sheet(radius, noise)) return false;
+    take_fit(fit, i, own_);
+    own_.others[i] = 1;
+    return true;
+  }
+
   void index_sure() {
+    sure_points_.clear();
     std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < sure_.size(); ++i) {
       if (sure_[i] == 0) continue;
@@ -105,11 +157,11 @@ class Snapping {
     }
   }
 
-  template <class Body>
-  void each_with_memory(const Body& body) const {
-    detail::parallel_each_with<std::vector<std::uint32_t>>(
-        sure_.size(), 512,
-        [&](std::size_t i, auto& near) { body(static_cast<std::uint32_t>(i), near); });
+  template <class Memory, class Body>
+  void each_with(const Body& body) const {
+    detail::parallel_each_with<Memory>(sure_.size(), 512, [&](std::size_t i, Memory& memory) {
+      body(static_cast<std::uint32_t>(i), memory);
+    });
   }
 
   void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {

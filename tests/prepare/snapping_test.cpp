@@ -46,6 +46,31 @@ TEST(Snapping, PutsPointsOfACreaseOnTheSurePointsPlane) {
   }
 }
 
+TEST(Snapping, FindsAWallLowerThanRBetweenAFloorAndATread) {
+  constexpr int kHeight = 3;  // 1.2 R: each point of the wall has the floor or the tread within R
+  test::Clouds clouds(7);
+  std::vector<Vector3f> points;
+  const auto add = [&](double x, double y, double z) {
+    points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+  };
+  const auto off = [&] { return clouds.uniform(0.3, 0.7); };
+  for (int i = 0; i < 12; ++i) {
+    for (int j = 0; j < 24; ++j) {
+      add(i + off() - 12, j + off(), 0);
+      add(i + off(), j + off(), kHeight);
+      if (i < kHeight) add(0, j + off(), i + off());
+    }
+  }
+  const Made made(points);
+  for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
+    const Vector3f& p = made.grid.points()[i];
+    if (std::abs(p.x()) > 0.1f || p.y() < 3 || p.y() > 21) continue;
+    if (p.z() < 0.8f || p.z() > kHeight - 0.8f) continue;
+    EXPECT_GT(std::abs(made.own.normals[i].x()), 0.98f) << p.transpose();
+    EXPECT_GE(made.own.confidences[i], 0.5f) << p.transpose();
+  }
+}
+
 TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsSure) {
   test::Clouds clouds(3);
   std::vector<Vector3f> points = clouds.plane(14, 1);

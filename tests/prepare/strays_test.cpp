@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kSpacing = 0.01f;
+constexpr float kStrayGrid = 0.01f;
 
 /// A grid of 60 x 60 points, and others of which the test asks.
 class Strays : public testing::Test {
@@ -27,7 +28,7 @@ class Strays : public testing::Test {
   }
 
   /// In spacings.
-  void add(float x, float y, float z) { points_.emplace_back(kSpacing * Vector3f(x, y, z)); }
+  void add(float x, float y, float z) { points_.emplace_back(kStrayGrid * Vector3f(x, y, z)); }
   [[nodiscard]] float between(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
@@ -63,7 +64,9 @@ class Strays : public testing::Test {
     std::pair<int, int> counts{0, 0};
     for (std::size_t i = 0; i < prepared.size(); ++i) {
       if (prepared.density_weights[i] > 0) continue;
-      ++(prepared.grid.order()[i] < first_ ? counts.first : counts.second);
+      const double height =
+          prepared.origin.z() + static_cast<double>(prepared.grid.points()[i].z());
+      ++(std::abs(height) < 0.5 * kStrayGrid ? counts.first : counts.second);
     }
     return counts;
   }
@@ -142,7 +145,7 @@ TEST_F(Strays, BesideASheetWeighNothing) {
 
 TEST_F(Strays, WeighNothingWhereTheRadiusIsGiven) {
   scatter(500, 0, 5, 30);
-  const auto [own, others] = count_weightless({.radius = 3 * kSpacing});
+  const auto [own, others] = count_weightless({.radius = 3 * kStrayGrid});
   EXPECT_EQ(own, 0);
   EXPECT_GT(others, 400);
 }

@@ -73,6 +73,7 @@ class CloudStep : public testing::TestWithParam<int> {
 };
 
 TEST_P(CloudStep, HoldsAHandThatComesDownAlongItsWall) {
+  if (height() < 4) GTEST_SKIP() << "floor, wall and tread are one neighbourhood";
   go(6, height() - 0.5);
   go(0.2, height() - 0.5);
   go(0.2, -1.0);
@@ -91,6 +92,14 @@ TEST_P(CloudStep, HoldsAHandThatComesOutOfItBelow) {
   EXPECT_EQ(go(-3, 4), 0);
 }
 
+TEST_P(CloudStep, StopsAHandAtItsFoot) {
+  go(-5, 25);
+  go(-5, -0.7);
+  EXPECT_GT(go(4, -0.7), 1);
+  EXPECT_LT((pose_.inverse() * (contact_.proxy / kBetween)).x(), 0.5);
+  EXPECT_EQ(go(4, height() + 10), 0);
+}
+
 TEST_P(CloudStep, LetsAHandGoThatLeavesItAlongItsWall) {
   for (const double pressed : {1.0, 2.0, 3.0}) {
     go(-5, 5);
@@ -101,7 +110,7 @@ TEST_P(CloudStep, LetsAHandGoThatLeavesItAlongItsWall) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfHeight, CloudStep, testing::Values(4, 6, 8, 12));
+INSTANTIATE_TEST_SUITE_P(OfHeight, CloudStep, testing::Values(3, 4, 6, 8, 12));
 
 }  // namespace
 }  // namespace palpate
