@@ -21,6 +21,7 @@ constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do n
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one sheet
+constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the way to a sheet above
 constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
 
 // They bound the pairs that are compared (judgement).
@@ -120,6 +121,12 @@ struct Facing::Meeting {
     if (!(all > kLeastMeeting) || !(parallel > kSameNormal * all)) return false;
     return std::abs(moved ? off_now : off) <= kSamePlane * (moved ? now : all);
   }
+
+  /// Is there an edge? Two sheets that face alike, one rather above the other than beside it, make
+  /// none.
+  [[nodiscard]] bool is_edge() const noexcept {
+    return all > kLeastMeeting && (parallel <= kSameNormal * all || std::abs(off) <= kAbove * all);
+  }
 };
 
 /// `beyond`: the weight of pairs where what is in front goes on beyond the sheet's plane.
@@ -146,6 +153,31 @@ Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
   return result;
 }
 
+/// Is all that is in front on the solid side of the sheet's plane, so that it cuts none of that
+/// off?
+bool Facing::covers_front(const Sheet& sheet) const noexcept {
+  const Point& p = view_.points[view_.order[sheet.begin]];
+  const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
+  return std::ranges::none_of(references_, [&](const Reference& q) {
+    const float above = sign * p.normal.dot(q.place - p.place);
+    return q.label == kInFront &&
+           above > kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
+  });
+}
+
+/// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
+/// something is.
+bool Facing::swap_front() noexcept {
+  const auto across = [](const auto& x) { return x.label == kAcross; };
+  if (std::ranges::any_of(view_.table.sheets, across)) return false;
+  const auto swap = [](auto& x) {
+    if (x.label != SheetTable::kUndecided) x.label = x.label == kInFront ? kBehind : kInFront;
+  };
+  std::ranges::for_each(view_.table.sheets, swap);
+  std::ranges::for_each(references_, swap);
+  return true;
+}
+
 /// The label that follows from how the sheet lies to sheets whose labels are known.
 std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double beyond = 0;
@@ -157,18 +189,20 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
     }
     if (same >= 0) return static_cast<std::uint8_t>(same);
   }
-  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) {
+  const bool front = with[kInFront].is_edge();
+  const bool behind = with[kBehind].is_edge();
+  if (!front && !behind && !with[kAcross].is_edge()) {
     return sheet.hidden <= 0.5 * sheet.all ? kInFront : kBehind;
   }
-  const int other = with[kInFront].all > kLeastMeeting      ? kInFront
-                    : with[kBehind].all > with[kAcross].all ? kBehind
-                                                            : kAcross;
+  const int other = front                                             ? kInFront
+                    : behind && with[kBehind].all > with[kAcross].all ? kBehind
+                                                                      : kAcross;
   const bool concave = with[other].above >= 0;
   // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
   const bool plate = with[other].parallel < -kBackToBack * with[other].all;
   if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
-  if (other == kBehind && concave) return kInFront;
-  if (other == kAcross && !concave) return kInFront;
+  if (other == kBehind && concave) return swap_front() ? kAcross : kInFront;
+  if (other == kAcross && !concave) return covers_front(sheet) ? kBehind : kInFront;
   return concave ? kAcross : kBehind;
 }
 

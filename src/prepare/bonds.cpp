@@ -9,9 +9,8 @@
 namespace palpate {
 
 int Said::sign() const {
-  constexpr double kAgreeing = 0.9;  // |sum of votes| over the sum of their sizes; judgement
-  // Votes: one point casts three on a sheet and hears three, which err together; derived.
-  constexpr double kEnough = 6;
+  constexpr double kAgreeing = 0.7;  // |sum of votes| over the sum of their sizes; judgement
+  constexpr double kEnough = 0.3;    // sum v^2 of the votes v; less is chance; judgement
   if (squares <= kEnough || std::abs(value) < kAgreeing * squares) return 0;
   return value < 0 ? -1 : 1;
 }

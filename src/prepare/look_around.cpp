@@ -113,7 +113,8 @@ class Outlook {
     const Vector3f way = input_.grid.points()[j] - eye.at;
     const float squared = way.squaredNorm();
     measure_gap(eye, first + q, j, way, squared);
-    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet && sure_[j] != 0;
+    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet &&
+                          sheets_.sheet[j] != SurfacePoints::Sheets::kNone;
     if (votes_on) others_[q].push_back({squared, j});
   }
 
