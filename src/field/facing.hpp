@@ -83,8 +83,6 @@ class Facing {
   struct Meeting;
   using Meetings = std::array<Meeting, simd::kLabels>;
   [[nodiscard]] Meetings meetings(const Sheet& sheet, double& beyond) noexcept;
-  bool swap_front() noexcept;
-  [[nodiscard]] bool covers_front(const Sheet& sheet) const noexcept;
   [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
   [[nodiscard]] bool tells() const noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;

@@ -32,6 +32,28 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
   return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
 }
 
+/// Is all that is in front on the solid side of p's plane (`sign` turns it), so that it cuts none
+/// of that off?
+bool covers_front(const SheetView::Point& p, float sign, const auto& references) noexcept {
+  return std::ranges::none_of(references, [&](const auto& q) {
+    const float above = sign * p.normal.dot(q.place - p.place);
+    return q.label == kInFront &&
+           above > kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
+  });
+}
+
+/// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
+/// something is.
+bool swap_front(auto& sheets, auto& references) noexcept {
+  if (std::ranges::any_of(sheets, [](const auto& x) { return x.label == kAcross; })) return false;
+  const auto swap = [](auto& x) {
+    if (x.label != SheetTable::kUndecided) x.label = x.label == kInFront ? kBehind : kInFront;
+  };
+  std::ranges::for_each(sheets, swap);
+  std::ranges::for_each(references, swap);
+  return true;
+}
+
 }  // namespace
 
 /// Calls visit(p, q, way, w) for points p of the sheet and decided ones q that are near it: the way
@@ -153,35 +175,10 @@ Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
   return result;
 }
 
-/// Is all that is in front on the solid side of the sheet's plane, so that it cuts none of that
-/// off?
-bool Facing::covers_front(const Sheet& sheet) const noexcept {
-  const Point& p = view_.points[view_.order[sheet.begin]];
-  const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
-  return std::ranges::none_of(references_, [&](const Reference& q) {
-    const float above = sign * p.normal.dot(q.place - p.place);
-    return q.label == kInFront &&
-           above > kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
-  });
-}
-
-/// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
-/// something is.
-bool Facing::swap_front() noexcept {
-  const auto across = [](const auto& x) { return x.label == kAcross; };
-  if (std::ranges::any_of(view_.table.sheets, across)) return false;
-  const auto swap = [](auto& x) {
-    if (x.label != SheetTable::kUndecided) x.label = x.label == kInFront ? kBehind : kInFront;
-  };
-  std::ranges::for_each(view_.table.sheets, swap);
-  std::ranges::for_each(references_, swap);
-  return true;
-}
-
 /// The label that follows from how the sheet lies to sheets whose labels are known.
 std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   double beyond = 0;
-  const Meetings with = meetings(sheet, beyond);
+  Meetings with = meetings(sheet, beyond);
   for (const bool moved : {false, true}) {
     int same = -1;
     for (int k = 0; k < simd::kLabels; ++k) {
@@ -189,20 +186,27 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
     }
     if (same >= 0) return static_cast<std::uint8_t>(same);
   }
-  const bool front = with[kInFront].is_edge();
-  const bool behind = with[kBehind].is_edge();
-  if (!front && !behind && !with[kAcross].is_edge()) {
+  for (Meeting& meeting : with) {
+    if (!meeting.is_edge()) meeting = {};
+  }
+  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) {
     return sheet.hidden <= 0.5 * sheet.all ? kInFront : kBehind;
   }
-  const int other = front                                             ? kInFront
-                    : behind && with[kBehind].all > with[kAcross].all ? kBehind
-                                                                      : kAcross;
+  const int other = with[kInFront].all > 0                  ? kInFront
+                    : with[kBehind].all > with[kAcross].all ? kBehind
+                                                            : kAcross;
   const bool concave = with[other].above >= 0;
   // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
   const bool plate = with[other].parallel < -kBackToBack * with[other].all;
   if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
-  if (other == kBehind && concave) return swap_front() ? kAcross : kInFront;
-  if (other == kAcross && !concave) return covers_front(sheet) ? kBehind : kInFront;
+  if (other == kBehind && concave) {
+    return swap_front(view_.table.sheets, references_) ? kAcross : kInFront;
+  }
+  if (other == kAcross && !concave) {
+    const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
+    const Point& p = view_.points[view_.order[sheet.begin]];
+    return covers_front(p, sign, references_) ? kBehind : kInFront;
+  }
   return concave ? kAcross : kBehind;
 }
 
