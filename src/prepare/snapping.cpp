@@ -52,8 +52,10 @@ class Snapping {
   }
 
   void run() {
-    take_hosts();
-    if (fit_homeless()) take_hosts();
+    hosts_.assign(sure_.size(), kNoHost);
+    second_hosts_.assign(sure_.size(), kNoHost);
+    take_hosts(std::vector<std::uint8_t>(sure_.size(), 1));
+    take_hosts(fit_homeless());
     std::vector<std::uint8_t> alone(sure_.size());
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
@@ -81,15 +83,14 @@ class Snapping {
                                      static_cast<double>(input_.noise[i]));
   }
 
-  /// Looks for the hosts of all points.
-  void take_hosts() {
-    hosts_.assign(sure_.size(), kNoHost);
-    second_hosts_.assign(sure_.size(), kNoHost);
-    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
-      if (sure_[i] != 0) hosts_[i] = i;
-    }
+  /// Looks for the hosts of those that ask.
+  void take_hosts(const std::vector<std::uint8_t>& asks) {
+    if (std::ranges::count(asks, 1) == 0) return;
     index_sure();
-    each_with<std::vector<std::uint32_t>>([this](std::uint32_t i, auto& near) {
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+      if (asks[i] == 0) return;
+      hosts_[i] = sure_[i] != 0 ? i : kNoHost;
+      second_hosts_[i] = kNoHost;
       if (sure_[i] == 0) {
         take_host(i, near);
       } else if (own_.others[i] != 0) {
@@ -100,14 +101,22 @@ class Snapping {
   }
 
   /// Fits points without a host to each other: what lies on others' planes hid theirs, such as that
-  /// of a wall which is lower than R. Is one sure now?
-  bool fit_homeless() {
+  /// of a wall which is lower than R. Returns who is near one that is sure now.
+  std::vector<std::uint8_t> fit_homeless() {
     std::vector<std::uint8_t> found(sure_.size());
     each_with<Refit>([&](std::uint32_t i, Refit& refit) {
       if (hosts_[i] == kNoHost) found[i] = fit_again(i, refit) ? 1 : 0;
     });
-    for (std::uint32_t i = 0; i < found.size(); ++i) sure_[i] |= found[i];
-    return std::ranges::count(found, 1) > 0;
+    std::vector<std::uint8_t> close(sure_.size());
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t i = 0; i < found.size(); ++i) {
+      if (found[i] == 0) continue;
+      sure_[i] = 1;
+      near.clear();
+      input_.grid.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+      for (const std::uint32_t j : near) close[j] = 1;
+    }
+    return close;
   }
 
   /// Fits a plane to the homeless points around, then a sheet to all unsure ones that lie on it.
