@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "field/facing.hpp"
 #include "field/formulas.hpp"
@@ -16,7 +17,8 @@ constexpr double kAgainst = 0.5;     // share of the agreement with a contact th
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;      // R within which sheets meet and parts tell signs
+constexpr float kMeetReach = 1.3f;  // R within which sheets meet and parts tell signs
+constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do not meet
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
@@ -32,20 +34,17 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
   return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
 }
 
-/// Is all that is in front on the solid side of p's plane (`sign` turns it), so that it cuts none
-/// of that off?
-bool covers_front(const SheetView::Point& p, float sign, const auto& references) noexcept {
-  return std::ranges::none_of(references, [&](const auto& q) {
-    const float above = sign * p.normal.dot(q.place - p.place);
-    return q.label == kInFront &&
-           above > kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
-  });
+/// Is q beyond the plane of p, which is turned by `sign`? `way`: from q to p.
+bool is_beyond(const SheetView::Point& p, const auto& q, const Vector3f& way, float sign) noexcept {
+  return -sign * p.normal.dot(way) >
+         kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
 }
 
 /// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
 /// something is.
 bool swap_front(auto& sheets, auto& references) noexcept {
-  if (std::ranges::any_of(sheets, [](const auto& x) { return x.label == kAcross; })) return false;
+  const auto across = [](const auto& x) { return x.label == kAcross; };
+  if (std::ranges::any_of(sheets, across) || std::ranges::any_of(references, across)) return false;
   const auto swap = [](auto& x) {
     if (x.label != SheetTable::kUndecided) x.label = x.label == kInFront ? kBehind : kInFront;
   };
@@ -56,16 +55,16 @@ bool swap_front(auto& sheets, auto& references) noexcept {
 
 }  // namespace
 
-/// Calls visit(p, q, way, w) for points p of the sheet and decided ones q that are near it: the way
-/// from q to p and how much it counts.
-void Facing::each_meeting(const Sheet& sheet, const auto& visit) noexcept {
+/// Calls visit(p, q, way, w) for points p of the sheet and decided ones q within `reach` R of it:
+/// the way from q to p and how much it counts.
+void Facing::each_meeting(const Sheet& sheet, float reach, const auto& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
   const std::uint32_t skip = stride_for(sheet.count, kTried);
   for (std::uint32_t k = 0; k < sheet.count; k += skip) {
     const Point& p = view_.points[view_.order[sheet.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
       const Vector3f way = p.place - references_[r].place;
-      const double w = weight_within(way.squaredNorm(), kMeetReach * p.radius);
+      const double w = weight_within(way.squaredNorm(), reach * p.radius);
       if (w > 0) visit(p, references_[r], way, w);
     }
   }
@@ -77,12 +76,14 @@ double Facing::votes_on(std::uint32_t part) noexcept {
   double sum = 0;
   for (const Sheet& sheet : view_.table.sheets) {
     if (sheet.part != part) continue;
-    each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-      const float a = q.is_of_another_time(sheet) ? p.normal.dot(q.normal)
-                                                  : agreement(p.normal, q.normal, way,
-                                                              3 * std::max(p.residual, q.residual));
-      sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
-    });
+    each_meeting(
+        sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+          const float a =
+              q.is_of_another_time(sheet)
+                  ? p.normal.dot(q.normal)
+                  : agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
+          sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
+        });
   }
   return sum;
 }
@@ -155,23 +156,22 @@ struct Facing::Meeting {
 Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
   Meetings result{};
   const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
-  each_meeting(sheet, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-    const float length = way.norm();
-    if (!(length > kSamePlace * p.radius)) return;
-    Meeting& m = result[q.label];
-    const double off = w * static_cast<double>(q.normal.dot(way) / length);
-    m.all += w;
-    m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
-    m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
-    m.off += off;
-    if (!q.is_of_another_time(sheet)) {
-      m.now += w;
-      m.off_now += off;
-    }
-    const float unsharp = kUnsharp * std::max(p.residual, q.residual);
-    const bool passes = -sign * p.normal.dot(way) > kBeyond * p.radius + unsharp;
-    if (q.label == kInFront && passes) beyond += w;
-  });
+  each_meeting(sheet, kMeetReach,
+               [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+                 const float length = way.norm();
+                 if (!(length > kSamePlace * p.radius)) return;
+                 Meeting& m = result[q.label];
+                 const double off = w * static_cast<double>(q.normal.dot(way) / length);
+                 m.all += w;
+                 m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
+                 m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+                 m.off += off;
+                 if (!q.is_of_another_time(sheet)) {
+                   m.now += w;
+                   m.off_now += off;
+                 }
+                 if (q.label == kInFront && is_beyond(p, q, way, sign)) beyond += w;
+               });
   return result;
 }
 
@@ -204,8 +204,12 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   }
   if (other == kAcross && !concave) {
     const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
-    const Point& p = view_.points[view_.order[sheet.begin]];
-    return covers_front(p, sign, references_) ? kBehind : kInFront;
+    bool cuts = false;  // something of what is in front off
+    each_meeting(sheet, kAnywhere,
+                 [&](const Point& p, const Reference& q, const Vector3f& way, double) {
+                   cuts = cuts || (q.label == kInFront && is_beyond(p, q, way, sign));
+                 });
+    return cuts || pairs_ == 0 ? kInFront : kBehind;
   }
   return concave ? kAcross : kBehind;
 }

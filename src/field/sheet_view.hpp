@@ -34,8 +34,8 @@ inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to te
 /// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
   kInFront = 0,  ///< what is above it is free
-  kBehind = 1,   ///< it meets what is in front at a convex edge, or is hidden by it: solid is
-                 ///< what is below both
+  kBehind = 1,   ///< it meets what is in front at a convex edge, or what is across at one beyond
+                 ///< the front, or is hidden: solid is what is below both
   kAcross = 2,   ///< it meets what is in front in a crease, or that goes on beyond its plane: free
                  ///< is what is above both
 };

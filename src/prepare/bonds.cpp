@@ -9,9 +9,9 @@
 namespace palpate {
 
 int Said::sign() const {
-  constexpr double kAgreeing = 0.7;  // |sum of votes| over the sum of their sizes; judgement
+  constexpr double kAgreeing = 0.7;  // |sum v|v|| over sum v^2: 17 of 20 agree; judgement
   constexpr double kEnough = 0.3;    // sum v^2 of the votes v; less is chance; judgement
-  if (squares <= kEnough || std::abs(value) < kAgreeing * squares) return 0;
+  if (!(squares > kEnough) || !(std::abs(value) >= kAgreeing * squares)) return 0;
   return value < 0 ? -1 : 1;
 }
 

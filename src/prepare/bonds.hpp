@@ -44,14 +44,14 @@ class BondedSets {
   /// nothing.
   [[nodiscard]] int sign_between(std::uint32_t root_a, std::uint32_t root_b) const;
 
-  /// Joins the sets of two roots.
+  /// Joins the sets of two different roots; `sign`: 1 or -1.
   void join(std::uint32_t root_a, std::uint32_t root_b, int sign);
 
  private:
   detail::SignedSets sets_;
-  std::vector<std::uint32_t> slots_;  // of roots: where what their sets say stands
-  std::vector<int> turns_;            // of slots: the sign of what stands there, of the root's
-  std::vector<std::map<std::uint32_t, Said>> said_;  // by slots: of others
+  std::vector<std::uint32_t> slots_;                 // where the set of a root keeps what it says
+  std::vector<int> turns_;                           // a slot's sign relative to its set's root
+  std::vector<std::map<std::uint32_t, Said>> said_;  // what a slot says of other slots
 };
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/neighborhoods.hpp"
+#include "geometry/signed_sets.hpp"
 #include "prepare/sheets.hpp"
 
 namespace palpate {

@@ -26,7 +26,7 @@ struct SheetFit;
 
 /// Makes a fit that of point i; `others` stays as it is.
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
-/// That of point i, as far as it is kept: its normal, planarity, residual and bend.
+/// Returns what is kept of the fit of point i: its normal, planarity, residual and bend alone.
 [[nodiscard]] SheetFit fit_of(const PointFits& own, std::size_t i);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;

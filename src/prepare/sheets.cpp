@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kCertain = 1e12;  // votes: more than a cloud's points have; derived
+constexpr double kCertain = 1e12;  // votes: 12 of each of 2^32 points are fewer; derived
 
 // |sum of evidence| over the sum of its sizes.
 constexpr double kCoherent = 0.5;  // three quarters agree; judgement

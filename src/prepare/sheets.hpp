@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/signed_sets.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/prepare/prepare.hpp"
@@ -45,14 +44,14 @@ struct Twin {
 };
 
 /// Puts each point on a sheet: sure points that continue each other's planes make one; an unsure
-/// point joins the sheet whose plane it lies on and takes over its fit. One that lies on none has
-/// no confidence left. Turns `own.normals` so that they agree within a part, outward where nothing
-/// else is known.
+/// point joins the sheet whose plane it lies on and takes over its fit. Those that lie on none are
+/// fitted to each other; without a plane they have no confidence left. Turns `own.normals` so that
+/// they agree within a part, outward where nothing else is known.
 ///
-/// Two sheets that lie side by side are one part where nearby pairs of their points agree on what
-/// is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an arc
-/// joined the two. Where the signs of nearly all points of a sheet are known, these count instead.
-/// `twins`: gets the points that lie on two sheets, in rising order.
+/// Sets of sheets that lie side by side are one part where nearby pairs of their points agree on
+/// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
+/// arc joined the two. Where the signs of nearly all points of a sheet are known, these count
+/// instead. `twins`: gets the points that lie on two sheets, in rising order.
 [[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
                                                 PointFits& own, std::vector<Twin>& twins);
 
@@ -95,8 +94,9 @@ struct Snapped {
 };
 
 /// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,
-/// a point takes over the fit of the sure one on whose plane it lies. One that lies on none has no
-/// confidence left, unless hardly anything is sure around it.
+/// a point takes over the fit of the sure one on whose plane it lies. Points that lie on none are
+/// fitted to each other. One without a plane has no confidence left, unless hardly anything is sure
+/// around it.
 [[nodiscard]] Snapped snap_to_planes(const SheetInput& input, PointFits& own);
 
 /// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is

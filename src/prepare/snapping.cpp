@@ -1,4 +1,4 @@
-// Gives points at edges and creases the plane of a confident point nearby.
+// Gives points at edges and creases the plane of a confident point nearby, or one that they share.
 
 #include <algorithm>
 #include <cmath>
@@ -61,10 +61,13 @@ class Snapping {
       if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
     });
     for (std::uint32_t i = 0; i < alone.size(); ++i) {
-      if (hosts_[i] != kNoHost) continue;
-      sure_[i] = alone[i];
-      if (alone[i] != 0) hosts_[i] = i;
-      if (alone[i] == 0) own_.confidences[i] = 0;
+      if (hosts_[i] == kNoHost) {
+        sure_[i] = alone[i];
+        if (alone[i] != 0) hosts_[i] = i;
+        if (alone[i] == 0) own_.confidences[i] = 0;
+      } else if (hosts_[i] != i) {
+        take_over(i, hosts_[i]);
+      }
     }
   }
 
@@ -83,40 +86,46 @@ class Snapping {
                                      static_cast<double>(input_.noise[i]));
   }
 
-  /// Looks for the hosts of those that ask.
+  /// Looks for the hosts of those that ask. One that has a host keeps it where no other holds.
   void take_hosts(const std::vector<std::uint8_t>& asks) {
     if (std::ranges::count(asks, 1) == 0) return;
     index_sure();
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (asks[i] == 0) return;
-      hosts_[i] = sure_[i] != 0 ? i : kNoHost;
-      second_hosts_[i] = kNoHost;
       if (sure_[i] == 0) {
         take_host(i, near);
-      } else if (own_.others[i] != 0) {
-        list_sure(i, near);
-        second_hosts_[i] = second_host(i, i, near);
+        return;
       }
+      hosts_[i] = i;
+      second_hosts_[i] = kNoHost;
+      if (own_.others[i] == 0) return;
+      list_sure(i, near);
+      second_hosts_[i] = second_host(i, i, near);
     });
   }
 
   /// Fits points without a host to each other: what lies on others' planes hid theirs, such as that
-  /// of a wall which is lower than R. Returns who is near one that is sure now.
+  /// of a wall which is lower than R. Returns who may have another host now.
   std::vector<std::uint8_t> fit_homeless() {
     std::vector<std::uint8_t> found(sure_.size());
     each_with<Refit>([&](std::uint32_t i, Refit& refit) {
       if (hosts_[i] == kNoHost) found[i] = fit_again(i, refit) ? 1 : 0;
     });
-    std::vector<std::uint8_t> close(sure_.size());
-    std::vector<std::uint32_t> near;
+    std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       if (found[i] == 0) continue;
       sure_[i] = 1;
-      near.clear();
-      input_.grid.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
-      for (const std::uint32_t j : near) close[j] = 1;
+      places.push_back(input_.grid.points()[i]);
     }
-    return close;
+    if (places.empty()) return found;
+    const CellGrid new_ones(places);
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+      if (sure_[i] != 0 && own_.others[i] == 0) return;
+      near.clear();
+      new_ones.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+      found[i] = near.empty() ? 0 : 1;
+    });
+    return found;
   }
 
   /// Fits a plane to the homeless points around, then a sheet to all unsure ones that lie on it.
@@ -181,6 +190,10 @@ class Snapping {
     if (!is_shared(i, host, near)) return;
     hosts_[i] = host;
     second_hosts_[i] = second;
+  }
+
+  /// Gives a point its host's fit, or at least its trust where an arc joins both.
+  void take_over(std::uint32_t i, std::uint32_t host) {
     const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
     const float turn = kTurnMargin * bow(input_, own_, host) * way;
     if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {

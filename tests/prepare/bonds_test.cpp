@@ -78,7 +78,9 @@ TEST(Bonds, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
     const auto part_at = [&](const Vector3f& place) {
       std::vector<CellGrid::Neighbor> nearest;
       points.grid.nearest(place - points.origin.cast<float>(), 1, nearest);
-      return points.sheets.part[points.sheets.sheet[nearest.front().index]];
+      const std::uint32_t sheet = points.sheets.sheet[nearest.front().index];
+      EXPECT_NE(sheet, SurfacePoints::Sheets::kNone);
+      return sheet == SurfacePoints::Sheets::kNone ? sheet : points.sheets.part[sheet];
     };
     const std::uint32_t floor = part_at({-10, 15, 0});
     EXPECT_EQ(part_at({5, 15, 0}), floor) << seed;

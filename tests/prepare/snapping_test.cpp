@@ -62,13 +62,16 @@ TEST(Snapping, FindsAWallLowerThanRBetweenAFloorAndATread) {
     }
   }
   const Made made(points);
+  int checked = 0;
   for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
     const Vector3f& p = made.grid.points()[i];
     if (std::abs(p.x()) > 0.1f || p.y() < 3 || p.y() > 21) continue;
     if (p.z() < 0.8f || p.z() > kHeight - 0.8f) continue;
     EXPECT_GT(std::abs(made.own.normals[i].x()), 0.98f) << p.transpose();
     EXPECT_GE(made.own.confidences[i], 0.5f) << p.transpose();
+    ++checked;
   }
+  EXPECT_GE(checked, 15);
 }
 
 TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsSure) {

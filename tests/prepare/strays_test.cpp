@@ -64,6 +64,7 @@ class Strays : public testing::Test {
     std::pair<int, int> counts{0, 0};
     for (std::size_t i = 0; i < prepared.size(); ++i) {
       if (prepared.density_weights[i] > 0) continue;
+      // A point on two sheets is there twice, so order() does not tell which it was.
       const double height =
           prepared.origin.z() + static_cast<double>(prepared.grid.points()[i].z());
       ++(std::abs(height) < 0.5 * kStrayGrid ? counts.first : counts.second);
