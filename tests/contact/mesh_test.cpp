@@ -150,7 +150,8 @@ TEST(FeltMesh, APlateOfAMillimetreHasTwoSidesAndRims) {
   }
   for (int i = 0; i < 40; ++i) {
     const double y = between(random, -0.04, 0.04);
-    const double z = between(random, -0.4, 0.4) * kThick;
+    // Edges are rounded over 0.2 R (docs/method.md 2.8), here 0.115 mm: a hand nearer to one slips.
+    const double z = between(random, -0.38, 0.38) * kThick;
     MeshHand hand(plate, {kHalf + 0.003, y, z});
     const Contact c = hand.to({kHalf - 0.002, y, z});
     ASSERT_TRUE(c.touching);
