@@ -45,11 +45,8 @@ bool is_beyond(const SheetView::Point& p, const auto& q, const Vector3f& way, fl
 bool swap_front(auto& sheets, auto& references) noexcept {
   const auto across = [](const auto& x) { return x.label == kAcross; };
   if (std::ranges::any_of(sheets, across) || std::ranges::any_of(references, across)) return false;
-  const auto swap = [](auto& x) {
-    if (x.label != SheetTable::kUndecided) x.label = x.label == kInFront ? kBehind : kInFront;
-  };
-  std::ranges::for_each(sheets, swap);
-  std::ranges::for_each(references, swap);
+  swap_labels(sheets, kInFront, kBehind);
+  swap_labels(references, kInFront, kBehind);
   return true;
 }
 

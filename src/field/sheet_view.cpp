@@ -172,13 +172,7 @@ void SheetTable::put_in_front(std::uint8_t touched) noexcept {
   const std::uint8_t left = across ? kAcross : kBehind;
   const std::uint8_t first = any(kInFront) ? touched : left;
   if (first == kInFront || (first == kBehind && across)) return;
-  for (Sheet& sheet : sheets) {
-    if (sheet.label == kInFront) {
-      sheet.label = first;
-    } else if (sheet.label == first) {
-      sheet.label = kInFront;
-    }
-  }
+  swap_labels(sheets, kInFront, first);
 }
 
 std::uint8_t SheetTable::find(const Key& key) const noexcept {

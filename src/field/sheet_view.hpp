@@ -41,6 +41,11 @@ enum Label : std::uint8_t {
 };
 static_assert(kAcross == simd::kLabels - 1);
 
+/// Lets two labels change places in what has a `label`.
+void swap_labels(auto& labelled, std::uint8_t a, std::uint8_t b) noexcept {
+  for (auto& x : labelled) x.label = x.label == a ? b : x.label == b ? a : x.label;
+}
+
 /// Sheets whose normals face away from each other by this cosine or more may be the sides of a
 /// plate, which is kept from cutting itself off (docs/method.md 2.8); judgement.
 inline constexpr double kBackToBack = 0.8;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kStrayGrid = 0.01f;
+constexpr float kGridSpacing = 0.01f;
 
 /// A grid of 60 x 60 points, and others of which the test asks.
 class Strays : public testing::Test {
@@ -28,7 +28,7 @@ class Strays : public testing::Test {
   }
 
   /// In spacings.
-  void add(float x, float y, float z) { points_.emplace_back(kStrayGrid * Vector3f(x, y, z)); }
+  void add(float x, float y, float z) { points_.emplace_back(kGridSpacing * Vector3f(x, y, z)); }
   [[nodiscard]] float between(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
@@ -67,7 +67,7 @@ class Strays : public testing::Test {
       // A point on two sheets is there twice, so order() does not tell which it was.
       const double height =
           prepared.origin.z() + static_cast<double>(prepared.grid.points()[i].z());
-      ++(std::abs(height) < 0.5 * kStrayGrid ? counts.first : counts.second);
+      ++(std::abs(height) < 0.5 * kGridSpacing ? counts.first : counts.second);
     }
     return counts;
   }
@@ -146,7 +146,7 @@ TEST_F(Strays, BesideASheetWeighNothing) {
 
 TEST_F(Strays, WeighNothingWhereTheRadiusIsGiven) {
   scatter(500, 0, 5, 30);
-  const auto [own, others] = count_weightless({.radius = 3 * kStrayGrid});
+  const auto [own, others] = count_weightless({.radius = 3 * kGridSpacing});
   EXPECT_EQ(own, 0);
   EXPECT_GT(others, 400);
 }
