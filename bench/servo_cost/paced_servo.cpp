@@ -74,7 +74,7 @@ Trajectory hand_over(const Scene& scene, double seconds) {
   options.duration = seconds;
   options.radius = points->radius;
   options.depth = kDepth;
-  options.patch = kPatch;
+  options.region = kPatch;
   return explore({points->origin, points->grid.points(), points->normals}, options);
 }
 

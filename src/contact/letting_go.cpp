@@ -21,7 +21,7 @@ constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneFi
 void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                           const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
   const double depth = normal.dot(place - hip);
-  if (touch_.touching || !(depth > 0) || (hip - pressed).norm() > kWaits * step_length_) return;
+  if (touch_.touching || !(depth > 0) || (hip - pressed).norm() > kWaits * radius_) return;
   if (touch_.surface.presence > kFaded && probe.sample(place).support > 0) return;
   release(hip + depth * normal);
   touch_.touching = touch_.waiting = true;
@@ -54,7 +54,7 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
                               bool changed) noexcept {
   if (changed) way_out_.reset();
   if (!changed && !touch_.touching) way_out_.wander(probe, position_);
-  const bool slow = (position_ - before).norm() <= kFast * probe.step_length();
+  const bool slow = (position_ - before).norm() <= kFast * probe.radius();
   if (!changed && slow && touch_.is_held() &&
       way_out_.is_shut_in(probe, position_, touch_.normal, hip)) {
     spring_.leave(position_, spring_.stiffness());
@@ -63,7 +63,7 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
   }
   const double stretch = (hip - position_).norm();
   const bool hard =
-      touch_.touching && stretch > kFar * step_length_ && options_.stiffness * stretch > kHardest;
+      touch_.touching && stretch > kFar * radius_ && options_.stiffness * stretch > kHardest;
   if (!spring_.hold_away(hard && probe.is_free({hip, 0}), dt)) return;
   contact.notes |= ContactNote::freed;
   if (spring_.stiffness() <= kFaded * options_.stiffness) release(hip);

@@ -51,19 +51,19 @@ Relief relief_at(const Texture& texture, const Eigen::Vector3d& x) noexcept {
   return relief;
 }
 
-Probe::Probe(const Field& field, const Texture& texture, double step_length) noexcept
+Probe::Probe(const Field& field, const Texture& texture, double radius) noexcept
     : field_(field),
       texture_(texture),
       traits_(field.traits()),
-      step_length_(step_length > 0 ? step_length : 16 * traits_.resolution) {
+      radius_(radius > 0 ? radius : 16 * traits_.resolution) {
   field_.begin_step();
 }
 
 Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   Sample sample = field_.sample(x);
-  if (sample.radius > 0) step_length_ = sample.radius;
-  if (sample.support <= 0 && sample.value <= 0) sample.value = step_length_;  // nothing known
+  if (sample.radius > 0) radius_ = sample.radius;
+  if (sample.support <= 0 && sample.value <= 0) sample.value = radius_;  // nothing known
   if (texture_.amplitude > 0) {
     const Relief relief = relief_at(texture_, x);
     sample.value -= relief.height;
@@ -106,7 +106,7 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
   for (int step = 0;; ++step) {
     const std::optional<double> distance = first_order_distance(here);
     if (!distance) return std::nullopt;
-    const double radius = probe.step_length();
+    const double radius = probe.radius();
     const Eigen::Vector3d normal = here.gradient.normalized();
     const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
     if (std::abs(*distance) < tolerance) return SurfacePoint{place, normal, radius};
@@ -160,7 +160,7 @@ class Sweeper {
         way_(to - from),
         length_(way_.norm()),
         leaf_(probe.traits().resolution > 0 ? probe.traits().resolution
-                                            : kBracket * probe.step_length()),
+                                            : kBracket * probe.radius()),
         spent_before_(probe.work()) {}
 
   [[nodiscard]] Sweep run() noexcept {
@@ -212,7 +212,7 @@ class Sweeper {
 
   [[nodiscard]] double last_free(double free, double solid) noexcept {
     for (int i = 0; i < kBisections; ++i) {
-      if ((solid - free) * length_ <= kBracket * probe_.step_length()) break;
+      if ((solid - free) * length_ <= kBracket * probe_.radius()) break;
       const double middle = 0.5 * (free + solid);
       (probe_.inside(at(middle)) ? solid : free) = middle;
     }

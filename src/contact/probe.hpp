@@ -48,7 +48,7 @@ inline constexpr int kEvaluationWork = 32;
 /// A field as the proxy sees it during one step: with its relief, and counted.
 class Probe {
  public:
-  Probe(const Field& field, const Texture& texture, double step_length) noexcept;
+  Probe(const Field& field, const Texture& texture, double radius) noexcept;
   ~Probe() = default;
   Probe(const Probe&) = delete;
   Probe& operator=(const Probe&) = delete;
@@ -61,7 +61,7 @@ class Probe {
   [[nodiscard]] const Field::Traits& traits() const noexcept { return traits_; }
 
   /// The support radius R where it was last known, m: what steps are measured in.
-  [[nodiscard]] double step_length() const noexcept { return step_length_; }
+  [[nodiscard]] double radius() const noexcept { return radius_; }
   [[nodiscard]] int evaluations() const noexcept { return evaluations_; }
 
   /// What has been spent, in points summed over: what a step's budgets are in.
@@ -75,7 +75,7 @@ class Probe {
   const Field& field_;
   const Texture& texture_;
   Field::Traits traits_;
-  double step_length_;
+  double radius_;
   int evaluations_ = 0;
 };
 

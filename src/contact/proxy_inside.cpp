@@ -38,7 +38,7 @@ Contact faulted(const Eigen::Vector3d& proxy) {
 void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   fault_ = !in_range(position);
   started_ = !fault_;
-  step_length_ = 0;
+  radius_ = 0;
   spring_.reset();
   way_out_.reset();
   revision_.reset();
@@ -51,7 +51,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (fault_) return faulted(position_);
   if (!started_) reset(hip);
   Contact contact;
-  Probe probe{field, options_.texture, step_length_};
+  Probe probe{field, options_.texture, radius_};
   const bool held = touch_.is_held();
   const Eigen::Vector3d before = position_;
   const Eigen::Vector3d side = touch_.normal;
@@ -59,7 +59,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   if (!touch_.touching) follow(probe, hip, contact);
   if (touch_.touching) hold(probe, hip, std::max(dt, kLeastTime), contact);
   await(probe, before, side, held ? hand_ : touch_.pressed, hip);
-  step_length_ = probe.step_length();
+  radius_ = probe.radius();
   const bool first = !revision_;  // step since a reset, which may put the proxy into a solid
   const bool changed = !first && probe.traits().revision != *revision_;
   free_hand(probe, before, hip, dt, contact, changed);
@@ -93,7 +93,7 @@ double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eige
                                        double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + touch_.surface.velocity.norm() * dt;
   const double jump = ((touch_.waiting ? hip : position_) - before).norm() - explained;
-  return jump > kLeastFall * step_length_ ? jump : 0;
+  return jump > kLeastFall * radius_ ? jump : 0;
 }
 
 // Lets the contact that there is now go on with the tank of `before`.
@@ -117,7 +117,7 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
 double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
                                         const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
-  const double moved = (hip - hand_).norm() + kLeastFall * step_length_;
+  const double moved = (hip - hand_).norm() + kLeastFall * radius_;
   return spring_.wanted(touch_.softened(options_.stiffness)) *
          (stretch > moved ? moved / stretch : 1);
 }
@@ -127,7 +127,7 @@ void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
   release(place);
   touch_.touching = true;
   touch_.surface = probe.field().surface(place);
-  step_length_ = probe.step_length();
+  radius_ = probe.radius();
   spring_.begin(initial_stiffness(place, hip));
 }
 
@@ -178,7 +178,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   const Sample here = probe.sample(position_);
   const bool changed = probe.traits().revision != revision_;
   const bool moved = !search_.cut_short && surface_moved(probe, here, touch_.normal, changed);
-  const double radius = probe.step_length();  // at the proxy: Newton may end where it is another
+  const double radius = probe.radius();  // at the proxy: Newton may end where it is another
   std::optional<SurfacePoint> at = project(probe, position_, here);
   if (moved) {
     const bool same = at && is_same_place(*at, position_, touch_.normal);

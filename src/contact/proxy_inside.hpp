@@ -73,7 +73,7 @@ class Proxy::Inside {
   Touch touch_;
   Eigen::Vector3d position_{0, 0, 0};
   Eigen::Vector3d hand_{0, 0, 0};  // that the proxy last caught up with
-  double step_length_ = 0;         // R where it was last known, m
+  double radius_ = 0;              // R where it was last known, m
   Search search_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   bool started_ = false;

@@ -221,7 +221,7 @@ bool surface_moved(const Probe& probe, const Sample& here, const Eigen::Vector3d
   if (normal.norm() < kLeastNormal) return false;
   const std::optional<double> distance = first_order_distance(here);
   if (!distance) return true;
-  const double radius = probe.step_length();
+  const double radius = probe.radius();
   if (*distance < -kSunk * radius || *distance > kLifted * radius) return true;
   return changed && *distance > kSunk * radius;
 }
@@ -249,7 +249,7 @@ std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& positio
                                     const Eigen::Vector3d& normal, int& looked) noexcept {
   const int first = std::exchange(looked, 0);
   if (normal.norm() < kLeastNormal) return std::nullopt;
-  const double radius = probe.step_length();
+  const double radius = probe.radius();
   for (int k = first + 1; k <= kRecoverySteps; ++k) {
     if (k > first + 1 && probe.swept >= kSweepWork) {
       looked = k - 1;

@@ -109,7 +109,7 @@ void WayOut::wander(Probe& probe, const Eigen::Vector3d& place) noexcept {
   if (state_ != State::free) ask(place);
   state_ = State::free;
   if (was_out_) return;
-  const double radius = probe.step_length();
+  const double radius = probe.radius();
   if (direction_ == kWays) {
     if ((place - known_).norm() < kElsewhere * radius) return;
     ask(place);
@@ -137,7 +137,7 @@ void WayOut::ask(const Eigen::Vector3d& place) noexcept {
 /// Looks on for the way of a proxy that touches.
 void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
                          const Eigen::Vector3d& normal) noexcept {
-  const double radius = probe.step_length();
+  const double radius = probe.radius();
   if (!ray_.any()) {
     ray_ = ray(place + kClear * radius * normal, direction_from(normal, direction_), radius);
   }
@@ -157,7 +157,7 @@ void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
 
 bool WayOut::is_shut_in(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
                         const Eigen::Vector3d& hip) noexcept {
-  const double radius = probe.step_length();
+  const double radius = probe.radius();
   const bool moved = state_ != State::asked && (place - known_).norm() >= kElsewhere * radius;
   if (state_ == State::free || moved) ask(place);
   if (!was_out_ || state_ == State::open || (place - hip).norm() < kDeep * radius) return false;

@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kReach = 0.3;          // m across; reach of a hand on a desk (judgement)
-constexpr double kPatch = 0.6;          // m across; explored in some seconds ... (judgement)
-constexpr double kPatchRadii = 20;      // ... or, if that is more, so many R (judgement)
+constexpr double kRegion = 0.6;         // m across; explored in some seconds ... (judgement)
+constexpr double kRegionRadii = 20;     // ... or, if that is more, so many R (judgement)
 constexpr double kDepth = 0.75;         // R under the surface (judgement)
 constexpr double kLargestForce = 4;     // N (judgement)
 constexpr double kPaperMultiple = 2.5;  // m = R / s if s is unknown (docs/method.md 5.3, the paper)
@@ -99,8 +99,8 @@ double offset(const FieldOptions& field, const Union& all, double tool_radius) {
   return plane_offset(field.kernel, level) * all.radius + tool_radius;
 }
 
-double choose_scale(double patch, double stiffness) {
-  const double scale = workspace_scale(patch);
+double choose_scale(double region, double stiffness) {
+  const double scale = workspace_scale(region);
   if (stiffness == 0 || scale * stiffness <= kSteadyStiffness) return scale;
   return std::min(scale, std::max(1.0, kSteadyStiffness / stiffness));
 }
@@ -115,18 +115,18 @@ void validate(const ExplorationOptions& options) {
           "give one above 0; infinite: a hand that does not yield");
 }
 
-// Size of the patch and the scale that follows; exploring and placing share it.
+// Size of the region and the scale that follows; exploring and placing share it.
 struct Extent {
-  double patch = 0;  // m across
+  double region = 0;  // m across
   double scale = 1;
   double stiffness = 0;  // N/m in the world
 };
 
 Extent extent_of(const Union& all, const ExplorationOptions& options) {
-  const double widest = std::max(kPatch, kPatchRadii * all.radius);
+  const double widest = std::max(kRegion, kRegionRadii * all.radius);
   Extent extent;
-  extent.patch = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
-  extent.scale = options.scale.value_or(choose_scale(extent.patch, options.stiffness));
+  extent.region = std::max(std::min(all.box.size().maxCoeff(), widest), all.radius);
+  extent.scale = options.scale.value_or(choose_scale(extent.region, options.stiffness));
   extent.stiffness =
       options.stiffness > 0 ? options.stiffness : ProxyOptions().stiffness / extent.scale;
   return extent;
@@ -180,7 +180,7 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   Placement plan;
   const Extent extent = extent_of(all, options);
   const double scale = extent.scale;
-  plan.patch = extent.patch;
+  plan.region = extent.region;
   plan.workspace.scale = scale;
   plan.stiffness = extent.stiffness;
   plan.depth = std::min(kDepth * all.radius, kLargestForce / plan.stiffness);
@@ -193,9 +193,9 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   const double felt = plan.workspace.felt_stiffness(plan.stiffness);
   strokes.depth = plan.depth * (1 + felt / options.hand.stiffness);
   strokes.offset = offset(field, all, options.tool_radius);
-  strokes.patch = plan.patch;
-  strokes.slide_speed = scale * std::clamp(0.5 * plan.patch / scale, 0.05, 0.2);
-  strokes.travel_speed = scale * std::clamp(plan.patch / scale, 0.1, 0.3);
+  strokes.region = plan.region;
+  strokes.slide_speed = scale * std::clamp(0.5 * plan.region / scale, 0.05, 0.2);
+  strokes.travel_speed = scale * std::clamp(plan.region / scale, 0.1, 0.3);
   strokes.seed = options.seed;
   strokes.progress = options.progress;
   plan.target = explore(all.view(), strokes);
@@ -218,7 +218,7 @@ Placement place_device(const Scene& scene, const FieldOptions& field,
   const std::size_t point = place_to_stand(surface);
   const double height = offset(field, all, options.tool_radius) + kStandoff * extent.scale;
   Placement placement;
-  placement.patch = extent.patch;
+  placement.region = extent.region;
   placement.stiffness = extent.stiffness;
   placement.workspace.scale = extent.scale;
   placement.workspace.T_world_device.translation() =

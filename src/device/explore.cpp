@@ -89,7 +89,7 @@ class Explorer {
  public:
   Explorer(const ExploredSurface& surface, const StrokeOptions& options)
       : options_(options),
-        map_(surface, options.patch, options.radius),
+        map_(surface, options.region, options.radius),
         random_(options.seed),
         player_(surface.origin, options) {}
 
@@ -286,7 +286,7 @@ Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options)
   require(positive(options.duration), "duration", options.duration);
   require(positive(options.period), "period", options.period);
   require(positive(options.radius), "radius", options.radius);
-  require(positive(options.patch), "patch", options.patch);
+  require(positive(options.region), "region", options.region);
   require(positive(options.slide_speed), "slide_speed", options.slide_speed);
   require(positive(options.travel_speed), "travel_speed", options.travel_speed);
   require(std::isfinite(options.depth), "depth", options.depth);

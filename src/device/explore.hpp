@@ -28,9 +28,9 @@ struct MapSample {
 /// obstacle: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
-  /// The region reaches patch / 2 from the median point; it is the whole surface if no side of its
-  /// box is longer than `patch`.
-  SurfaceMap(const ExploredSurface& surface, double patch, double radius);
+  /// The region reaches region / 2 from the median point; it is the whole surface if no side of its
+  /// box is longer than `region`.
+  SurfaceMap(const ExploredSurface& surface, double region, double radius);
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }
   [[nodiscard]] const Eigen::Vector3d& center() const { return center_; }
@@ -50,7 +50,7 @@ class SurfaceMap {
   [[nodiscard]] double distance(const Eigen::Vector3d& x) const;
 
  private:
-  void choose(const ExploredSurface& surface, double patch);
+  void choose(const ExploredSurface& surface, double region);
   [[nodiscard]] Eigen::Vector3f fitted_normal(std::size_t i) const;
 
   double radius_;
@@ -70,7 +70,7 @@ struct StrokeOptions {
   double radius = 0.01;        ///< R: the length in which the surface is smooth, m; > 0
   double depth = 5e-3;         ///< of the hand's target below the rendered surface while sliding, m
   double offset = 0;           ///< of the rendered surface above the points, m
-  double patch = 0.3;          ///< largest extent of the region that is explored, m; > 0
+  double region = 0.3;         ///< largest extent of the region that is explored, m; > 0
   double slide_speed = 0.1;    ///< m/s
   double travel_speed = 0.25;  ///< m/s, through free space
   std::uint64_t seed = 1;      ///< of the random choice of places and directions
@@ -81,7 +81,7 @@ struct StrokeOptions {
 /// lifts off, moves to another place through free space (above all obstacles, if there is such a
 /// path), and so on until the time is over. Strokes begin where nothing was touched yet and follow
 /// the points until they end or the stroke is long enough. Moves begin and end at rest. Clouds
-/// larger than `patch` are explored around their median point. Same input, same trajectory; no
+/// larger than `region` are explored around their median point. Same input, same trajectory; no
 /// clock and no thread.
 /// @throws Error when there are no points or an option is out of range.
 [[nodiscard]] Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options = {});

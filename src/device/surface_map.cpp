@@ -34,23 +34,23 @@ Vector3f nearest_to(const Vector3f& place, std::span<const Vector3f> points) {
 
 }  // namespace
 
-SurfaceMap::SurfaceMap(const ExploredSurface& surface, double patch, double radius)
+SurfaceMap::SurfaceMap(const ExploredSurface& surface, double region, double radius)
     : radius_(radius) {
-  choose(surface, patch);
+  choose(surface, region);
   if (!normals_.empty()) return;
   normals_.resize(grid_.size());
   for (std::size_t i = 0; i < grid_.size(); ++i) normals_[i] = fitted_normal(i);
 }
 
-void SurfaceMap::choose(const ExploredSurface& surface, double patch) {
+void SurfaceMap::choose(const ExploredSurface& surface, double region) {
   Box box;
   for (const Vector3f& p : surface.points) box.extend(p.cast<double>());
-  const bool everything = box.size().maxCoeff() <= patch;
+  const bool everything = box.size().maxCoeff() <= region;
   const Vector3f middle = everything ? Vector3f(box.center().cast<float>())
                                      : nearest_to(middle_of(surface.points), surface.points);
   center_ = middle.cast<double>();
-  reach_ = everything ? box.size().norm() : patch / 2;
-  extent_ = std::min(box.size().maxCoeff(), patch);
+  reach_ = everything ? box.size().norm() : region / 2;
+  extent_ = std::min(box.size().maxCoeff(), region);
   const auto kept = static_cast<float>(2 * reach_);
   std::vector<Vector3f> chosen;
   std::vector<std::uint32_t> places;

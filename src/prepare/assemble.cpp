@@ -77,8 +77,8 @@ void complete(Prepared& prepared) {
   }
 }
 
-Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights, Sheets sheets,
-                  const PrepareOptions& options, Prepared::Report report) {
+Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights,
+                  JoinedSheets sheets, const PrepareOptions& options, Prepared::Report report) {
   SurfacePoints points;
   points.origin = sampling.origin;
   points.grid = std::move(sampling.grid);

@@ -32,7 +32,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   Weights weights = weigh(sampling, radii, sums, options);
   watch.lap(report.seconds_weights);
   const KnownSigns known = given_signs(placed, sampling, options);
-  Sheets sheets = join_sheets(sampling, radii, weights, known, fits);
+  JoinedSheets sheets = join_sheets(sampling, radii, weights, known, fits);
   if (!radii.strays.empty()) drop_strays_off_sheets(sampling, sheets, weights);
   watch.lap(report.seconds_normals);
 

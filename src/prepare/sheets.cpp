@@ -215,13 +215,13 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   return sheets;
 }
 
-Sheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
-                   const KnownSigns& known, PointFits& fits) {
+JoinedSheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
+                         const KnownSigns& known, PointFits& fits) {
   if (fits.normals.empty()) return {};
   for (std::size_t i = 0; i < weights.values.size(); ++i) {
     if (weights.values[i] <= 0) fits.confidences[i] = 0;
   }
-  Sheets result;
+  JoinedSheets result;
   result.sheets =
       make_sheets({sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas}, known,
                   fits, result.twins);

@@ -109,14 +109,15 @@ inline constexpr float kTurnMargin = 1.5f;  // judgement
 inline constexpr float kChord = 0.6f;  // half and a margin; judgement
 
 /// The sheets of all points, and the points that lie on two of them.
-struct Sheets {
+struct JoinedSheets {
   SurfacePoints::Sheets sheets;
   std::vector<Twin> twins;  ///< in rising order
 };
 
 /// make_sheets() of the points that weigh something. None where there are no fits.
-[[nodiscard]] Sheets join_sheets(const Sampling& sampling, const Radii& radii,
-                                 const Weights& weights, const KnownSigns& known, PointFits& fits);
+[[nodiscard]] JoinedSheets join_sheets(const Sampling& sampling, const Radii& radii,
+                                       const Weights& weights, const KnownSigns& known,
+                                       PointFits& fits);
 
 /// The signs that the options allow sheets to use.
 [[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,

@@ -81,8 +81,9 @@ std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const floa
   return strays;
 }
 
-void drop_strays_off_sheets(const Sampling& sampling, const Sheets& sheets, Weights& weights) {
-  const std::vector<std::uint32_t>& sheet = sheets.sheets.sheet;
+void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined,
+                            Weights& weights) {
+  const std::vector<std::uint32_t>& sheet = joined.sheets.sheet;
   std::vector<std::uint32_t> off;
   std::vector<Eigen::Vector3f> positions;
   for (std::uint32_t i = 0; i < sheet.size(); ++i) {

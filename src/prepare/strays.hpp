@@ -22,6 +22,6 @@ namespace palpate {
 /// Lets strays beside a surface weigh nothing. Its points are their neighbours, so find_strays() of
 /// all points passes them over; here it looks at the points on no sheet among themselves. A point
 /// with another within the typical spacing stays: tips and ridges are on no sheet either.
-void drop_strays_off_sheets(const Sampling& sampling, const Sheets& sheets, Weights& weights);
+void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined, Weights& weights);
 
 }  // namespace palpate

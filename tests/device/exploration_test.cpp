@@ -22,7 +22,7 @@ ExploredSurface view(const PointCloud& cloud) {
 TEST(Exploration, LastsAsLongAsItIsToldAndMovesAtHandSpeeds) {
   const PointCloud cloud = synthetic_cloud("torus");
   const Trajectory rows =
-      explore(view(cloud), {.duration = 3, .radius = 5e-3, .depth = 3e-3, .patch = 1});
+      explore(view(cloud), {.duration = 3, .radius = 5e-3, .depth = 3e-3, .region = 1});
   EXPECT_NO_THROW(check(rows));
   EXPECT_NEAR(rows.back().time, 3, 2e-3);
   double fastest = 0;
@@ -37,7 +37,7 @@ TEST(Exploration, PressesIntoASphereToTheDepthWantedAndNotDeeper) {
   const PointCloud cloud = synthetic_cloud("sphere");
   const double depth = 2e-3;
   const Trajectory rows =
-      explore(view(cloud), {.duration = 6, .radius = 5e-3, .depth = depth, .patch = 1});
+      explore(view(cloud), {.duration = 6, .radius = 5e-3, .depth = depth, .region = 1});
   double deepest = 1;
   int touching = 0;
   for (const TrajectoryRow& row : rows) {
@@ -54,7 +54,7 @@ TEST(Exploration, PressesIntoASphereToTheDepthWantedAndNotDeeper) {
 TEST(Exploration, SlidesOverAGoodPartOfTheObject) {
   const PointCloud cloud = synthetic_cloud("bumps");
   const Trajectory rows =
-      explore(view(cloud), {.duration = 10, .radius = 5e-3, .depth = 3e-3, .patch = 1});
+      explore(view(cloud), {.duration = 10, .radius = 5e-3, .depth = 3e-3, .region = 1});
   int visited = 0;
   constexpr int kTiles = 5;  // 4 cm each
   for (int i = 0; i < kTiles * kTiles; ++i) {
@@ -70,7 +70,7 @@ TEST(Exploration, SlidesOverAGoodPartOfTheObject) {
 TEST(Exploration, GoesRoundAClosedObjectAndNotThroughIt) {
   const PointCloud cloud = synthetic_cloud("sphere");
   const Trajectory rows =
-      explore(view(cloud), {.duration = 10, .radius = 5e-3, .depth = 2e-3, .patch = 1});
+      explore(view(cloud), {.duration = 10, .radius = 5e-3, .depth = 2e-3, .region = 1});
   for (const TrajectoryRow& row : rows) EXPECT_GT(row.position.norm(), 0.055);
 }
 
@@ -99,7 +99,7 @@ TEST(Exploration, LiftsOverWhatStandsBetweenTwoPlaces) {
     const PointCloud cloud = box_on_floor(walls);
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Trajectory rows = explore(
-          view(cloud), {.duration = 40, .radius = 5e-3, .depth = 3e-3, .patch = 1, .seed = seed});
+          view(cloud), {.duration = 40, .radius = 5e-3, .depth = 3e-3, .region = 1, .seed = seed});
       int within = 0;
       int crossings = 0;
       for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -127,7 +127,7 @@ TEST(Exploration, SaysHowFarItIs) {
   const PointCloud cloud = synthetic_cloud("sphere");
   std::vector<double> told;
   const StrokeOptions options{
-      .duration = 10, .radius = 5e-3, .patch = 1, .progress = [&](double done) {
+      .duration = 10, .radius = 5e-3, .region = 1, .progress = [&](double done) {
         told.push_back(done);
       }};
   (void)explore(view(cloud), options);
@@ -142,7 +142,7 @@ TEST(Exploration, WorksWithoutNormals) {
   PointCloud cloud = synthetic_cloud("sphere");
   cloud.normals.clear();
   const Trajectory rows =
-      explore(view(cloud), {.duration = 4, .radius = 5e-3, .depth = 2e-3, .patch = 1});
+      explore(view(cloud), {.duration = 4, .radius = 5e-3, .depth = 2e-3, .region = 1});
   const auto touches = [](const TrajectoryRow& row) { return row.position.norm() < 0.06; };
   EXPECT_GT(std::count_if(rows.begin(), rows.end(), touches), 500);
 }
@@ -151,8 +151,12 @@ TEST(Exploration, StaysInAPatchOfALargeCloudFarFromTheOrigin) {
   PointCloud cloud = synthetic_cloud("bumps");
   for (Vector3f& p : cloud.positions) p *= 500;  // 100 m
   cloud.origin = {637000, 851000, 500};
-  const StrokeOptions options{
-      .duration = 5, .radius = 2.5, .depth = 1, .patch = 30, .slide_speed = 20, .travel_speed = 50};
+  const StrokeOptions options{.duration = 5,
+                              .radius = 2.5,
+                              .depth = 1,
+                              .region = 30,
+                              .slide_speed = 20,
+                              .travel_speed = 50};
   const Trajectory rows = explore(view(cloud), options);
   EXPECT_NO_THROW(check(rows));
   for (const TrajectoryRow& row : rows) {

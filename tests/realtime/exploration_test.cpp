@@ -29,7 +29,7 @@ Run explored(const PointCloud& cloud) {
   const Trajectory path = explore(surface, {.duration = 2,
                                             .radius = radius,
                                             .depth = 0.5 * radius,
-                                            .patch = 100 * radius,
+                                            .region = 100 * radius,
                                             .slide_speed = 20 * radius,
                                             .travel_speed = 50 * radius});
   Rig rig(scene);

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/policies/block_matches.hpp"
 #include "scene/policies/block_order.hpp"
-#include "scene/policies/block_tracks.hpp"
 
 namespace palpate {
 namespace {

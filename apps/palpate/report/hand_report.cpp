@@ -95,7 +95,7 @@ void add_device(Report& report, const Hand& hand) {
   if (hand.plan) {
     report.row("explored",
                "an area up to {device/explored_m} across, pressing about {device/depth_m} deep",
-               hand.plan->patch, hand.plan->depth);
+               hand.plan->region, hand.plan->depth);
     add_scale(report, hand);
   }
   if (hand.socket != nullptr) {

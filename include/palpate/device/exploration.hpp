@@ -21,7 +21,7 @@ inline constexpr double kSteadyStiffness = 2000;
 struct Placement {
   Workspace workspace;   ///< magnified so that what is explored fits a hand's reach
   double stiffness = 0;  ///< of the surface, N/m in the world
-  double patch = 0;      ///< largest extent of what is explored, m
+  double region = 0;     ///< largest extent of what is explored, m
   double depth = 0;      ///< that a hand that explores is meant to reach under the surface, m
   Trajectory target;  ///< where such a hand wants to be, device frame; empty: it does not explore
 };
@@ -37,8 +37,9 @@ struct ExplorationOptions {
   std::function<void(double)> progress = {};  ///< called with the share (0 to 1) that is planned
 };
 
-/// Chooses scale, patch, depth and speeds from the scene's extent and support radius, and plans the
-/// hand's trajectory. @throws Error when the scene has no points or an option is out of its range.
+/// Chooses scale, region, depth and speeds from the scene's extent and support radius, and plans
+/// the hand's trajectory. @throws Error when the scene has no points or an option is out of its
+/// range.
 [[nodiscard]] Placement plan_exploration(const Scene& scene, const FieldOptions& field,
                                          const ExplorationOptions& options);
 

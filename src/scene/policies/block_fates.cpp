@@ -21,7 +21,7 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
   to.unseen.clear();
   for (std::size_t place = begin; place < end; place += kLanes) {
     const std::uint32_t first =
-        place + kLanes <= end ? tracks_.four_at(place) : BlockEntries::kNone;
+        place + kLanes <= end ? matches_.four_at(place) : BlockEntries::kNone;
     FourWays& ways = to.going_on.emplace_back();
     ways.place = static_cast<std::uint32_t>(place);
     const bool live = first != BlockEntries::kNone && are_live(first, ways);
@@ -72,8 +72,8 @@ bool BlockFates::go_on(const SeenFour& seen, FourWays& ways) const {
 
 /// Decides on the point that the frame has at a block, and on the old ones there.
 void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
-  std::optional<BlockTracks::Partner> partner;
-  if (seen.state.radius > 0) partner = tracks_.partner_of(seen);
+  std::optional<BlockMatches::Partner> partner;
+  if (seen.state.radius > 0) partner = matches_.partner_of(seen);
   const bool shown = seen.state.radius > 0 && is_sure(seen, partner);
   if (!shown) partner.reset();
   float at = blocks_.depth_of(seen.state.position);
@@ -85,7 +85,7 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
     if (own == Fate::stay) at = blocks_.depth_of(before.position);
     add(own == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
   }
-  const std::span<const std::uint32_t> old = tracks_.at(seen.place);
+  const std::span<const std::uint32_t> old = matches_.at(seen.place);
   bool held = false;
   for (const std::uint32_t i : old) {
     if (partner && i == partner->i) continue;
@@ -104,7 +104,7 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
 /// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal
 /// that noise has turned within a frame? One that turns for longer is believed after a while.
 bool BlockFates::is_sure(const SeenPoint& seen,
-                         const std::optional<BlockTracks::Partner>& partner) const {
+                         const std::optional<BlockMatches::Partner>& partner) const {
   if (partner) return !(seen.turns_from(partner->before.normal) && moves_.is_fresh(partner->i));
   return !shown_.any() || blocks_.vouching(seen.place) >= kVouch;
 }

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/policies/block_tracks.hpp"
+#include "scene/policies/block_matches.hpp"
 #include "scene/policies/fate.hpp"
 #include "scene/policies/frame_blocks.hpp"
 #include "scene/policies/moving_points.hpp"
@@ -30,9 +30,9 @@ struct SettledPlaces {
 class BlockFates {
  public:
   /// All have to last as long.
-  BlockFates(const ShownPoints& shown, const FrameBlocks& blocks, const BlockTracks& tracks,
+  BlockFates(const ShownPoints& shown, const FrameBlocks& blocks, const BlockMatches& matches,
              const PointMoves& moves)
-      : shown_(shown), blocks_(blocks), tracks_(tracks), moves_(moves) {}
+      : shown_(shown), blocks_(blocks), matches_(matches), moves_(moves) {}
 
   /// Decides on the places from `begin` to `end`. Any number of threads, each with its own `to`.
   void settle(std::size_t begin, std::size_t end, SettledPlaces& to) const;
@@ -43,14 +43,14 @@ class BlockFates {
   [[nodiscard]] bool go_on(const SeenFour& seen, FourWays& ways) const;
   void settle(const SeenPoint& seen, SettledPlaces& to) const;
   [[nodiscard]] bool is_sure(const SeenPoint& seen,
-                             const std::optional<BlockTracks::Partner>& partner) const;
+                             const std::optional<BlockMatches::Partner>& partner) const;
   [[nodiscard]] bool is_doubtful(const SeenPoint& seen, const PointState& before) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
   void add(Way way, const SeenPoint& at, SettledPlaces& to) const;
 
   const ShownPoints& shown_;
   const FrameBlocks& blocks_;
-  const BlockTracks& tracks_;
+  const BlockMatches& matches_;
   const PointMoves& moves_;
 };
 

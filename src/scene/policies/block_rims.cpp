@@ -22,11 +22,21 @@ Floats weight(Kernel kernel, const Floats& q) {
   return s * s * (5 + 4 * s) * (1.0f / 9);
 }
 
+/// Are the blocks at `at` outside of a ball, by more than single precision may err?
+bool are_far(const PaddedBlocks& padded, std::size_t at, const Ball& ball) {
+  const Vectors place{load<Floats>(&padded.x[at]), load<Floats>(&padded.y[at]),
+                      load<Floats>(&padded.z[at])};
+  const Vectors way = place - all_lanes(ball.center.cast<float>());
+  const double reach = 1.001 * ball.radius + 1e-5 * ball.center.norm();
+  return all(dot(way, way) > static_cast<float>(reach * reach));
+}
+
 }  // namespace
 
 // Forgets the rims of the frame before. Counts for each block how many of the rectangle from the
 // image's first block to it are empty or lie beside another surface.
-void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of, const BlockGrid& grid) {
+void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of,
+                     const PaddedBlocks& padded) {
   halves_.assign(depth.size() + kLanes, 0);
   row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   const std::ptrdiff_t columns = depth.columns;
@@ -36,8 +46,8 @@ void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of, cons
   each_row(depth, [&](std::size_t v) {
     std::int32_t* const sums = &rims_[(v + 1) * width];
     sums[0] = 0;
-    const float* const z = &grid.z[grid.place(0, static_cast<int>(v))];
-    const float* const above = z - grid.stride;
+    const float* const z = &padded.z[padded.place(0, static_cast<int>(v))];
+    const float* const above = z - padded.stride;
     const float* const radii = &of[v * (width - 1)];
     for (std::ptrdiff_t u = 0; u < columns; ++u) {
       const float radius = radii[u];
@@ -71,27 +81,22 @@ bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half
 }
 
 void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
-                     const BlockGrid& grid, std::span<const Ball> balls, Exact exact, bool whole) {
+                     const PaddedBlocks& padded, std::span<const Ball> balls, Exact exact,
+                     bool whole) {
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
-  mark(depth, radii, grid);
+  mark(depth, radii, padded);
   const auto columns = static_cast<std::size_t>(depth.columns);
-  // Most blocks are far outside, by more than single precision may err.
-  const auto far = [&](std::size_t at, const Ball& ball) {
-    const Vectors place{load<Floats>(&grid.x[at]), load<Floats>(&grid.y[at]),
-                        load<Floats>(&grid.z[at])};
-    const Vectors way = place - all_lanes(ball.center.cast<float>());
-    const double reach = 1.001 * ball.radius + 1e-5 * ball.center.norm();
-    return all(dot(way, way) > static_cast<float>(reach * reach));
-  };
+  // Most blocks are far outside.
   const auto all_far = [&](std::size_t at) {
-    return std::all_of(balls.begin(), balls.end(), [&](const Ball& b) { return far(at, b); });
+    return std::all_of(balls.begin(), balls.end(),
+                       [&](const Ball& b) { return are_far(padded, at, b); });
   };
   each_other(depth, whole, [&](int v, int first, int count) {
     const std::size_t row = static_cast<std::size_t>(v) * columns;
     const std::size_t end = row + first + count;
     for (std::size_t b = row + first; b < end; ++b) {
-      const std::size_t at = grid.place(static_cast<int>(b - row), v);
+      const std::size_t at = padded.place(static_cast<int>(b - row), v);
       if (exact == Exact::within && b + kLanes <= end && all_far(at)) {
         b += kLanes - 1;
         continue;
@@ -114,20 +119,20 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
 // Calls take(block, place, sum) for each block whose sum over what is around it is wanted: of
 // weights times what stands in `factors`.
 template <class Take>
-void BlockRims::sum_around(const FilteredDepth& depth, const BlockGrid& grid, const float* factors,
-                           const Take& take) const {
+void BlockRims::sum_around(const FilteredDepth& depth, const PaddedBlocks& padded,
+                           const float* factors, const Take& take) const {
   const auto sum = [&](std::size_t at, const Ints& halves, int half) {
-    const auto x = load<Floats>(&grid.x[at]);
-    const auto y = load<Floats>(&grid.y[at]);
-    const auto z = load<Floats>(&grid.z[at]);
+    const auto x = load<Floats>(&padded.x[at]);
+    const auto y = load<Floats>(&padded.y[at]);
+    const auto z = load<Floats>(&padded.z[at]);
     Floats total{};
     for (int dv = -half; dv <= half; ++dv) {
       for (int du = -half; du <= half; ++du) {
-        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(grid.stride) + du;
-        const Floats dx = load<Floats>(&grid.x[from]) - x;
-        const Floats dy = load<Floats>(&grid.y[from]) - y;
-        const Floats dz = load<Floats>(&grid.z[from]) - z;
-        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&grid.per_r2[from]);
+        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(padded.stride) + du;
+        const Floats dx = load<Floats>(&padded.x[from]) - x;
+        const Floats dy = load<Floats>(&padded.y[from]) - y;
+        const Floats dz = load<Floats>(&padded.z[from]) - z;
+        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&padded.per_r2[from]);
         const Floats w = weight(kernel_, q) * load<Floats>(factors + from);
         const Ints inside = (q < 1) & (halves >= std::max(std::abs(du), std::abs(dv)));
         total += inside ? w : Floats{};
@@ -141,9 +146,9 @@ void BlockRims::sum_around(const FilteredDepth& depth, const BlockGrid& grid, co
       const auto halves = load<Ints>(&halves_[first]);
       const int half = std::max({halves[0], halves[1], halves[2], halves[3]});
       if (half == 0) continue;
-      const Floats sums = sum(grid.place(u, v), halves, half);
+      const Floats sums = sum(padded.place(u, v), halves, half);
       for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
-        if (halves[l] > 0) take(first + l, grid.place(u + l, v), sums[l]);
+        if (halves[l] > 0) take(first + l, padded.place(u + l, v), sums[l]);
       }
     }
   };
@@ -153,14 +158,15 @@ void BlockRims::sum_around(const FilteredDepth& depth, const BlockGrid& grid, co
 }
 
 // a_i = 1 / max(S_i, 0.8 Sbar_i).
-void BlockRims::weigh(const FilteredDepth& depth, std::span<const float> radii, BlockGrid& grid,
-                      std::span<float> areas) const {
-  sum_around(depth, grid, grid.ones.data(),
-             [&](std::size_t, std::size_t at, float sum) { grid.sums[at] = sum; });
-  sum_around(depth, grid, grid.sums.data(), [&](std::size_t block, std::size_t at, float around) {
-    const float sum = std::max(grid.sums[at], kShareOfAround * around / grid.sums[at]);
-    areas[block] = radii[block] * radii[block] / sum;
-  });
+void BlockRims::weigh(const FilteredDepth& depth, std::span<const float> radii,
+                      PaddedBlocks& padded, std::span<float> areas) const {
+  sum_around(depth, padded, padded.ones.data(),
+             [&](std::size_t, std::size_t at, float sum) { padded.sums[at] = sum; });
+  sum_around(
+      depth, padded, padded.sums.data(), [&](std::size_t block, std::size_t at, float around) {
+        const float sum = std::max(padded.sums[at], kShareOfAround * around / padded.sums[at]);
+        areas[block] = radii[block] * radii[block] / sum;
+      });
 }
 
 }  // namespace palpate

@@ -9,8 +9,8 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/shapes.hpp"
-#include "scene/policies/block_grid.hpp"
 #include "scene/policies/lanes.hpp"
+#include "scene/policies/padded_blocks.hpp"
 
 namespace palpate {
 
@@ -26,24 +26,24 @@ class BlockRims {
       : kernel_(kernel), minimum_radius_(minimum_radius) {}
 
   /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere, of those that are
-  /// not kept, or of the `whole` image. `radii`: of all blocks, and room for kLanes more; `grid`:
+  /// not kept, or of the `whole` image. `radii`: of all blocks, and room for kLanes more; `padded`:
   /// where they are.
-  void find(const FilteredDepth& depth, std::span<const float> radii, const BlockGrid& grid,
+  void find(const FilteredDepth& depth, std::span<const float> radii, const PaddedBlocks& padded,
             std::span<const Ball> balls, Exact exact, bool whole);
 
   /// The largest distance to a neighbour that counts, blocks; 0: there is no rim.
   [[nodiscard]] int largest_half() const { return largest_half_; }
 
-  /// Sets the areas of those that were found. `grid` has margins as large.
-  void weigh(const FilteredDepth& depth, std::span<const float> radii, BlockGrid& grid,
+  /// Sets the areas of those that were found. `padded` has margins as large.
+  void weigh(const FilteredDepth& depth, std::span<const float> radii, PaddedBlocks& padded,
              std::span<float> areas) const;
 
  private:
-  void mark(const FilteredDepth& depth, std::span<const float> radii, const BlockGrid& grid);
+  void mark(const FilteredDepth& depth, std::span<const float> radii, const PaddedBlocks& padded);
   [[nodiscard]] int half_window(const FilteredDepth& depth, std::size_t block, float radius) const;
   [[nodiscard]] bool near_rim(const FilteredDepth& depth, std::size_t block, int half) const;
   template <class Take>
-  void sum_around(const FilteredDepth& depth, const BlockGrid& grid, const float* factors,
+  void sum_around(const FilteredDepth& depth, const PaddedBlocks& padded, const float* factors,
                   const Take& take) const;
 
   Kernel kernel_;

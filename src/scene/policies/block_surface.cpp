@@ -55,22 +55,23 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
                            BlockRims::Exact exact) {
   for (auto* column : {&radii_, &areas_, &trusts_}) column->resize(depth.size() + kLanes);
   // What tiles around a kept one have changed reaches it when it is filtered again.
-  bool whole = grid_.make_room(depth, std::max(grid_.margin, BlockRims::kLargestWindow));
+  bool whole = padded_.make_room(depth, std::max(padded_.margin, BlockRims::kLargestWindow));
   each_other(depth, whole, [&](int v, int first, int count) {
-    grid_.lay_out_places(depth, v, first, count);
+    padded_.lay_out_places(depth, v, first, count);
     start(depth, v, first, count);
   });
   limit_growth(depth);
-  rims_.find(depth, radii_, grid_, balls, exact, whole);
-  if (rims_.largest_half() > grid_.margin) {
-    whole = grid_.make_room(depth, rims_.largest_half());
+  rims_.find(depth, radii_, padded_, balls, exact, whole);
+  if (rims_.largest_half() > padded_.margin) {
+    whole = padded_.make_room(depth, rims_.largest_half());
     each_row(depth, [&](std::size_t v) {
-      grid_.lay_out_places(depth, static_cast<int>(v), 0, depth.columns);
+      padded_.lay_out_places(depth, static_cast<int>(v), 0, depth.columns);
     });
   }
   each_other(depth, whole, [&](int v, int first, int count) { lay_out(depth, v, first, count); });
-  each_other(depth, whole, [&](int v, int first, int count) { trust(depth, v, first, count); });
-  if (rims_.largest_half() > 0) rims_.weigh(depth, radii_, grid_, areas_);
+  each_other(depth, whole,
+             [&](int v, int first, int count) { measure_trust(depth, v, first, count); });
+  if (rims_.largest_half() > 0) rims_.weigh(depth, radii_, padded_, areas_);
 }
 
 // Radii by spacing, and areas of a surface that goes on on all sides.
@@ -105,7 +106,7 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   const auto may_limit = [&](std::ptrdiff_t b, std::ptrdiff_t by, std::size_t at) {
     const auto other = load<Floats>(&radii_[b + by]);
     const Floats room = load<Floats>(&radii_[b]) - other;
-    return any((room > step * load<Floats>(&grid_.z[at])) & (other != 0));
+    return any((room > step * load<Floats>(&padded_.z[at])) & (other != 0));
   };
   const auto limit = [&](std::ptrdiff_t b, std::ptrdiff_t by) {
     const float room = radii_[b] - radii_[by];
@@ -120,8 +121,8 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
       const std::ptrdiff_t b = v * columns + u;
       const std::ptrdiff_t skip = sign > 0 ? 0 : kLanes - 1;  // to the first of those side by side
       if (k > 0 && row > 0 && k + kLanes <= columns &&
-          !may_limit(b - skip, -sign, grid_.place(static_cast<int>(u - skip), v)) &&
-          !may_limit(b - skip, -sign * columns, grid_.place(static_cast<int>(u - skip), v))) {
+          !may_limit(b - skip, -sign, padded_.place(static_cast<int>(u - skip), v)) &&
+          !may_limit(b - skip, -sign * columns, padded_.place(static_cast<int>(u - skip), v))) {
         k += kLanes;
         continue;
       }
@@ -134,7 +135,7 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
 
 // Puts side by side what sums over neighbours need.
 void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int count) {
-  std::size_t at = grid_.place(first, v);
+  std::size_t at = padded_.place(first, v);
   std::size_t b = static_cast<std::size_t>(v) * depth.columns + first;
   const auto take = [&](const auto& radius, const auto& deviation, const auto& area, auto lanes) {
     using Lanes = decltype(lanes);
@@ -144,10 +145,10 @@ void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int cou
     const Lanes precision = 1 / (deviation * deviation + sure * sure);
     const auto there = radius > 0;
     const Lanes nothing{};
-    put(grid_.reaches, at, radius < spread ? spread : radius);
-    put(grid_.per_r2, at, there ? 1 / (radius * radius) : nothing + BlockGrid::kNowhere);
-    put(grid_.precisions, at, there ? precision : nothing);
-    put(grid_.sums, at, there ? (1 < sum ? sum : nothing + 1) : nothing);
+    put(padded_.reaches, at, radius < spread ? spread : radius);
+    put(padded_.per_r2, at, there ? 1 / (radius * radius) : nothing + PaddedBlocks::kNowhere);
+    put(padded_.precisions, at, there ? precision : nothing);
+    put(padded_.sums, at, there ? (1 < sum ? sum : nothing + 1) : nothing);
   };
   int u = 0;
   for (; u + kLanes <= count; u += kLanes, at += kLanes, b += kLanes) {
@@ -159,16 +160,16 @@ void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int cou
   }
 }
 
-void BlockSurface::trust(const FilteredDepth& depth, int v, int first, int count) {
+void BlockSurface::measure_trust(const FilteredDepth& depth, int v, int first, int count) {
   const std::size_t row = static_cast<std::size_t>(v) * depth.columns;
-  const auto stride = static_cast<std::ptrdiff_t>(grid_.stride);
+  const auto stride = static_cast<std::ptrdiff_t>(padded_.stride);
   const std::ptrdiff_t beside[] = {-stride - 1, -stride,    -stride + 1, -1,
                                    1,           stride - 1, stride,      stride + 1};
   for (int u = first; u < first + count; u += kLanes) {
-    const float* const z = &grid_.z[grid_.place(u, v)];
-    const float* const precisions = &grid_.precisions[grid_.place(u, v)];
+    const float* const z = &padded_.z[padded_.place(u, v)];
+    const float* const precisions = &padded_.precisions[padded_.place(u, v)];
     const auto own = load<Floats>(precisions);
-    const auto reach = load<Floats>(&grid_.reaches[grid_.place(u, v)]);
+    const auto reach = load<Floats>(&padded_.reaches[padded_.place(u, v)]);
     Floats same_surface{};
     Floats sum{};
     for (const std::ptrdiff_t by : beside) {

@@ -9,8 +9,8 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
-#include "scene/policies/block_grid.hpp"
 #include "scene/policies/block_rims.hpp"
+#include "scene/policies/padded_blocks.hpp"
 
 namespace palpate {
 
@@ -57,14 +57,14 @@ class BlockSurface {
   void limit_growth(const FilteredDepth& depth);
   void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
   void lay_out(const FilteredDepth& depth, int v, int first, int count);
-  void trust(const FilteredDepth& depth, int v, int first, int count);
+  void measure_trust(const FilteredDepth& depth, int v, int first, int count);
 
   Kernel kernel_;
   float minimum_radius_;
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
   std::vector<float> trusts_;
-  BlockGrid grid_;
+  PaddedBlocks padded_;
   BlockRims rims_;
 };
 

@@ -20,9 +20,9 @@ constexpr double kFarFromOrigin = 16;
 Morph::Morph(const MorphOptions& options)
     : options_(options),
       blocks_(options.kernel, options.minimum_radius),
-      tracks_(shown_, blocks_),
+      matches_(shown_, blocks_),
       moves_(options_, shown_, blocks_),
-      fates_(shown_, blocks_, tracks_, moves_),
+      fates_(shown_, blocks_, matches_, moves_),
       pieces_(kPieces) {}
 
 void Morph::look(const MorphInput& input) {
@@ -66,7 +66,7 @@ void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoi
   streams_ = shown_.any() && (streams_ || moment.stamp != shown_.stamp());
   shown_.begin(moment, origin_);
   const bool moved = blocks_.put(input.depth, origin_, streams_) && shown_.any();
-  tracks_.begin(moved, input.pinhole, moment.duration);
+  matches_.begin(moved, input.pinhole, moment.duration);
   points.origin = origin_;
   points.kernel = options_.kernel;
   points.one_sided = true;

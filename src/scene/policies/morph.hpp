@@ -13,7 +13,7 @@
 #include "palpate/geometry/shapes.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/policies/block_fates.hpp"
-#include "scene/policies/block_tracks.hpp"
+#include "scene/policies/block_matches.hpp"
 #include "scene/policies/frame_blocks.hpp"
 #include "scene/policies/point_moves.hpp"
 #include "scene/policies/point_writer.hpp"
@@ -41,7 +41,7 @@ struct MorphInput {
 /// farther, and it is gone. Nothing at all, or a camera that looks elsewhere: it stays for a while.
 /// Points appear and go by their presence, which is stiffness.
 ///
-/// FrameBlocks says what the frame shows, ShownPoints what was shown last, BlockTracks who is who,
+/// FrameBlocks says what the frame shows, ShownPoints what was shown last, BlockMatches who is who,
 /// BlockFates what becomes of each (by fate()), PointMoves how it moves then; PointWriter writes
 /// it.
 class Morph {
@@ -85,7 +85,7 @@ class Morph {
   MorphOptions options_;
   FrameBlocks blocks_;
   ShownPoints shown_;
-  BlockTracks tracks_;
+  BlockMatches matches_;
   PointMoves moves_;
   BlockFates fates_;
 

@@ -1,5 +1,5 @@
 // Checks who is who: which old points the blocks of a new frame show again.
-#include "scene/policies/block_tracks.hpp"
+#include "scene/policies/block_matches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ using test::small_camera;
 using test::wall;
 
 // Shows a wall in every block, then looks at another frame.
-class BlockTracksTest : public testing::Test {
+class BlockMatchesTest : public testing::Test {
  protected:
-  BlockTracksTest() {
+  BlockMatchesTest() {
     Morph morph{{}};
     const FilteredDepth depth = filtered(wall(0.5));
     auto points = std::make_shared<SurfacePoints>();
@@ -48,7 +48,7 @@ class BlockTracksTest : public testing::Test {
     blocks_.look(depth_, {}, true);
     shown_.begin({kFrame, kFrame, kFrame}, origin_);
     blocks_.put(depth_, origin_, false);
-    tracks_.begin(moved, pinhole_, duration);
+    matches_.begin(moved, pinhole_, duration);
   }
 
   [[nodiscard]] SeenPoint seen(std::uint32_t place) const { return blocks_.four_at(place).lane(0); }
@@ -60,43 +60,43 @@ class BlockTracksTest : public testing::Test {
   FilteredDepth depth_;
   FrameBlocks blocks_{Kernel::wyvill, 0};
   ShownPoints shown_;
-  BlockTracks tracks_{shown_, blocks_};
+  BlockMatches matches_{shown_, blocks_};
 };
 
-TEST_F(BlockTracksTest, ABlockThatShowsThePointAgainIsItsPartner) {
+TEST_F(BlockMatchesTest, ABlockThatShowsThePointAgainIsItsPartner) {
   for (std::uint32_t place = 0; place < blocks_.order().size(); ++place) {
-    const auto partner = tracks_.partner_of(seen(place));
+    const auto partner = matches_.partner_of(seen(place));
     ASSERT_TRUE(partner) << place;
     EXPECT_EQ(partner->i, place);
     EXPECT_EQ(partner->before.position, seen(place).state.position);
   }
-  EXPECT_EQ(tracks_.four_at(4), 4u);
+  EXPECT_EQ(matches_.four_at(4), 4u);
 }
 
-TEST_F(BlockTracksTest, WhatHasMovedAsFastAsAHandIsTheSame) {
+TEST_F(BlockMatchesTest, WhatHasMovedAsFastAsAHandIsTheSame) {
   show(wall(0.5 - 0.9 * kFrame), false);
-  EXPECT_TRUE(tracks_.partner_of(seen(middle())));
+  EXPECT_TRUE(matches_.partner_of(seen(middle())));
 }
 
-TEST_F(BlockTracksTest, WhatHasMovedFasterIsAnother) {
+TEST_F(BlockMatchesTest, WhatHasMovedFasterIsAnother) {
   show(wall(0.4), false);
-  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+  EXPECT_FALSE(matches_.partner_of(seen(middle())));
 }
 
 // An arm that came over a table while frames were lost took the table along, and a hand on it.
-TEST_F(BlockTracksTest, WhatIsFarNearerAfterALongGapIsAnother) {
+TEST_F(BlockMatchesTest, WhatIsFarNearerAfterALongGapIsAnother) {
   show(wall(0.5 - 0.056), false, 4 * kFrame);
-  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+  EXPECT_FALSE(matches_.partner_of(seen(middle())));
   show(wall(0.5 - 0.9 * kFrame), false, 4 * kFrame);
-  EXPECT_TRUE(tracks_.partner_of(seen(middle())));
+  EXPECT_TRUE(matches_.partner_of(seen(middle())));
 }
 
-TEST_F(BlockTracksTest, WhatLeavesIsNoPartner) {
+TEST_F(BlockMatchesTest, WhatLeavesIsNoPartner) {
   shown_.entries()[middle()].kind = EntryKind::leaving;
-  EXPECT_FALSE(tracks_.partner_of(seen(middle())));
+  EXPECT_FALSE(matches_.partner_of(seen(middle())));
 }
 
-TEST_F(BlockTracksTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
+TEST_F(BlockMatchesTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
   T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
   show(wall(0.5), true);
   std::size_t matched = 0;
@@ -107,7 +107,7 @@ TEST_F(BlockTracksTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
       ++outside;
       continue;
     }
-    const auto partner = tracks_.partner_of(seen(entry.place));
+    const auto partner = matches_.partner_of(seen(entry.place));
     ASSERT_TRUE(partner) << i;
     EXPECT_LT((partner->before.position - shown_.at(i).position).norm(), seen(i).state.radius);
     ++matched;
@@ -116,7 +116,7 @@ TEST_F(BlockTracksTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
   EXPECT_GT(matched, 5 * outside);
 }
 
-TEST_F(BlockTracksTest, APointThatComesBackIntoTheImageIsLiveAgain) {
+TEST_F(BlockMatchesTest, APointThatComesBackIntoTheImageIsLiveAgain) {
   T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
   show(wall(0.5), true);
   T_world_sensor_ = looking_down();

@@ -30,7 +30,7 @@ void each_other(const FilteredDepth& depth, bool whole, const Take& take) {
 
 /// Columns of blocks with a margin of nothing all around, so that neighbours are there without
 /// asking.
-struct BlockGrid {
+struct PaddedBlocks {
   int margin = 0;  ///< blocks
   std::size_t stride = 0;
   std::vector<float> x, y, z;     ///< m

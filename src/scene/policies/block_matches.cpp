@@ -1,5 +1,5 @@
 // Matches the blocks of a frame with the points that were shown last.
-#include "scene/policies/block_tracks.hpp"
+#include "scene/policies/block_matches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ void BlockEntries::sort(std::span<const Entry> entries, std::size_t blocks) {
   }
 }
 
-void BlockTracks::begin(bool moved, const Pinhole& pinhole, double duration) {
+void BlockMatches::begin(bool moved, const Pinhole& pinhole, double duration) {
   moved_ = moved;
   duration_ = static_cast<float>(duration);
   if (moved) follow_camera(pinhole);
@@ -36,7 +36,7 @@ void BlockTracks::begin(bool moved, const Pinhole& pinhole, double duration) {
 }
 
 /// Puts every old point at the block that sees it now.
-void BlockTracks::follow_camera(const Pinhole& pinhole) {
+void BlockMatches::follow_camera(const Pinhole& pinhole) {
   const auto last = static_cast<std::uint32_t>(blocks_.order().size() - 1);
   std::uint32_t i = 0;
   for (Entry& entry : shown_.entries()) {
@@ -52,7 +52,7 @@ void BlockTracks::follow_camera(const Pinhole& pinhole) {
   }
 }
 
-std::optional<BlockTracks::Partner> BlockTracks::partner_of(const SeenPoint& seen) const {
+std::optional<BlockMatches::Partner> BlockMatches::partner_of(const SeenPoint& seen) const {
   // Squared, since a variance is compared with a squared distance.
   constexpr float kDeviations2 = BlockSurface::kDeviations * BlockSurface::kDeviations;
   const float same2 = std::max(seen.state.radius * seen.state.radius, kDeviations2 * seen.variance);
@@ -72,7 +72,8 @@ std::optional<BlockTracks::Partner> BlockTracks::partner_of(const SeenPoint& see
 }
 
 /// Has what was there come along the ray to what is seen now?
-bool BlockTracks::may_move(const SeenPoint& seen, std::uint32_t i, const PointState& before) const {
+bool BlockMatches::may_move(const SeenPoint& seen, std::uint32_t i,
+                            const PointState& before) const {
   if (shown_.entries()[i].kind != EntryKind::live || moved_) return false;
   const float went_on = std::min(shown_.speed_of(i), ShownPoints::kSudden) * duration_;
   // The longer nothing was seen, the likelier what is nearer now is something else.
@@ -83,7 +84,7 @@ bool BlockTracks::may_move(const SeenPoint& seen, std::uint32_t i, const PointSt
 }
 
 /// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
-bool BlockTracks::came_aside(const SeenPoint& seen) const {
+bool BlockMatches::came_aside(const SeenPoint& seen) const {
   const BlockOrder& order = blocks_.order();
   bool found = false;
   visit_beside(order.columns, order.rows, order.blocks[seen.place], [&](std::size_t other) {

@@ -45,10 +45,10 @@ class BlockEntries {
 
 /// Who is who: matches what the blocks of a frame show with the points that were shown last. Knows
 /// nothing of what becomes of them.
-class BlockTracks {
+class BlockMatches {
  public:
   /// Both have to last as long.
-  BlockTracks(ShownPoints& shown, const FrameBlocks& blocks) : shown_(shown), blocks_(blocks) {}
+  BlockMatches(ShownPoints& shown, const FrameBlocks& blocks) : shown_(shown), blocks_(blocks) {}
 
   /// Finds which points are at which block. `moved`: blocks see elsewhere than before, through that
   /// pinhole. `duration`: of the next snapshot, s.

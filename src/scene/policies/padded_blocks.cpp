@@ -1,11 +1,11 @@
 // Lays blocks out side by side.
-#include "scene/policies/block_grid.hpp"
+#include "scene/policies/padded_blocks.hpp"
 
 #include "scene/policies/lanes.hpp"
 
 namespace palpate {
 
-bool BlockGrid::make_room(const FilteredDepth& depth, int blocks) {
+bool PaddedBlocks::make_room(const FilteredDepth& depth, int blocks) {
   const auto wide = static_cast<std::size_t>(depth.columns + 2 * blocks);
   const std::size_t size = wide * static_cast<std::size_t>(depth.rows + 2 * blocks) + kLanes;
   if (blocks == margin && wide == stride && size == x.size()) return false;
@@ -17,7 +17,7 @@ bool BlockGrid::make_room(const FilteredDepth& depth, int blocks) {
   return true;
 }
 
-void BlockGrid::lay_out_places(const FilteredDepth& depth, int v, int first, int count) {
+void PaddedBlocks::lay_out_places(const FilteredDepth& depth, int v, int first, int count) {
   const Eigen::Vector3f* position =
       depth.positions.data() + static_cast<std::ptrdiff_t>(v) * depth.columns + first;
   const std::size_t begin = place(first, v);
