@@ -18,13 +18,11 @@ using Eigen::Vector3f;
 constexpr float kNoneNear = std::numeric_limits<float>::infinity();  // m: no sheet is near
 
 // Which points belong to the next other sheet along a normal; all are judgement.
-constexpr float kGapReach = 1.6f;     // R
-constexpr float kGapTube = 1.3f;      // spacings to the side
-constexpr float kGapSlope = 0.5f;     // least height over the way to the side
-constexpr float kGapCosine = 0.8f;    // of the angle between both normals, at least (37 degrees)
-constexpr float kGapTrust = 0.3f;     // confidence, at least
-constexpr float kGapResiduals = 3;    // least height, in residuals: three sigma
-constexpr float kGapSpacings = 0.3f;  // least height, in spacings
+constexpr float kGapReach = 1.6f;   // R
+constexpr float kGapTube = 1.3f;    // spacings to the side
+constexpr float kGapSlope = 0.5f;   // least height over the way to the side
+constexpr float kGapCosine = 0.8f;  // of the angle between both normals, at least (37 degrees)
+constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 
 // Factor on the squared slope where points are picked for a closer look.
 constexpr float kSafe = 0.999f;  // derived: rounding takes less
@@ -102,7 +100,7 @@ class Outlook {
     return {input_.grid.points()[i],
             own_.normals[i],
             kGapTube * spacing,
-            std::max(kGapResiduals * own_.residuals[i], kGapSpacings * spacing),
+            kGapResiduals * own_.residuals[i],
             sure_[i] != 0 ? voting * voting : -1,
             sheets_.sheet[i]};
   }
@@ -125,7 +123,6 @@ class Outlook {
     if (off <= eye.least) return;
     const float aside = std::max(0.f, squared - height * height);
     if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return;
-    if (own_.confidences[j] < kGapTrust) return;
     if (std::abs(eye.normal.dot(own_.normals[j])) < kGapCosine) return;
     float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
     gap = std::min(gap, off);

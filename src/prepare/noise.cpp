@@ -49,7 +49,6 @@ constexpr double kFlattest = 0.25;    // share of the windows that are believed;
 constexpr double kShapeGrowth = 1.5;  // from the middle to the wide window: shape; judgement
 constexpr double kFlatNoise = 0.02;   // spacings: less noise is not looked at; judgement
 constexpr double kNoteworthy = 1.2;   // excess that is not ignored; judgement
-constexpr double kMostExcess = 4;     // judgement: R grows with its root and at most doubles
 // Ratio of sigmas: more is shape, not neighbours that err together; judgement.
 constexpr double kMostRise = 5;
 
@@ -174,7 +173,7 @@ Noise measure_noise(const CellGrid& grid, double spacing) {
   if (excess < kNoteworthy) return noise;
   const double rise = median_of(all, &Widths::rise);
   if (rise > kMostRise) return noise;  // shape that is as wavy in all wide windows
-  noise.excess = std::min(excess, kMostExcess);
+  noise.excess = excess;
   const double sigma = median_of(all, &Widths::sigma);
   // Where noise fills narrow windows, the map's wider ones see all of it.
   const bool filled = fills(noise.sigma, kNarrow.reach * spacing);

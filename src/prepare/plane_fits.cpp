@@ -12,14 +12,6 @@
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {
-namespace {
-
-// R: a quadric that leaves more may mix two sheets; judgement (docs/method.md 5.5).
-constexpr double kSmoothFit = 0.03;
-constexpr double kNoisyFit = 1.2;  // of the noise, for the same use; judgement
-
-}  // namespace
-
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
   own.normals[i] = fit.normal.cast<float>();
   own.confidences[i] = static_cast<float>(fit.planarity);
@@ -52,8 +44,8 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
   }
   const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
                          std::span<const std::uint32_t> near) {
-    const double smooth = std::max(kSmoothFit * static_cast<double>(radii[i]),
-                                   kNoisyFit * static_cast<double>(noise[i]));
+    const double smooth =
+        flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
     const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
                                     static_cast<double>(spacings[i]), smooth);
     take_fit(fit, i, sheets);

@@ -50,7 +50,7 @@ constexpr double kNoiseToTilt = 3.2;
 
 // No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
 // noise that needs it is the sensor's to filter; judgement.
-constexpr float kMostFloors = 2.4f;
+constexpr double kMostFloors = 2.4;
 
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
 // 0.04; a right angle 0.2.
@@ -67,9 +67,10 @@ std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, do
   std::vector<float> radii = noise.products;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const double radius = std::sqrt(scale * static_cast<double>(radii[i]));
-    radii[i] = std::clamp(static_cast<float>(radius), floors[i], kMostFloors * floors[i]);
+    const float most = static_cast<float>(kMostFloors) * floors[i];
+    radii[i] = std::clamp(static_cast<float>(radius), floors[i], most);
     const float layer = static_cast<float>(kSigmasInReach) * noise.sigmas[i];
-    floors[i] = std::clamp(layer, floors[i], kMostFloors * floors[i]);
+    floors[i] = std::clamp(layer, floors[i], most);
     radii[i] = std::max(radii[i], floors[i]);
   }
   shrink_at_edges(grid, floors, radii);
@@ -97,14 +98,7 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
 
 namespace {
 
-constexpr double kLittleNoise = 0.15;    // noise in spacings; judgement (docs/method.md 5.3)
-constexpr double kNoisyMultiple = 3;     // m above that; judgement
-constexpr double kMuchNoise = 0.4;       // noise in spacings; judgement
-constexpr double kNoisiestMultiple = 4;  // m above that; judgement
-
-// No R is above so many spacings for noise's sake: more would cost time and shape (judgement) ...
-constexpr double kMostSpacings = 6;
-// ... nor above this part of the cloud's size; judgement.
+// No R is above this part of the cloud's size for noise's sake; judgement.
 constexpr double kFinestShape = 25;
 
 // R in spacings at least, where points lie irregularly: gaps between random points are wider than
@@ -113,19 +107,13 @@ constexpr double kIrregularMultiple = 3;
 
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
-double multiple_of(double noise, double spacing) {
-  if (noise > kMuchNoise * spacing) return kNoisiestMultiple;
-  return noise > kLittleNoise * spacing ? kNoisyMultiple : kUsualMultiple;
-}
-
 /// R by spacing and noise, which is taken from place to place where the cloud was thinned for it.
 std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
   const CloudFacts& facts = sampling.facts;
   const bool by_place = !sampling.local.products.empty();
   const double noise = by_place ? 0 : facts.noise.sigma;
   const bool irregular = facts.irregular && sampling.voxel <= 0;
-  const double multiple = std::max(irregular ? kIrregularMultiple : kUsualMultiple,
-                                   multiple_of(noise, sampling.spacing));
+  const double multiple = irregular ? kIrregularMultiple : kUsualMultiple;
   const double finest = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape;
   std::vector<float> radii(sampling.spacings.size());
   std::ranges::transform(sampling.spacings, radii.begin(), [&](float of_point) {
@@ -133,7 +121,7 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
     const double footprint = sampling.voxel > 0 ? facts.spacing : spacing;
     const double for_noise =
         std::min({std::sqrt(kNoiseToTilt * noise * footprint / options.normal_error),
-                  kMostSpacings * spacing, finest});
+                  kMostFloors * kUsualMultiple * spacing, finest});
     return static_cast<float>(std::max({multiple * spacing, options.minimum_radius, for_noise}));
   });
   if (!by_place) return radii;

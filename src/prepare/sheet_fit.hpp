@@ -62,7 +62,6 @@ class SheetFitter {
 
  private:
   [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);
-  [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
   [[nodiscard]] SheetFit fit_offsets(double reach);
   void subtract_quadric(double reach, SheetFit& fit);
 

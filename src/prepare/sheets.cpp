@@ -13,8 +13,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double kCertain = 1e12;  // votes: 12 of each of 2^32 points are fewer; derived
-
 // |sum of evidence| over the sum of its sizes.
 constexpr double kCoherent = 0.5;  // three quarters agree; judgement
 constexpr double kAgree = 0.96;    // it is sure: 98 % agree; judgement
@@ -74,8 +72,7 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
 }
 
 /// What sheets say of each other, the surest first.
-std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes,
-                           const std::vector<Evidence>& evidence) {
+std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes) {
   std::vector<Bond> bonds;
   for (std::size_t k = 0; k < votes.size();) {
     Bond bond{votes[k].a, votes[k].b, {}};
@@ -84,8 +81,6 @@ std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes,
       bond.said.value += v * std::abs(v);
       bond.said.squares += v * v;
     }
-    const int both = evidence[bond.a].sign(kAgree) * evidence[bond.b].sign(kAgree);
-    if (both != 0) bond.said = {both * kCertain, kCertain};
     bonds.push_back(bond);
   }
   std::stable_sort(bonds.begin(), bonds.end(), [](const Bond& x, const Bond& y) {
@@ -210,7 +205,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   const std::vector<SheetVote> votes = look_around(input, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, sheets);
-  join_parts(input, bonds_of(votes, evidence), evidence, known.middle, own, sheets);
+  join_parts(input, bonds_of(votes), evidence, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
 }

@@ -18,9 +18,8 @@ namespace {
 constexpr float kStraySpacings = 1.8f;  // measured (tests/prepare/strays_test.cpp)
 constexpr std::size_t kNeighbors = 9;   // derived: a point of a grid and the eight around it
 constexpr float kSlender = 1.f / 3;     // judgement: of a sheet's width, and of a line's length
-// The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, 0.7 at
-// a line's end, 1 where all are far away; less than half where they lie around.
-constexpr float kBeside = 0.8f;  // judgement: between 0.7 and 1
+// The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, less
+// where they lie around.
 constexpr float kAround = 0.5f;  // judgement: no corner of a sheet
 // Points, more than half of kNeighbors, the point itself among them; judgement.
 constexpr std::ptrdiff_t kMostOfNearest = 5;
@@ -66,7 +65,7 @@ std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const floa
     if (spacings[i] <= kStraySpacings * near) return;
     const Neighborhood around = look(i, places);
     const bool company = places.size() > 1 && places[1].squared_distance <= near * near;
-    doubted[i] = !company && (!around.like_a_surface || around.aside > kBeside) ? 1 : 0;
+    doubted[i] = !company && !around.like_a_surface ? 1 : 0;
   });
   // Where sheets meet, the nearest are in no sheet, but most of them are.
   std::vector<std::uint8_t> strays(grid.size());

@@ -174,13 +174,11 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
                                        const WeightSums& sums) {
-  constexpr float kShareOfAround = 0.35f;  // of Sbar_i; judgement (docs/preparation.md, Weights)
   std::vector<std::uint8_t> mask(grid.size());
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       grid.size(), 4096, [&](std::size_t k, auto& near) {
         const auto i = static_cast<std::uint32_t>(k);
-        const bool faint = sums.own[i] < kShareOfAround * sums.around[i];
-        mask[i] = faint || !has_company(grid, radii, sums.own[i], i, near) ? 1 : 0;
+        mask[i] = has_company(grid, radii, sums.own[i], i, near) ? 0 : 1;
       });
   return mask;
 }
