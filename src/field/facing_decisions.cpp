@@ -186,9 +186,7 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   for (Meeting& meeting : with) {
     if (!meeting.is_edge()) meeting = {};
   }
-  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) {
-    return sheet.hidden <= 0.5 * sheet.all ? kInFront : kBehind;
-  }
+  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) return kInFront;
   const int other = with[kInFront].all > 0                  ? kInFront
                     : with[kBehind].all > with[kAcross].all ? kBehind
                                                             : kAcross;

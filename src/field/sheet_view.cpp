@@ -24,10 +24,9 @@ constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
 
 // What the eye sees (docs/method.md 2.7); all are judgement.
-constexpr float kLift = 0.3f;        // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;        // R beyond the nearest point, within which points tell
-constexpr double kFades = 1;         // R of way on which what was seen fades to a third
-constexpr float kHiddenView = 2.6f;  // R from the eye: points within tell if a sheet is hidden
+constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
+constexpr float kView = 1.2f;  // R beyond the nearest point, within which points tell
+constexpr double kFades = 1;   // R of way on which what was seen fades to a third
 
 /// The index of a part, which is added if it is new. Parts are never more than sheets, so there is
 /// room for them.
@@ -74,8 +73,6 @@ void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::
     point.radius = static_cast<float>(radius_now(layer, i));
     point.sheet = slot;
     point.residual = own.empty() ? 0 : own.residual[i];
-    point.above = own.empty() ? std::numeric_limits<float>::infinity() : own.above[i];
-    point.below = own.empty() ? std::numeric_limits<float>::infinity() : own.below[i];
     view.points.push_back(point);
     Sheet& s = view.table.sheets[slot];
     const float distance = point.place.norm();
@@ -117,23 +114,10 @@ float height_over(const SheetView& view, const Point& point) noexcept {
   return bent ? 0.5f * (height + view.eye.beside.dot(way)) : height;
 }
 
-/// The tool looks from where it is or, where it touches, from a little above; between two sheets
-/// from no further than halfway.
+/// The tool looks from where it is or, where it touches, from a little above.
 void choose_eye(SheetView& view, const Stance& stance) noexcept {
-  const Vector3f normal = stance.normal.cast<float>();
-  float lift = stance.touches() ? kLift * view.radius : 0;
-  float nearest = std::numeric_limits<float>::infinity();
-  for (const Point& point : view.points) {
-    const Sheet& sheet = view.table.sheets[point.sheet];
-    const int sign = view.table.parts[sheet.part].factor();
-    const float squared = point.place.squaredNorm();
-    const bool open = sheet.label == SheetTable::kUndecided || sign == 0;
-    if (!stance.touches() || open || squared >= nearest) continue;
-    if (static_cast<float>(sign) * point.normal.dot(normal) < 0.5f) continue;
-    nearest = squared;
-    lift = std::min(kLift * view.radius, 0.5f * (sign > 0 ? point.above : point.below));
-  }
-  view.eye.place = lift * normal;
+  const float lift = stance.touches() ? kLift * view.radius : 0;
+  view.eye.place = lift * stance.normal.cast<float>();
   float closest = std::numeric_limits<float>::infinity();
   float closest_seen = closest;
   for (const Point& point : view.points) {
@@ -262,11 +246,6 @@ void SheetView::look(const Stance& stance, double way, bool from_behind) noexcep
     const Vector3f back = eye.place - p.place;
     const float squared = back.squaredNorm();
     const float height = height_over(*this, p);
-    const bool hidden = p.is_hidden(height);
-    if (const double w = weight_within(squared, kHiddenView * radius); w > 0) {
-      sheet.all += w;
-      if (hidden) sheet.hidden += w;
-    }
     if (squared >= eye.view * eye.view) continue;
     const double w = static_cast<double>(p.confidence) * weight_within(squared, eye.view);
     sheet.weight += w;
@@ -274,7 +253,7 @@ void SheetView::look(const Stance& stance, double way, bool from_behind) noexcep
     // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = from_behind && is_one_sided(p) ? height - rise_of(*this, p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    if (!hidden) seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
+    seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
   }
   for (std::size_t k = 0; k < table.parts.size(); ++k) {
     Part& part = table.parts[k];

@@ -35,7 +35,7 @@ inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to te
 enum Label : std::uint8_t {
   kInFront = 0,  ///< what is above it is free
   kBehind = 1,   ///< it meets what is in front at a convex edge, or what is across at one beyond
-                 ///< the front, or is hidden: solid is what is below both
+                 ///< the front: solid is what is below both
   kAcross = 2,   ///< it meets what is in front in a crease, or that goes on beyond its plane: free
                  ///< is what is above both
 };
@@ -89,8 +89,6 @@ struct SheetTable {
     std::uint32_t begin = 0;  // of its points in the view's order
     std::uint32_t count = 0;
     double weight = 0;
-    double all = 0;     // sum of its points' weights
-    double hidden = 0;  // the same of those that another sheet hides
   };
 
   SheetTable();
@@ -133,14 +131,7 @@ struct SheetView {
     float confidence;
     float radius;
     float residual;
-    float above;
-    float below;
     std::uint32_t sheet;
-
-    // Is another sheet between its plane and an eye at this height above it?
-    [[nodiscard]] bool is_hidden(float height) const noexcept {
-      return std::abs(height) > (height > 0 ? above : below) + residual;
-    }
   };
 
   // Where the tool looks from.

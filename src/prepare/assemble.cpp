@@ -61,8 +61,6 @@ void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
   add(points.normals, &Twin::host);
   add(sheets.sheet, &Twin::host);
   add(sheets.residual, &Twin::host);
-  add(sheets.above, &Twin::host);
-  add(sheets.below, &Twin::host);
 }
 
 void complete(Prepared& prepared) {

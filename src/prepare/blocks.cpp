@@ -62,8 +62,6 @@ void each_column(const Visit& visit, Points&... points) {
   visit(points.end_presences...);
   visit(points.sheets.sheet...);
   visit(points.sheets.residual...);
-  visit(points.sheets.above...);
-  visit(points.sheets.below...);
 }
 
 /// Gives the members of `numbers`, but kNone, new numbers from 0 on in the order in which they

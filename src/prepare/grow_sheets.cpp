@@ -15,9 +15,9 @@ namespace {
 using Eigen::Vector3f;
 
 // When two points continue each other's sheet; judgement (docs/preparation.md, Sheets).
-constexpr float kPairReach = 1.6f;  // spacings
-constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one sheet may turn, or more
-constexpr float kLeastTolerance = 0.15f;  // spacings that a residual may always be
+constexpr float kPairReach = 1.6f;   // spacings
+constexpr float kTurn = 0.28f;       // rad (16 degrees) that normals of one sheet may turn, or more
+constexpr float kTolerance = 0.15f;  // a third of what a point may be off, in spacings, or noise
 
 constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
 // Factor on the confidence of points of smaller sheets; judgement.
@@ -88,7 +88,7 @@ class Growth {
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
     const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
     const float arc = kChord * std::max(kTurn * near, bend * length);
-    if (off > std::max(sheet_tolerance(input_, own_, a, b), arc)) return;
+    if (off > std::max(sheet_tolerance(input_, a, b), arc)) return;
     const int sign = cosine < 0 ? -1 : 1;
     if (inside) {
       sets_.join(i, j, sign);
@@ -105,11 +105,9 @@ class Growth {
 
 }  // namespace
 
-float sheet_tolerance(const SheetInput& input, const PointFits& own, std::uint32_t i,
-                      std::uint32_t j) {
-  const float least = std::max(std::max(input.noise[i], input.noise[j]),
-                               kLeastTolerance * std::min(input.spacings[i], input.spacings[j]));
-  return 3 * std::min(std::max(own.residuals[i], own.residuals[j]), least);
+float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j) {
+  return 3 * std::max(std::max(input.noise[i], input.noise[j]),
+                      kTolerance * std::min(input.spacings[i], input.spacings[j]));
 }
 
 Growths grow_sheets(const SheetInput& input, PointFits& own) {

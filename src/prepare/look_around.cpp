@@ -36,7 +36,7 @@ constexpr int kVotesEach = 3;           // points of each, the nearest
 class Outlook {
  public:
   Outlook(const SheetInput& input, const PointFits& own, Growths& grown)
-      : input_(input), own_(own), sheets_(grown.sheets), sure_(grown.sure) {}
+      : input_(input), own_(own), grown_(grown), sheets_(grown.sheets) {}
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
             std::vector<SheetVote>& votes) {
@@ -101,7 +101,7 @@ class Outlook {
             own_.normals[i],
             kGapTube * spacing,
             kGapResiduals * own_.residuals[i],
-            sure_[i] != 0 ? voting * voting : -1,
+            grown_.sure[i] != 0 ? voting * voting : -1,
             sheets_.sheet[i]};
   }
 
@@ -124,7 +124,7 @@ class Outlook {
     const float aside = std::max(0.f, squared - height * height);
     if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return;
     if (std::abs(eye.normal.dot(own_.normals[j])) < kGapCosine) return;
-    float& gap = height > 0 ? sheets_.above[i] : sheets_.below[i];
+    float& gap = height > 0 ? grown_.above[i] : grown_.below[i];
     gap = std::min(gap, off);
   }
 
@@ -144,15 +144,14 @@ class Outlook {
       const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
       const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
       votes.push_back(
-          {a, b,
-           agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, own_, i, j))});
+          {a, b, agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, i, j))});
     }
   }
 
   const SheetInput& input_;
   const PointFits& own_;
-  SurfacePoints::Sheets& sheets_;
-  const std::vector<std::uint8_t>& sure_;
+  Growths& grown_;
+  const SurfacePoints::Sheets& sheets_;
   detail::NearPairs pairs_;
   std::array<Eye, simd::kQueries> eyes_;
   std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
@@ -161,8 +160,8 @@ class Outlook {
 }  // namespace
 
 std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own, Growths& grown) {
-  grown.sheets.above.assign(input.grid.size(), kNoneNear);
-  grown.sheets.below.assign(input.grid.size(), kNoneNear);
+  grown.above.assign(input.grid.size(), kNoneNear);
+  grown.below.assign(input.grid.size(), kNoneNear);
   const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
   std::vector<std::vector<SheetVote>> votes(blocks.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {

@@ -54,10 +54,9 @@ constexpr double kMostFloors = 2.4;
 
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
 // 0.04; a right angle 0.2.
-constexpr float kBends = 0.08f;     // R begins to shrink; judgement
-constexpr float kEdge = 0.14f;      // R shrinks no further; judgement
-constexpr float kShrink = 0.25f;    // share of R; measured (docs/preparation.md, Support radius)
-constexpr float kSmoothing = 0.5f;  // R within which radii are averaged; judgement
+constexpr float kBends = 0.08f;   // R begins to shrink; judgement
+constexpr float kEdge = 0.14f;    // R shrinks no further; judgement
+constexpr float kShrink = 0.25f;  // share of R; measured (docs/preparation.md, Support radius)
 
 }  // namespace
 
@@ -80,20 +79,10 @@ std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise, do
 void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
                      std::vector<float>& radii) {
   const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
-  std::vector<float> small(radii.size());
   for (std::size_t i = 0; i < radii.size(); ++i) {
     const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
-    small[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
+    radii[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
   }
-  // Averaged, so that noise in the residuals does not make R flicker from point to point.
-  detail::parallel_each_with<std::vector<std::uint32_t>>(
-      radii.size(), 1024, [&](std::size_t i, auto& near) {
-        near.clear();
-        grid.within(grid.points()[i], kSmoothing * radii[i], near);
-        float sum = 0;
-        for (const std::uint32_t k : near) sum += small[k];
-        if (!near.empty()) radii[i] = std::max(floors[i], sum / static_cast<float>(near.size()));
-      });
 }
 
 namespace {

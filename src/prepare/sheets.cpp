@@ -41,7 +41,8 @@ struct Evidence {
 
 /// For each sheet: given normals where nearly all agree, else what the eye sees of it.
 std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& known,
-                                  const PointFits& own, const SurfacePoints::Sheets& sheets) {
+                                  const PointFits& own, const Growths& grown) {
+  const SurfacePoints::Sheets& sheets = grown.sheets;
   struct Counts {
     double points = 0;
     double hidden = 0;
@@ -60,7 +61,7 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
-      const bool hidden = std::isfinite(cosine > 0 ? sheets.above[i] : sheets.below[i]);
+      const bool hidden = std::isfinite(cosine > 0 ? grown.above[i] : grown.below[i]);
       hidden ? void(++counts[sheet].hidden) : seen[sheet].add(static_cast<double>(cosine));
     }
   }
@@ -142,12 +143,12 @@ std::vector<PartSums> sums_of_parts(const SheetInput& input, const PointFits& ow
 }
 
 /// Turns the normals of whole sheets.
-void turn(const std::vector<int>& sign_of_sheet, PointFits& own, SurfacePoints::Sheets& sheets) {
+void turn(const std::vector<int>& sign_of_sheet, const SurfacePoints::Sheets& sheets,
+          PointFits& own) {
   for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
     if (sheets.sheet[i] == SurfacePoints::Sheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0)
       continue;
     own.normals[i] = -own.normals[i];
-    std::swap(sheets.above[i], sheets.below[i]);
   }
 }
 
@@ -193,7 +194,7 @@ void join_parts(const SheetInput& input, const std::vector<Bond>& bonds,
     sheets.known.push_back(sides.back().known ? 1 : 0);
   }
   for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[sheets.part[k]].sign;
-  turn(signs, own, sheets);
+  turn(signs, sheets, own);
 }
 
 }  // namespace
@@ -203,8 +204,8 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   Growths grown = grow_sheets(input, own);
   twins = std::move(grown.twins);
   const std::vector<SheetVote> votes = look_around(input, own, grown);
+  const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
-  const std::vector<Evidence> evidence = evidence_of(input, known, own, sheets);
   join_parts(input, bonds_of(votes), evidence, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;

@@ -50,25 +50,26 @@ struct Twin {
 ///
 /// Sets of sheets that lie side by side are one part where nearby pairs of their points agree on
 /// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
-/// arc joined the two. Where the signs of nearly all points of a sheet are known, these count
-/// instead. `twins`: gets the points that lie on two sheets, in rising order.
+/// arc joined the two. `twins`: gets the points that lie on two sheets, in rising order.
 [[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
                                                 PointFits& own, std::vector<Twin>& twins);
 
 /// Which sheet each point lies on.
 struct Growths {
-  SurfacePoints::Sheets sheets;  ///< every sheet is a part of its own; no gaps yet
+  SurfacePoints::Sheets sheets;  ///< every sheet is a part of its own
   std::vector<std::uint8_t>
       sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
   std::vector<Twin> twins;  ///< in rising order
+  // look_around() fills these, for each point.
+  std::vector<float> above;  ///< along +n to the next other sheet, m; infinity: none near
+  std::vector<float> below;  ///< the same along -n
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.
 [[nodiscard]] Growths grow_sheets(const SheetInput& input, PointFits& own);
 
 /// How far the points i and j may be off each other's plane when they lie on one sheet, m.
-[[nodiscard]] float sheet_tolerance(const SheetInput& input, const PointFits& own, std::uint32_t i,
-                                    std::uint32_t j);
+[[nodiscard]] float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j);
 
 /// What a pair of points says of two sheets: should their normals keep (> 0) or change (< 0) their
 /// relative sign? -1 ... 1.

@@ -260,9 +260,8 @@ class Snapping {
       if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float off = std::abs(own_.normals[j].dot(way));
-      const float on = std::max(kSnapResiduals * own_.residuals[j], kOnBoth * input_.spacings[i]);
       const float squared = way.squaredNorm();
-      if (off > on || squared >= best) continue;
+      if (off > kOnBoth * input_.spacings[i] || squared >= best) continue;
       best = squared;
       host = j;
     }

@@ -18,13 +18,10 @@ using Eigen::Vector3d;
 
 /// Puts all points on the first of these sheets, whose parts know no side; none hides another.
 void put_on_sheets(SurfacePoints& points, std::vector<std::uint32_t> parts) {
-  const float infinity = std::numeric_limits<float>::infinity();
   points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
                    .part = std::move(parts),
                    .known = {0},
-                   .residual = std::vector<float>(points.size(), 0),
-                   .above = std::vector<float>(points.size(), infinity),
-                   .below = std::vector<float>(points.size(), infinity)};
+                   .residual = std::vector<float>(points.size(), 0)};
 }
 
 /// A plane at the height z as preparation makes it, m: one sheet, whose normals point this way.

@@ -71,8 +71,7 @@ bool same_columns(const SurfacePoints& a, std::uint32_t i, const SurfacePoints& 
                   std::uint32_t k) {
   return a.normals[i] == b.normals[k] && a.density_weights[i] == b.density_weights[k] &&
          a.radii[i] == b.radii[k] && a.confidences[i] == b.confidences[k] &&
-         a.sheets.residual[i] == b.sheets.residual[k] && a.sheets.above[i] == b.sheets.above[k] &&
-         a.sheets.below[i] == b.sheets.below[k];
+         a.sheets.residual[i] == b.sheets.residual[k];
 }
 
 /// The tight box of all points, m.

@@ -102,8 +102,8 @@ TEST(LookAround, MeasuresTheWayToTheNextSheet) {
   (void)look_around(fitted.input(), fitted.own, grown);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const bool up = (fitted.grid.points()[i].z() < 1) == (fitted.own.normals[i].z() > 0);
-    EXPECT_FLOAT_EQ(up ? grown.sheets.above[i] : grown.sheets.below[i], 2);
-    EXPECT_TRUE(std::isinf(up ? grown.sheets.below[i] : grown.sheets.above[i]));
+    EXPECT_FLOAT_EQ(up ? grown.above[i] : grown.below[i], 2);
+    EXPECT_TRUE(std::isinf(up ? grown.below[i] : grown.above[i]));
   }
 }
 

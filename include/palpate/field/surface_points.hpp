@@ -46,8 +46,6 @@ struct SurfacePoints {
     std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
     std::vector<std::uint8_t> known;   ///< of each part: 1: its normals are known to point outward
     std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
-    std::vector<float> above;          ///< along +n to the next other sheet, m; infinity: none near
-    std::vector<float> below;          ///< the same along -n
 
     [[nodiscard]] bool empty() const { return sheet.empty(); }
   };
