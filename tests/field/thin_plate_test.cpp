@@ -1,7 +1,6 @@
 // Two sheets that run together, as the faces of a blade do and two scans that cross each other.
 #include <gtest/gtest.h>
 
-#include <limits>
 
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
@@ -34,8 +33,7 @@ class RunningTogether {
       all.push_back(p);
     }
     points_ = make_points(all);
-    const std::vector<float> far(all.size(), std::numeric_limits<float>::infinity());
-    points_.sheets = {{}, {0, 0}, {0}, std::vector<float>(all.size(), 0.f), far, far};
+    points_.sheets = {{}, {0, 0}, {0}, std::vector<float>(all.size(), 0.f)};
     for (const std::uint32_t i : points_.grid.order()) {
       points_.sheets.sheet.push_back(i < upper ? 0 : 1);
     }
