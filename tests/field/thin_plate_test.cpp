@@ -1,7 +1,6 @@
 // Two sheets that run together, as the faces of a blade do and two scans that cross each other.
 #include <gtest/gtest.h>
 
-
 #include "field/edged_shapes.hpp"
 #include "field/evaluate.hpp"
 #include "field/patch.hpp"
