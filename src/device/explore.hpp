@@ -28,8 +28,8 @@ struct MapSample {
 /// obstacle: points with normals, indexed. Coordinates are relative to the surface's origin.
 class SurfaceMap {
  public:
-  /// The region reaches region / 2 from the median point; it is the whole surface if no side of its
-  /// box is longer than `region`.
+  /// What is explored reaches region / 2 from the median point; it is the whole surface if no side
+  /// of its box is longer than `region`.
   SurfaceMap(const ExploredSurface& surface, double region, double radius);
 
   [[nodiscard]] std::size_t size() const { return grid_.size(); }

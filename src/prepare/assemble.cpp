@@ -76,7 +76,7 @@ void complete(Prepared& prepared) {
 }
 
 Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights,
-                  JoinedSheets sheets, const PrepareOptions& options, Prepared::Report report) {
+                  JoinedSheets joined, const PrepareOptions& options, Prepared::Report report) {
   SurfacePoints points;
   points.origin = sampling.origin;
   points.grid = std::move(sampling.grid);
@@ -90,10 +90,10 @@ Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weight
   points.normals = std::move(fits.normals);
   points.confidences = std::move(fits.confidences);
   points.confidences.resize(points.size(), 0.0f);
-  points.sheets = std::move(sheets.sheets);
-  add_twins(sheets.twins, points);
+  points.sheets = std::move(joined.sheets);
+  add_twins(joined.twins, points);
   report.speckle = weights.speckle;
-  report.points_out = points.size() - weights.speckle - sheets.twins.size();
+  report.points_out = points.size() - weights.speckle - joined.twins.size();
   Prepared prepared{std::move(points), report};
   complete(prepared);
   return prepared;

@@ -13,7 +13,7 @@ namespace palpate {
 
 /// Moves all columns into their places; adds the twins; completes the `report`.
 [[nodiscard]] Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights,
-                                JoinedSheets sheets, const PrepareOptions& options,
+                                JoinedSheets joined, const PrepareOptions& options,
                                 Prepared::Report report);
 
 /// Finishes points whose columns are whole, and reports on their radii and trust.

@@ -15,9 +15,10 @@ namespace {
 using Eigen::Vector3f;
 
 // When two points continue each other's sheet; judgement (docs/preparation.md, Sheets).
-constexpr float kPairReach = 1.6f;   // spacings
-constexpr float kTurn = 0.28f;       // rad (16 degrees) that normals of one sheet may turn, or more
-constexpr float kTolerance = 0.15f;  // a third of what a point may be off, in spacings, or noise
+constexpr float kPairReach = 1.6f;  // spacings
+constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one sheet may turn, or more
+constexpr float kTolerance =
+    0.15f;  // spacings; a point may be off by three of these, or of the noise
 
 constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
 // Factor on the confidence of points of smaller sheets; judgement.

@@ -38,16 +38,17 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                    std::vector<std::uint8_t>(grid.size())};
   sheets.bends = sheets.residuals;
   std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
+  const auto flat_at = [&](std::size_t i) {
+    return flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
+  };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const double flat = flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
-    if (static_cast<double>(sheets.residuals[i]) > flat) reaches[i] = kNormalsReach * radii[i];
+    const auto residual = static_cast<double>(sheets.residuals[i]);
+    if (residual > flat_at(i)) reaches[i] = kNormalsReach * radii[i];
   }
   const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
                          std::span<const std::uint32_t> near) {
-    const double smooth =
-        flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
     const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
-                                    static_cast<double>(spacings[i]), smooth);
+                                    static_cast<double>(spacings[i]), flat_at(i));
     take_fit(fit, i, sheets);
     sheets.others[i] = fit.others ? 1 : 0;
   };

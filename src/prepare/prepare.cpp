@@ -32,12 +32,12 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   Weights weights = weigh(sampling, radii, sums, options);
   watch.lap(report.seconds_weights);
   const KnownSigns known = given_signs(placed, sampling, options);
-  JoinedSheets sheets = join_sheets(sampling, radii, weights, known, fits);
-  if (!radii.strays.empty()) drop_strays_off_sheets(sampling, sheets, weights);
+  JoinedSheets joined = join_sheets(sampling, radii, weights, known, fits);
+  if (!radii.strays.empty()) drop_strays_off_sheets(sampling, joined, weights);
   watch.lap(report.seconds_normals);
 
   return assemble(std::move(sampling), std::move(radii), std::move(fits), std::move(weights),
-                  std::move(sheets), options, report);
+                  std::move(joined), options, report);
 }
 
 Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,

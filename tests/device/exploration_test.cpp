@@ -147,7 +147,7 @@ TEST(Exploration, WorksWithoutNormals) {
   EXPECT_GT(std::count_if(rows.begin(), rows.end(), touches), 500);
 }
 
-TEST(Exploration, StaysInAPatchOfALargeCloudFarFromTheOrigin) {
+TEST(Exploration, StaysInARegionOfALargeCloudFarFromTheOrigin) {
   PointCloud cloud = synthetic_cloud("bumps");
   for (Vector3f& p : cloud.positions) p *= 500;  // 100 m
   cloud.origin = {637000, 851000, 500};
