@@ -104,16 +104,16 @@ void fill_gaps(const Blocks& blocks, const NoiseModel& noise, const BlockRange& 
   if (filled.grid != blocks.grid) filled.resize(blocks.grid);
   const SameSurface same(noise, blocks.grid);
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
-  for (int row = range.first_row; row < range.first_row + range.rows; ++row) {
+  detail::parallel_each(static_cast<std::size_t>(range.rows), kLinesAtATime, [&](std::size_t r) {
+    const int row = range.first_row + static_cast<int>(r);
     const auto at = static_cast<std::ptrdiff_t>(blocks.at(range.first_column, row));
     std::copy_n(blocks.rho.begin() + at, range.columns, filled.rho.begin() + at);
     std::copy_n(blocks.counts.begin() + at, range.columns, filled.counts.begin() + at);
     bridge_line(same, filled.rho.data() + at, 1, range.columns);
-  }
+  });
   float* top = filled.rho.data() + blocks.at(range.first_column, range.first_row);
-  for (int column = 0; column < range.columns; ++column) {
-    bridge_line(same, top + column, stride, range.rows);
-  }
+  detail::parallel_each(static_cast<std::size_t>(range.columns), kLinesAtATime,
+                        [&](std::size_t c) { bridge_line(same, top + c, stride, range.rows); });
 }
 
 }  // namespace palpate::depth

@@ -64,11 +64,12 @@ struct BlockRange {
   }
 };
 
+inline constexpr std::size_t kLinesAtATime = 8;  ///< that a thread takes at once (judgement)
+
 /// Calls body(row) for each row, on several threads: see parallel_ranges().
 template <class Body>
 void for_rows(const BlockGrid& grid, const Body& body) {
-  constexpr std::size_t kRowsAtATime = 8;  // that a thread takes at once (judgement)
-  detail::parallel_each(static_cast<std::size_t>(grid.rows), kRowsAtATime,
+  detail::parallel_each(static_cast<std::size_t>(grid.rows), kLinesAtATime,
                         [&](std::size_t row) { body(static_cast<int>(row)); });
 }
 

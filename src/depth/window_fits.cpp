@@ -1,6 +1,8 @@
 // Fits a plane to each block's window, in the region that is asked for.
 #include "depth/window_fits.hpp"
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -101,6 +103,8 @@ bool FitRegion::contains(const Vector3d& point) const {
 
 void FitRegion::columns(const Blocks& blocks, const KeptTiles& kept, int row,
                         std::vector<std::int32_t>& columns) const {
+  columns.clear();
+  if (!range_.has_row(row)) return;
   const double y = blocks.grid.y(row);
   for (int column = range_.first_column; column < range_.first_column + range_.columns; ++column) {
     const float rho = blocks.rho[blocks.at(column, row)];
@@ -112,8 +116,6 @@ void FitRegion::columns(const Blocks& blocks, const KeptTiles& kept, int row,
 }
 
 namespace {
-
-constexpr std::size_t kRowsAtATime = 8;  // that a thread takes at once (judgement)
 
 // Blocks that a window reaches at most when it is moved by all of its reach (derived).
 constexpr int kBorder = 2 * simd::kLargestWindow;
@@ -150,51 +152,35 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
           .growth = std::min(2.0, std::sqrt(noise.correlation))};
 }
 
-void WindowFits::list_columns(const Blocks& blocks, const FitRegion& region,
-                              const KeptTiles& kept) {
-  columns_.clear();
-  row_begin_.clear();
-  row_begin_.push_back(0);
-  const BlockRange& range = region.range();
-  for (int row = range.first_row; row < range.first_row + range.rows; ++row) {
-    region.columns(blocks, kept, row, columns_);
-    row_begin_.push_back(columns_.size());
-  }
-}
-
-/// The columns of the region's blocks in a row.
-std::span<const std::int32_t> WindowFits::columns_of(const BlockRange& range, int row) const {
-  if (!range.has_row(row)) return {};
-  const auto r = static_cast<std::size_t>(row - range.first_row);
-  return std::span(columns_).subspan(row_begin_[r], row_begin_[r + 1] - row_begin_[r]);
-}
-
 BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
                            const FitRegion& region, const KeptTiles& kept, BlockFits& fits) {
   const BlockGrid& grid = blocks.grid;
-  if (filled_.grid != grid) {
+  if (filled_.grid != grid)
     table_.resize(static_cast<std::size_t>(grid.columns + 1) * (grid.rows + 1));
-    columns_.reserve(grid.size());
-    row_begin_.reserve(static_cast<std::size_t>(grid.rows) + 1);
-  }
   if (region.range().empty()) return {};
   const BlockRange range = region.range().grown(kBorder, grid);
   fill_gaps(blocks, noise, range, filled_);
   const simd::FitInput in = input(blocks, noise, normal_error, range);
-  functions_->table(in.table, rows_of(filled_));
-  list_columns(blocks, region, kept);
-  detail::parallel_each(static_cast<std::size_t>(range.rows), kRowsAtATime, [&](std::size_t r) {
+  const auto row_count = static_cast<std::size_t>(range.rows);
+  const auto fit_plainly = [&](std::size_t r) {
     const int row = range.first_row + static_cast<int>(r);
     kept.each_other(row, [&](int first_column, int count) {
       fit_plain(blocks, noise, row, first_column, count, fits);
     });
-    const auto columns = columns_of(region.range(), row);
-    functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
-    const std::size_t first = grid.index(0, row);
-    for (const std::int32_t column : columns) {
-      fits.states[first + static_cast<std::size_t>(column)] = FilteredDepth::State::fitted;
-    }
-  });
+  };
+  tbb::parallel_invoke([&] { functions_->table(in.table, rows_of(filled_)); },
+                       [&] { detail::parallel_each(row_count, kLinesAtATime, fit_plainly); });
+  using Columns = std::vector<std::int32_t>;
+  detail::parallel_each_with<Columns>(
+      row_count, kLinesAtATime, [&](std::size_t r, Columns& columns) {
+        const int row = range.first_row + static_cast<int>(r);
+        region.columns(blocks, kept, row, columns);
+        functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
+        const std::size_t first = grid.index(0, row);
+        for (const std::int32_t column : columns) {
+          fits.states[first + static_cast<std::size_t>(column)] = FilteredDepth::State::fitted;
+        }
+      });
   faces_.refit(in, filled_, noise, kept, fits);
   return range;
 }

@@ -112,7 +112,7 @@ class FitRegion {
 
   /// Blocks outside of it are outside of the region.
   [[nodiscard]] const BlockRange& range() const { return range_; }
-  /// Appends the columns of a row's blocks that are in the region, not empty and not kept.
+  /// Lists the columns of a row's blocks that are in the region, not empty and not kept.
   void columns(const Blocks& blocks, const KeptTiles& kept, int row,
                std::vector<std::int32_t>& columns) const;
 
@@ -145,13 +145,9 @@ class WindowFits {
 
   [[nodiscard]] simd::FitInput input(const Blocks& blocks, const NoiseModel& noise,
                                      double normal_error, const BlockRange& range);
-  void list_columns(const Blocks& blocks, const FitRegion& region, const KeptTiles& kept);
-  [[nodiscard]] std::span<const std::int32_t> columns_of(const BlockRange& range, int row) const;
   const simd::FitFunctions* functions_;
   Blocks filled_;
   std::vector<Place> table_;
-  std::vector<std::int32_t> columns_;  // of the region's blocks, row after row
-  std::vector<std::size_t> row_begin_;
   FaceFits faces_;
 };
 

@@ -32,6 +32,17 @@ void BlockMatches::begin(bool moved, const Pinhole& pinhole, double duration) {
   moved_ = moved;
   duration_ = static_cast<float>(duration);
   if (moved) follow_camera(pinhole);
+  if (moved || !listed_) list();
+  listed_ = false;
+}
+
+void BlockMatches::end() {
+  if (moved_) return;  // and will move on
+  list();
+  listed_ = true;
+}
+
+void BlockMatches::list() {
   by_block_.sort(shown_.entries(), blocks_.order().size());
 }
 

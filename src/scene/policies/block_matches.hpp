@@ -54,6 +54,12 @@ class BlockMatches {
   /// pinhole. `duration`: of the next snapshot, s.
   void begin(bool moved, const Pinhole& pinhole, double duration);
 
+  /// After new points are shown: does what begin() would, if the camera stands still.
+  void end();
+
+  /// What was shown is forgotten.
+  void forget() { listed_ = false; }
+
   /// The old points at a place of the curve.
   [[nodiscard]] std::span<const std::uint32_t> at(std::size_t place) const {
     return by_block_.at(place);
@@ -75,6 +81,7 @@ class BlockMatches {
 
  private:
   void follow_camera(const Pinhole& pinhole);
+  void list();
   [[nodiscard]] bool may_move(const SeenPoint& seen, std::uint32_t i,
                               const PointState& before) const;
   [[nodiscard]] bool came_aside(const SeenPoint& seen) const;
@@ -82,6 +89,7 @@ class BlockMatches {
   ShownPoints& shown_;
   const FrameBlocks& blocks_;
   BlockEntries by_block_;
+  bool listed_ = false;  // are the points that are shown where `by_block_` has them?
   bool moved_ = false;
   float duration_ = 0;
 };

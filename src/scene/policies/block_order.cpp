@@ -16,14 +16,16 @@ std::uint32_t spread(std::uint32_t v) {
 
 }  // namespace
 
+std::uint32_t curve_code(int column, int row) {
+  return spread(static_cast<std::uint32_t>(row)) << 1 | spread(static_cast<std::uint32_t>(column));
+}
+
 BlockOrder make_block_order(int columns, int rows) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // code, block
   places.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < columns; ++u) {
-      const std::uint32_t code =
-          spread(static_cast<std::uint32_t>(v)) << 1 | spread(static_cast<std::uint32_t>(u));
-      places.emplace_back(code, static_cast<std::uint32_t>(v * columns + u));
+      places.emplace_back(curve_code(u, v), static_cast<std::uint32_t>(v * columns + u));
     }
   }
   std::sort(places.begin(), places.end());

@@ -20,6 +20,9 @@ struct BlockOrder {
   [[nodiscard]] std::size_t size() const { return blocks.size(); }
 };
 
+/// Where on the curve the block stands.
+[[nodiscard]] std::uint32_t curve_code(int column, int row);
+
 /// @param columns, rows: 0 to 32768.
 [[nodiscard]] BlockOrder make_block_order(int columns, int rows);
 

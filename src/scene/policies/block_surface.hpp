@@ -94,22 +94,24 @@ class EdgeFinder {
     Eigen::Vector3f edge;  // a place on it, m
     bool in_row;
     float share;
+
+    [[nodiscard]] Meeting from_b() const { return {b, a, edge, in_row, share}; }
   };
   struct Told {
     SurfacePoints::EdgePlane plane;
-    std::size_t block;
     float away;  // squared, of the block from where its faces meet, m^2
   };
 
   void look_at(const Faces& faces, int v);
   [[nodiscard]] static bool meets(const Faces& faces, std::size_t a, int x, int y);
-  void join(const Faces& faces, std::size_t a, int x, int y);
-  void spread(const Faces& faces, const Meeting& meeting);
+  void tell_line(const Faces& faces, std::size_t block, int x, int y);
+  [[nodiscard]] static Meeting meeting_of(const Faces& faces, std::size_t a, int x, int y);
+  void spread(const Faces& faces, const Meeting& meeting, int x, int y);
   void tell(const Faces& faces, const Meeting& meeting, int x, int y);
 
-  std::vector<std::uint8_t> meets_;  // of each block, with one to its right or below it
-  std::vector<std::uint32_t> of_block_;
-  std::vector<Told> told_;
+  std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it
+  std::vector<std::uint32_t> of_block_;  // itself, or kNone
+  std::vector<Told> told_;               // of each block
 };
 
 }  // namespace palpate

@@ -12,15 +12,15 @@ namespace {
 using Eigen::Vector3f;
 
 // Limits of edges and creases (docs/method.md 6.5; judgement).
-constexpr int kApart = 3;               // blocks: a block that an edge crosses is between the two
-constexpr float kTurned = 0.866f;       // cosine of the least angle between two faces: 30 degrees
-constexpr float kSame = 0.94f;          // and of the largest one within a face: 20 degrees
-constexpr float kCertainly = 3;         // deviations
-constexpr float kOfSupport = 0.1f;      // of R, that a face may be bent
-constexpr int kMostAway = 8;            // blocks
-constexpr std::size_t kRowsAtOnce = 8;  // judgement: shares work among threads
-constexpr std::uint8_t kInRow = 1;      // a bit
-constexpr std::uint8_t kInColumn = 2;   // a bit
+constexpr int kApart = 3;           // blocks: a block that an edge crosses is between the two
+constexpr float kTurned = 0.866f;   // cosine of the least angle between two faces: 30 degrees
+constexpr float kSame = 0.94f;      // and of the largest one within a face: 20 degrees
+constexpr float kCertainly = 3;     // deviations
+constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
+constexpr int kMostAway = 8;        // blocks
+constexpr std::size_t kColumnsAtATime = 8;  // judgement: shares work among threads
+constexpr std::uint8_t kInRow = 1;          // a bit
+constexpr std::uint8_t kInColumn = 2;       // a bit
 
 }  // namespace
 
@@ -74,20 +74,18 @@ struct EdgeFinder::Faces {
 };
 
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
-  for (const Told& told : told_) of_block_[told.block] = kNone;
-  told_.clear();
-  if (of_block_.size() != depth.size()) {
-    of_block_.assign(depth.size(), kNone);
-    told_.reserve(depth.size());
-  }
-  const Faces faces{depth, surface};
   meets_.resize(depth.size());
-  detail::parallel_each(static_cast<std::size_t>(depth.rows), kRowsAtOnce,
-                        [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
-  for (std::size_t block = 0; block < depth.size(); ++block) {
-    if ((meets_[block] & kInRow) != 0) join(faces, block, 1, 0);
-    if ((meets_[block] & kInColumn) != 0) join(faces, block, 0, 1);
-  }
+  of_block_.resize(depth.size());
+  told_.resize(depth.size());
+  const Faces faces{depth, surface};
+  const auto columns = static_cast<std::size_t>(depth.columns);
+  each_row(depth, [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
+  each_row(depth, [&](std::size_t v) {
+    for (std::size_t b = v * columns; b < (v + 1) * columns; ++b) tell_line(faces, b, 1, 0);
+  });
+  detail::parallel_each(columns, kColumnsAtATime, [&](std::size_t u) {
+    for (std::size_t b = u; b < depth.size(); b += columns) tell_line(faces, b, 0, 1);
+  });
 }
 
 /// Which blocks of a row belong to faces that meet others?
@@ -96,6 +94,7 @@ void EdgeFinder::look_at(const Faces& faces, int v) {
   const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.columns);
   const auto row = depth.states.begin() + static_cast<std::ptrdiff_t>(first);
   std::fill_n(meets_.begin() + static_cast<std::ptrdiff_t>(first), depth.columns, 0);
+  std::fill_n(of_block_.begin() + static_cast<std::ptrdiff_t>(first), depth.columns, kNone);
   if (std::find(row, row + depth.columns, FilteredDepth::State::fitted) == row + depth.columns)
     return;
   // Most of an image is flat: there is nothing to look at.
@@ -139,26 +138,42 @@ bool EdgeFinder::meets(const Faces& faces, std::size_t a, int x, int y) {
   return faces.goes_on(a, -x, -y) && faces.goes_on(b, x, y);
 }
 
-void EdgeFinder::join(const Faces& faces, std::size_t a, int x, int y) {
+/// Tells the blocks of a row (1, 0) or a column (0, 1) what lies beyond the edges at one of them.
+/// No other line is told, so that threads may share them.
+void EdgeFinder::tell_line(const Faces& faces, std::size_t block, int x, int y) {
+  const std::uint8_t along = x != 0 ? kInRow : kInColumn;
+  const std::uint8_t across = kInRow + kInColumn - along;
+  const auto apart = static_cast<std::size_t>(kApart * (x * faces.depth.columns + y));
+  const std::uint8_t here = meets_[block];
+  const std::uint8_t before = block < apart ? 0 : meets_[block - apart];
+  if ((here | (before & across)) == 0) return;
+  if ((here & along) != 0) {
+    const Meeting meeting = meeting_of(faces, block, x, y);
+    spread(faces, meeting, x, y);
+    spread(faces, meeting.from_b(), x, y);
+  }
+  if ((here & across) != 0) spread(faces, meeting_of(faces, block, y, x), x, y);
+  if ((before & across) != 0) {
+    spread(faces, meeting_of(faces, block - apart, y, x).from_b(), x, y);
+  }
+}
+
+EdgeFinder::Meeting EdgeFinder::meeting_of(const Faces& faces, std::size_t a, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
   const float a_over_b = faces.height(a, b);
   const float share = a_over_b > 0 ? -1.0f : 1.0f;
   const float t = a_over_b / (a_over_b + faces.height(b, a));
   const Vector3f edge = depth.positions[a] + t * (depth.positions[b] - depth.positions[a]);
-  spread(faces, {a, b, edge, x != 0, share});
-  spread(faces, {b, a, edge, x != 0, share});
+  return {a, b, edge, x != 0, share};
 }
 
-/// Tells the blocks of a's face within R of the edge, in its row and column, what lies beyond.
-void EdgeFinder::spread(const Faces& faces, const Meeting& meeting) {
+/// Tells the blocks of a's face within R of the edge, in its row or column, what lies beyond.
+void EdgeFinder::spread(const Faces& faces, const Meeting& meeting, int x, int y) {
   const float reach = faces.surface.radius(meeting.a);
   const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
   const int half = static_cast<int>(std::min(float{kMostAway}, std::ceil(reach / side)));
-  for (int k = -half; k <= half; ++k) {
-    tell(faces, meeting, k, 0);
-    if (k != 0) tell(faces, meeting, 0, k);
-  }
+  for (int k = -half; k <= half; ++k) tell(faces, meeting, k * x, k * y);
 }
 
 /// The same of the block (x, y) from a, unless it knows of a nearer edge.
@@ -168,20 +183,14 @@ void EdgeFinder::tell(const Faces& faces, const Meeting& meeting, int x, int y) 
   if (block == depth.size()) return;
   const float reach = faces.surface.radius(meeting.a);
   const float away = (depth.positions[block] - meeting.edge).squaredNorm();
-  std::uint32_t& number = of_block_[block];
-  const bool nearer = number != kNone && told_[number].away <= away;
+  const bool nearer = of_block_[block] != kNone && told_[block].away <= away;
   if (nearer || away > reach * reach || !faces.shares_face(block, meeting.a)) return;
   if (meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) return;
   const std::size_t mirrored =
       faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
   const std::size_t other = faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b;
-  if (number == kNone) {
-    number = static_cast<std::uint32_t>(told_.size());
-    told_.emplace_back();
-  }
-  const SurfacePoints::EdgePlane plane{depth.normals[other], faces.height(block, other),
-                                       meeting.share};
-  told_[number] = {plane, block, away};
+  of_block_[block] = static_cast<std::uint32_t>(block);
+  told_[block] = {{depth.normals[other], faces.height(block, other), meeting.share}, away};
 }
 
 }  // namespace palpate

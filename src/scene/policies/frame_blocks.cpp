@@ -87,9 +87,7 @@ void FrameBlocks::note_kept(const KeptTiles& kept) {
   kept_.assign(order_.size() == 0 ? 0 : order_.codes.back() / kInTile + 1, 0);
   for (int row = 0; row < order_.rows; row += KeptTiles::kSide) {
     for (int column = 0; column < order_.columns; column += KeptTiles::kSide) {
-      const std::uint32_t first =
-          order_.places[static_cast<std::size_t>(row * order_.columns + column)];
-      kept_[order_.codes[first] / kInTile] = kept.at(column, row) ? 1 : 0;
+      kept_[curve_code(column, row) / kInTile] = kept.at(column, row) ? 1 : 0;
     }
   }
 }

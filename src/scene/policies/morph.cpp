@@ -1,6 +1,8 @@
 // Makes the surface of a depth frame out of the one before it.
 #include "scene/policies/morph.hpp"
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 #include <algorithm>
 
 #include "geometry/parallel.hpp"
@@ -55,8 +57,8 @@ void Morph::fill(const MorphInput& input, const FrameTiming& moment,
     for (const Piece& piece : pieces) extremes.add(piece.extremes);
   }
   unseen_.write(writer_, extremes, entries_);
-  writer_.end(extremes);
   shown_.replace(points, moment, entries_);
+  tbb::parallel_invoke([&] { writer_.end(extremes); }, [&] { matches_.end(); });
 }
 
 void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points) {

@@ -63,7 +63,10 @@ class Morph {
                   const std::shared_ptr<SurfacePoints>& points);
 
   /// Forgets the surface: the next frame begins another.
-  void forget() { shown_.forget(); }
+  void forget() {
+    shown_.forget();
+    matches_.forget();
+  }
 
  private:
   /// Some places of the curve, one thread's at a time.
