@@ -104,10 +104,11 @@ class EdgeFinder {
 
   void look_at(const Faces& faces, int v);
   [[nodiscard]] static bool meets(const Faces& faces, std::size_t a, int x, int y);
-  void tell_line(const Faces& faces, std::size_t block, int x, int y);
+  void tell_some(const Faces& faces, std::size_t u, std::size_t v, int x, int y);
+  void tell(const Faces& faces, std::size_t block, std::size_t apart, int x, int y);
   [[nodiscard]] static Meeting meeting_of(const Faces& faces, std::size_t a, int x, int y);
   void spread(const Faces& faces, const Meeting& meeting, int x, int y);
-  void tell(const Faces& faces, const Meeting& meeting, int x, int y);
+  void tell_one(const Faces& faces, const Meeting& meeting, int x, int y);
 
   std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it
   std::vector<std::uint32_t> of_block_;  // itself, or kNone

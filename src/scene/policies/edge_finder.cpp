@@ -12,15 +12,15 @@ namespace {
 using Eigen::Vector3f;
 
 // Limits of edges and creases (docs/method.md 6.5; judgement).
-constexpr int kApart = 3;           // blocks: a block that an edge crosses is between the two
-constexpr float kTurned = 0.866f;   // cosine of the least angle between two faces: 30 degrees
-constexpr float kSame = 0.94f;      // and of the largest one within a face: 20 degrees
-constexpr float kCertainly = 3;     // deviations
-constexpr float kOfSupport = 0.1f;  // of R, that a face may be bent
-constexpr int kMostAway = 8;        // blocks
-constexpr std::size_t kColumnsAtATime = 8;  // judgement: shares work among threads
-constexpr std::uint8_t kInRow = 1;          // a bit
-constexpr std::uint8_t kInColumn = 2;       // a bit
+constexpr int kApart = 3;              // blocks: a block that an edge crosses is between the two
+constexpr float kTurned = 0.866f;      // cosine of the least angle between two faces: 30 degrees
+constexpr float kSame = 0.94f;         // and of the largest one within a face: 20 degrees
+constexpr float kCertainly = 3;        // deviations
+constexpr float kOfSupport = 0.1f;     // of R, that a face may be bent
+constexpr int kMostAway = 8;           // blocks
+constexpr std::size_t kTogether = 8;   // blocks, of which each has a byte of one word (derived)
+constexpr std::uint8_t kInRow = 1;     // a bit
+constexpr std::uint8_t kInColumn = 2;  // a bit
 
 }  // namespace
 
@@ -74,17 +74,18 @@ struct EdgeFinder::Faces {
 };
 
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
-  meets_.resize(depth.size());
+  meets_.resize(depth.size() + kTogether);
   of_block_.resize(depth.size());
   told_.resize(depth.size());
   const Faces faces{depth, surface};
   const auto columns = static_cast<std::size_t>(depth.columns);
+  const auto rows = static_cast<std::size_t>(depth.rows);
   each_row(depth, [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
   each_row(depth, [&](std::size_t v) {
-    for (std::size_t b = v * columns; b < (v + 1) * columns; ++b) tell_line(faces, b, 1, 0);
+    for (std::size_t u = 0; u < columns; u += kTogether) tell_some(faces, u, v, 1, 0);
   });
-  detail::parallel_each(columns, kColumnsAtATime, [&](std::size_t u) {
-    for (std::size_t b = u; b < depth.size(); b += columns) tell_line(faces, b, 0, 1);
+  detail::parallel_each((columns + kTogether - 1) / kTogether, 1, [&](std::size_t strip) {
+    for (std::size_t v = 0; v < rows; ++v) tell_some(faces, strip * kTogether, v, 0, 1);
   });
 }
 
@@ -138,22 +139,29 @@ bool EdgeFinder::meets(const Faces& faces, std::size_t a, int x, int y) {
   return faces.goes_on(a, -x, -y) && faces.goes_on(b, x, y);
 }
 
-/// Tells the blocks of a row (1, 0) or a column (0, 1) what lies beyond the edges at one of them.
-/// No other line is told, so that threads may share them.
-void EdgeFinder::tell_line(const Faces& faces, std::size_t block, int x, int y) {
+/// Tells rows (1, 0) or columns (0, 1) what lies beyond the edges at a few blocks of a row. No
+/// other lines are told, so that threads may share them.
+void EdgeFinder::tell_some(const Faces& faces, std::size_t u, std::size_t v, int x, int y) {
+  const auto columns = static_cast<std::size_t>(faces.depth.columns);
+  const std::size_t apart = kApart * (x != 0 ? columns : 1);
+  const std::size_t first = v * columns + u;
+  const std::size_t end = std::min(first + kTogether, (v + 1) * columns);
+  const std::size_t before = first < apart ? first : first - apart;
+  const auto eight = [&](std::size_t at) { return load<std::uint64_t>(&meets_[at]); };
+  if ((eight(first) | eight(before)) == 0) return;
+  for (std::size_t block = first; block < end; ++block) tell(faces, block, apart, x, y);
+}
+
+void EdgeFinder::tell(const Faces& faces, std::size_t block, std::size_t apart, int x, int y) {
   const std::uint8_t along = x != 0 ? kInRow : kInColumn;
   const std::uint8_t across = kInRow + kInColumn - along;
-  const auto apart = static_cast<std::size_t>(kApart * (x * faces.depth.columns + y));
-  const std::uint8_t here = meets_[block];
-  const std::uint8_t before = block < apart ? 0 : meets_[block - apart];
-  if ((here | (before & across)) == 0) return;
-  if ((here & along) != 0) {
+  if ((meets_[block] & along) != 0) {
     const Meeting meeting = meeting_of(faces, block, x, y);
     spread(faces, meeting, x, y);
     spread(faces, meeting.from_b(), x, y);
   }
-  if ((here & across) != 0) spread(faces, meeting_of(faces, block, y, x), x, y);
-  if ((before & across) != 0) {
+  if ((meets_[block] & across) != 0) spread(faces, meeting_of(faces, block, y, x), x, y);
+  if (block >= apart && (meets_[block - apart] & across) != 0) {
     spread(faces, meeting_of(faces, block - apart, y, x).from_b(), x, y);
   }
 }
@@ -173,11 +181,11 @@ void EdgeFinder::spread(const Faces& faces, const Meeting& meeting, int x, int y
   const float reach = faces.surface.radius(meeting.a);
   const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
   const int half = static_cast<int>(std::min(float{kMostAway}, std::ceil(reach / side)));
-  for (int k = -half; k <= half; ++k) tell(faces, meeting, k * x, k * y);
+  for (int k = -half; k <= half; ++k) tell_one(faces, meeting, k * x, k * y);
 }
 
-/// The same of the block (x, y) from a, unless it knows of a nearer edge.
-void EdgeFinder::tell(const Faces& faces, const Meeting& meeting, int x, int y) {
+/// Tells it to the block (x, y) from a, unless it knows of a nearer edge.
+void EdgeFinder::tell_one(const Faces& faces, const Meeting& meeting, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t block = faces.beside(meeting.a, x, y);
   if (block == depth.size()) return;
