@@ -101,18 +101,19 @@ bool FitRegion::contains(const Vector3d& point) const {
   });
 }
 
-void FitRegion::columns(const Blocks& blocks, const KeptTiles& kept, int row,
-                        std::vector<std::int32_t>& columns) const {
-  columns.clear();
-  if (!range_.has_row(row)) return;
+int FitRegion::columns(const Blocks& blocks, const KeptTiles& kept, int row,
+                       std::int32_t* columns) const {
+  if (!range_.has_row(row)) return 0;
   const double y = blocks.grid.y(row);
+  int count = 0;
   for (int column = range_.first_column; column < range_.first_column + range_.columns; ++column) {
     const float rho = blocks.rho[blocks.at(column, row)];
     if (!(rho > 0) || kept.at(column, row)) continue;
     if (everything_ || contains(Vector3d(blocks.grid.x(column), y, 1) / double(rho))) {
-      columns.push_back(column);
+      columns[count++] = column;
     }
   }
+  return count;
 }
 
 namespace {
@@ -155,8 +156,10 @@ simd::FitInput WindowFits::input(const Blocks& blocks, const NoiseModel& noise, 
 BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double normal_error,
                            const FitRegion& region, const KeptTiles& kept, BlockFits& fits) {
   const BlockGrid& grid = blocks.grid;
-  if (filled_.grid != grid)
+  if (filled_.grid != grid) {
     table_.resize(static_cast<std::size_t>(grid.columns + 1) * (grid.rows + 1));
+    columns_.resize(grid.size());
+  }
   if (region.range().empty()) return {};
   const BlockRange range = region.range().grown(kBorder, grid);
   fill_gaps(blocks, noise, range, filled_);
@@ -170,17 +173,16 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
   };
   tbb::parallel_invoke([&] { functions_->table(in.table, rows_of(filled_)); },
                        [&] { detail::parallel_each(row_count, kLinesAtATime, fit_plainly); });
-  using Columns = std::vector<std::int32_t>;
-  detail::parallel_each_with<Columns>(
-      row_count, kLinesAtATime, [&](std::size_t r, Columns& columns) {
-        const int row = range.first_row + static_cast<int>(r);
-        region.columns(blocks, kept, row, columns);
-        functions_->fit(in, row, columns.data(), static_cast<int>(columns.size()), fits.row(row));
-        const std::size_t first = grid.index(0, row);
-        for (const std::int32_t column : columns) {
-          fits.states[first + static_cast<std::size_t>(column)] = FilteredDepth::State::fitted;
-        }
-      });
+  detail::parallel_each(row_count, kLinesAtATime, [&](std::size_t r) {
+    const int row = range.first_row + static_cast<int>(r);
+    const std::size_t first = grid.index(0, row);
+    std::int32_t* const columns = &columns_[first];
+    const int count = region.columns(blocks, kept, row, columns);
+    functions_->fit(in, row, columns, count, fits.row(row));
+    for (int k = 0; k < count; ++k) {
+      fits.states[first + static_cast<std::size_t>(columns[k])] = FilteredDepth::State::fitted;
+    }
+  });
   faces_.refit(in, filled_, noise, kept, fits);
   return range;
 }

@@ -112,9 +112,9 @@ class FitRegion {
 
   /// Blocks outside of it are outside of the region.
   [[nodiscard]] const BlockRange& range() const { return range_; }
-  /// Lists the columns of a row's blocks that are in the region, not empty and not kept.
-  void columns(const Blocks& blocks, const KeptTiles& kept, int row,
-               std::vector<std::int32_t>& columns) const;
+  /// Writes the columns of a row's blocks that are in the region, not empty and not kept.
+  /// @return how many
+  int columns(const Blocks& blocks, const KeptTiles& kept, int row, std::int32_t* columns) const;
 
  private:
   [[nodiscard]] bool contains(const Eigen::Vector3d& point) const;
@@ -148,6 +148,7 @@ class WindowFits {
   const simd::FitFunctions* functions_;
   Blocks filled_;
   std::vector<Place> table_;
+  std::vector<std::int32_t> columns_;  // of the region's blocks, with room for all of each row
   FaceFits faces_;
 };
 

@@ -50,7 +50,7 @@ TEST(DepthFilterMemory, IsTakenOnce) {
     if (given) options.noise = kinect_like_noise();
     DepthFilter filter(options);
     // Few enough rows for one thread: several threads take memory for their tasks.
-    const std::vector<Ball> balls = {{{0.03, 0, 0.55}, 0.004}};
+    const std::vector<Ball> balls = {{{0.03, 0, 0.54}, 0.004}};  // at the sphere's front
     const Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     filter.filter(frames[0], pose);
     filter.filter(frames[1], pose, balls);

@@ -202,17 +202,21 @@ TEST(DepthFilter, SeesThroughDistortion) {
 
 void expect_same_on_four_threads(const std::vector<Solid>& solids) {
   const DepthFrame frame = noisy_frame(solids, {.silhouettes = true});
-  const auto run = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    DepthFilter filter;
-    return filter.filter(frame, Isometry3d::Identity());
-  };
-  const FilteredDepth one = run(1);
-  const FilteredDepth four = run(4);
-  EXPECT_EQ(one.states, four.states);
-  EXPECT_EQ(one.positions, four.positions);
-  EXPECT_EQ(one.normals, four.normals);
-  EXPECT_EQ(one.deviations, four.deviations);
+  const std::vector<Ball> near = {{{0.03, 0, 0.6}, 0.08}};
+  for (const bool everywhere : {true, false}) {
+    const auto run = [&](std::size_t threads) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      DepthFilter filter;
+      const Isometry3d pose = Isometry3d::Identity();
+      return everywhere ? filter.filter(frame, pose) : filter.filter(frame, pose, near);
+    };
+    const FilteredDepth one = run(1);
+    const FilteredDepth four = run(4);
+    EXPECT_EQ(one.states, four.states);
+    EXPECT_EQ(one.positions, four.positions);
+    EXPECT_EQ(one.normals, four.normals);
+    EXPECT_EQ(one.deviations, four.deviations);
+  }
 }
 
 TEST(DepthFilter, DoesNotDependOnTheNumberOfThreads) {
