@@ -92,43 +92,67 @@ void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count
   }
 }
 
-// Two passes over the image carry a small radius to everywhere (a chamfer transform).
+// Two passes over the image carry a small radius to everywhere (a chamfer transform). Most blocks
+// have no much smaller one beside them, and are not looked at but where one becomes smaller.
 void BlockSurface::limit_growth(const FilteredDepth& depth) {
+  fours_ = (static_cast<std::size_t>(depth.columns) + kLanes - 1) / kLanes;
+  steep_.resize(fours_ * static_cast<std::size_t>(depth.rows));
+  each_row(depth, [&](std::size_t v) { find_steep(depth, static_cast<int>(v)); });
   carry(depth, 1);
   carry(depth, -1);
 }
 
-// Forwards (1) or backwards (-1). Blocks are at least their pitch apart, so most pairs need no look
-// at where they are.
+// In which fours of a row may a radius be limited by a neighbour's? Blocks are at least their pitch
+// apart, so most pairs need no look at where they are.
+void BlockSurface::find_steep(const FilteredDepth& depth, int v) {
+  const float step = kSlope * static_cast<float>(depth.pitch);
+  const std::ptrdiff_t columns = depth.columns;
+  std::uint8_t* const steep = &steep_[static_cast<std::size_t>(v) * fours_];
+  std::fill_n(steep, fours_, 1);
+  if (v == 0 || v + 1 == depth.rows) return;
+  for (std::ptrdiff_t u = kLanes; u + kLanes < columns; u += kLanes) {
+    const float* const at = &radii_[v * columns + u];
+    const auto own = load<Floats>(at);
+    const Floats room = step * load<Floats>(&padded_.z[padded_.place(static_cast<int>(u), v)]);
+    Ints limited{};
+    for (const std::ptrdiff_t by : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -columns, columns}) {
+      const auto other = load<Floats>(at + by);
+      limited |= (own - other > room) & (other != 0);
+    }
+    steep[u / kLanes] = any(limited) ? 1 : 0;
+  }
+}
+
+// Forwards (1) or backwards (-1).
 void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   const std::ptrdiff_t columns = depth.columns;
   const float step = kSlope * static_cast<float>(depth.pitch);
-  const auto may_limit = [&](std::ptrdiff_t b, std::ptrdiff_t by, std::size_t at) {
-    const auto other = load<Floats>(&radii_[b + by]);
-    const Floats room = load<Floats>(&radii_[b]) - other;
-    return any((room > step * load<Floats>(&padded_.z[at])) & (other != 0));
-  };
   const auto limit = [&](std::ptrdiff_t b, std::ptrdiff_t by) {
     const float room = radii_[b] - radii_[by];
-    if (room <= step * depth.positions[b].z() || radii_[by] == 0) return;
+    if (room <= step * depth.positions[b].z() || radii_[by] == 0) return false;
     const float way = kSlope * (depth.positions[b] - depth.positions[by]).norm();
     if (way < room) radii_[b] = radii_[by] + way;
+    return way < room;
+  };
+  const auto steep = [&](std::ptrdiff_t u, std::ptrdiff_t v) -> std::uint8_t& {
+    return steep_[static_cast<std::size_t>(v) * fours_ + static_cast<std::size_t>(u / kLanes)];
   };
   for (std::ptrdiff_t row = 0; row < depth.rows; ++row) {
-    const auto v = static_cast<int>(sign > 0 ? row : depth.rows - 1 - row);
-    for (std::ptrdiff_t k = 0; k < columns;) {
+    const std::ptrdiff_t v = sign > 0 ? row : depth.rows - 1 - row;
+    for (std::ptrdiff_t k = 0; k < columns; ++k) {
       const std::ptrdiff_t u = sign > 0 ? k : columns - 1 - k;
-      const std::ptrdiff_t b = v * columns + u;
-      const std::ptrdiff_t skip = sign > 0 ? 0 : kLanes - 1;  // to the first of those side by side
-      if (k > 0 && row > 0 && k + kLanes <= columns &&
-          !may_limit(b - skip, -sign, padded_.place(static_cast<int>(u - skip), v)) &&
-          !may_limit(b - skip, -sign * columns, padded_.place(static_cast<int>(u - skip), v))) {
-        k += kLanes;
+      if (steep(u, v) == 0) {
+        k += sign > 0 ? kLanes - 1 - u % kLanes : u % kLanes;
         continue;
       }
-      if (k > 0) limit(b, b - sign);
-      if (row > 0) limit(b, b - sign * columns);
-      ++k;
+      const std::ptrdiff_t b = v * columns + u;
+      const bool along = k > 0 && limit(b, b - sign);
+      const bool across = row > 0 && limit(b, b - sign * columns);
+      if (!along && !across) continue;
+      steep(std::max<std::ptrdiff_t>(u - 1, 0), v) = 1;
+      steep(std::min(u + 1, columns - 1), v) = 1;
+      steep(u, std::max<std::ptrdiff_t>(v - 1, 0)) = 1;
+      steep(u, std::min<std::ptrdiff_t>(v + 1, depth.rows - 1)) = 1;
     }
   }
 }

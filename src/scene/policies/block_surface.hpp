@@ -55,6 +55,7 @@ class BlockSurface {
   void measure(const FilteredDepth& depth, std::span<const Ball> balls, BlockRims::Exact exact);
   void start(const FilteredDepth& depth, int v, int first, int count);
   void limit_growth(const FilteredDepth& depth);
+  void find_steep(const FilteredDepth& depth, int v);
   void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
   void lay_out(const FilteredDepth& depth, int v, int first, int count);
   void measure_trust(const FilteredDepth& depth, int v, int first, int count);
@@ -64,6 +65,8 @@ class BlockSurface {
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
   std::vector<float> trusts_;
+  std::vector<std::uint8_t> steep_;  // of four blocks each, row by row
+  std::size_t fours_ = 0;            // in a row
   PaddedBlocks padded_;
   BlockRims rims_;
 };
@@ -78,7 +81,7 @@ class EdgeFinder {
   /// `surface` has measured `depth`. Allocates only to grow.
   void look(const FilteredDepth& depth, const BlockSurface& surface);
 
-  /// The number of the edge beside a block; kNone: there is none.
+  /// The number by which plane() knows the edge beside a block; kNone: there is none.
   [[nodiscard]] std::uint32_t number(std::size_t block) const { return of_block_[block]; }
 
   /// The plane beyond an edge, in the sensor's frame.
@@ -110,8 +113,9 @@ class EdgeFinder {
   void spread(const Faces& faces, const Meeting& meeting, int x, int y);
   void tell_one(const Faces& faces, const Meeting& meeting, int x, int y);
 
-  std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it
-  std::vector<std::uint32_t> of_block_;  // itself, or kNone
+  std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it;
+                                         // behind them some that are read and not told
+  std::vector<std::uint32_t> of_block_;  // number(): the block's own, or kNone
   std::vector<Told> told_;               // of each block
 };
 
