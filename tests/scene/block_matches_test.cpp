@@ -116,6 +116,40 @@ TEST_F(BlockMatchesTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
   EXPECT_GT(matched, 5 * outside);
 }
 
+TEST_F(BlockMatchesTest, WhatWasListedBeforeTheFrameIsWhereItIs) {
+  std::vector<Entry> turned(shown_.entries().rbegin(), shown_.entries().rend());
+  const auto all_at = [&](std::size_t shift) {
+    bool all = true;
+    for (std::uint32_t i = 0; i < turned.size(); ++i) {
+      const auto there = matches_.at((turned[i].place + shift) % turned.size());
+      all = all && there.size() == 1 && there[0] == i;
+    }
+    return all;
+  };
+  matches_.end(turned);
+  EXPECT_TRUE(all_at(0));
+  shown_.entries() = turned;
+  show(wall(0.5), false);
+  EXPECT_TRUE(all_at(0));
+
+  // Nothing is listed twice: what changes afterwards is told.
+  for (Entry& entry : shown_.entries()) entry.place = (entry.place + 1) % turned.size();
+  show(wall(0.5), false);
+  EXPECT_TRUE(all_at(1));
+  matches_.end(turned);
+  matches_.forget();
+  show(wall(0.5), false);
+  EXPECT_TRUE(all_at(1));
+}
+
+TEST_F(BlockMatchesTest, NothingIsListedBeforehandForACameraThatMoves) {
+  T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
+  show(wall(0.5), true);
+  const std::vector<Entry> none;
+  matches_.end(none);
+  EXPECT_EQ(matches_.at(shown_.entries()[middle()].place).empty(), false);
+}
+
 TEST_F(BlockMatchesTest, APointThatComesBackIntoTheImageIsLiveAgain) {
   T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
   show(wall(0.5), true);

@@ -104,13 +104,15 @@ TEST(MorphPieces, WhatAnEmptyBlockHeldBeforeIsNotSeenAgain) {
 TEST(MorphPieces, TheSameOnAnyNumberOfThreads) {
   std::vector<FilteredDepth> frames;
   const CameraModel camera{320, 240, {375, 375, 159.5, 119.5}, {}};  // more than go at a time
-  for (int k = 0; k < 6; ++k) {  // a bar comes over a wall with a step, and leaves it
+  for (int k = 0; k < 6; ++k) {  // a bar comes over a wall with a step and a roof, and leaves it
     const auto depth_of = [k](double x, double y) {
+      if (y > 0.04) return 0.48 + 0.6 * std::abs(x);
       return std::abs(y) < 0.02 && k % 3 == 1 ? 0.4 : x < 0 ? 0.5 : 0.52;
     };
     frames.push_back(filtered(k, depth_of, camera));
   }
   std::vector<Shown> shown;
+  ASSERT_FALSE(show(frames)->edges.end.empty());
   for (const std::size_t threads : {1u, 2u, 5u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     shown.push_back(show(frames));
@@ -119,6 +121,8 @@ TEST(MorphPieces, TheSameOnAnyNumberOfThreads) {
     EXPECT_TRUE(same(shown[0]->presences, shown.back()->presences)) << threads;
     EXPECT_TRUE(same(shown[0]->cell_reach, shown.back()->cell_reach)) << threads;
     EXPECT_TRUE(same(shown[0]->edges.of_point, shown.back()->edges.of_point)) << threads;
+    EXPECT_TRUE(same(shown[0]->edges.start, shown.back()->edges.start)) << threads;
+    EXPECT_TRUE(same(shown[0]->edges.end, shown.back()->edges.end)) << threads;
   }
 }
 

@@ -32,18 +32,14 @@ void BlockMatches::begin(bool moved, const Pinhole& pinhole, double duration) {
   moved_ = moved;
   duration_ = static_cast<float>(duration);
   if (moved) follow_camera(pinhole);
-  if (moved || !listed_) list();
+  if (moved || !listed_) by_block_.sort(shown_.entries(), blocks_.order().size());
   listed_ = false;
 }
 
-void BlockMatches::end() {
+void BlockMatches::end(std::span<const Entry> entries) {
   if (moved_) return;  // and will move on
-  list();
+  by_block_.sort(entries, blocks_.order().size());
   listed_ = true;
-}
-
-void BlockMatches::list() {
-  by_block_.sort(shown_.entries(), blocks_.order().size());
 }
 
 /// Puts every old point at the block that sees it now.

@@ -54,8 +54,8 @@ class BlockMatches {
   /// pinhole. `duration`: of the next snapshot, s.
   void begin(bool moved, const Pinhole& pinhole, double duration);
 
-  /// After new points are shown: does what begin() would, if the camera stands still.
-  void end();
+  /// Finds it for the points that will be shown from now on, in case the camera stands still.
+  void end(std::span<const Entry> entries);
 
   /// What was shown is forgotten.
   void forget() { listed_ = false; }
@@ -81,7 +81,6 @@ class BlockMatches {
 
  private:
   void follow_camera(const Pinhole& pinhole);
-  void list();
   [[nodiscard]] bool may_move(const SeenPoint& seen, std::uint32_t i,
                               const PointState& before) const;
   [[nodiscard]] bool came_aside(const SeenPoint& seen) const;
@@ -89,7 +88,7 @@ class BlockMatches {
   ShownPoints& shown_;
   const FrameBlocks& blocks_;
   BlockEntries by_block_;
-  bool listed_ = false;  // are the points that are shown where `by_block_` has them?
+  bool listed_ = false;  // does `by_block_` list the points that are shown?
   bool moved_ = false;
   float duration_ = 0;
 };

@@ -184,7 +184,8 @@ void EdgeFinder::spread(const Faces& faces, const Meeting& meeting, int x, int y
   for (int k = -half; k <= half; ++k) tell_one(faces, meeting, k * x, k * y);
 }
 
-/// Tells it to the block (x, y) from a, unless it knows of a nearer edge.
+/// Tells it to the block (x, y) from a, unless it knows of an edge that is as near: of two in its
+/// row and in its column, that in its row counts.
 void EdgeFinder::tell_one(const Faces& faces, const Meeting& meeting, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t block = faces.beside(meeting.a, x, y);

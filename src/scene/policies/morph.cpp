@@ -57,8 +57,11 @@ void Morph::fill(const MorphInput& input, const FrameTiming& moment,
     for (const Piece& piece : pieces) extremes.add(piece.extremes);
   }
   unseen_.write(writer_, extremes, entries_);
+  tbb::parallel_invoke([&] { writer_.end(extremes); },
+                       [&] {
+                         if (!still) matches_.end(entries_);
+                       });
   shown_.replace(points, moment, entries_);
-  tbb::parallel_invoke([&] { writer_.end(extremes); }, [&] { matches_.end(); });
 }
 
 void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points) {
