@@ -1,9 +1,10 @@
-// Measures the way to the next sheet, and lets pairs of points vote on how their sheets lie.
+// Lets pairs of points vote on how their sheets lie, and finds those that another sheet hides.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "field/formulas.hpp"
@@ -15,9 +16,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kNoneNear = std::numeric_limits<float>::infinity();  // m: no sheet is near
-
-// Which points belong to the next other sheet along a normal; all are judgement.
+// Which points belong to another sheet above or below one; all are judgement.
 constexpr float kGapReach = 1.6f;   // R
 constexpr float kGapTube = 1.3f;    // spacings to the side
 constexpr float kGapSlope = 0.5f;   // least height over the way to the side
@@ -35,12 +34,13 @@ constexpr int kVotesEach = 3;           // points of each, the nearest
 /// Looks from the points of one block at other sheets.
 class Outlook {
  public:
-  Outlook(const SheetInput& input, const PointFits& own, Growths& grown)
-      : input_(input), own_(own), grown_(grown), sheets_(grown.sheets) {}
+  Outlook(const SheetInput& input, const PointFits& own, const std::optional<Vector3f>& eye,
+          Growths& grown)
+      : input_(input), own_(own), viewer_(eye), grown_(grown), sheets_(grown.sheets) {}
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
             std::vector<SheetVote>& votes) {
-    const detail::Reach reach{.of_points = input_.radii, .times = kGapReach, .of_cells = {}};
+    const detail::Reach reach{.of_points = input_.radii, .times = reach_, .of_cells = {}};
     detail::for_each_part(
         input_.grid, reach, block, surroundings,
         [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
@@ -49,7 +49,7 @@ class Outlook {
   }
 
  private:
-  /// Is there but one sheet, and does it not curl up?
+  /// Is there but one sheet, and does it not curl up before itself?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
     // Cosine (73 degrees) that normals turn by where a sheet curls; judgement.
     constexpr float kCurled = 0.3f;
@@ -57,7 +57,8 @@ class Outlook {
     const Vector3f& n = own_.normals[first];
     for (const simd::Run& run : runs) {
       for (std::uint32_t j = run.begin; j < run.end; ++j) {
-        if (sheets_.sheet[j] != sheet || !(n.dot(own_.normals[j]) > kCurled)) return false;
+        if (sheets_.sheet[j] != sheet) return false;
+        if (viewer_ && !(n.dot(own_.normals[j]) > kCurled)) return false;
       }
     }
     return true;
@@ -72,7 +73,7 @@ class Outlook {
       others_[q].clear();
       eyes_[q] = eye_at(first + q);
       for (Eigen::Index axis = 0; axis < 3; ++axis) eyes.normal[axis][q] = eyes_[q].normal[axis];
-      const float reach = own_.confidences[first + q] > 0 ? kGapReach * input_.radii[first + q] : 0;
+      const float reach = own_.confidences[first + q] > 0 ? reach_ * input_.radii[first + q] : 0;
       eyes.squared_reach[q] = reach * reach;
       eyes.least[q] = eyes_[q].least;
       eyes.squared_tube[q] = eyes_[q].tube * eyes_[q].tube;
@@ -89,9 +90,10 @@ class Outlook {
     Vector3f at;
     Vector3f normal;
     float tube;    // to the side, m
-    float least;   // height of another sheet, m
+    float least;   // height of another sheet, m; infinity: none is looked for
     float voting;  // squared reach, m^2; below 0: it has no vote
     std::uint32_t sheet;
+    bool faces;  // does the normal point to the viewer?
   };
 
   [[nodiscard]] Eye eye_at(std::uint32_t i) const {
@@ -100,9 +102,10 @@ class Outlook {
     return {input_.grid.points()[i],
             own_.normals[i],
             kGapTube * spacing,
-            kGapResiduals * own_.residuals[i],
+            viewer_ ? kGapResiduals * own_.residuals[i] : std::numeric_limits<float>::infinity(),
             grown_.sure[i] != 0 ? voting * voting : -1,
-            sheets_.sheet[i]};
+            sheets_.sheet[i],
+            viewer_ && own_.normals[i].dot(*viewer_ - input_.grid.points()[i]) > 0};
   }
 
   void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
@@ -110,22 +113,21 @@ class Outlook {
     const Eye& eye = eyes_[q];
     const Vector3f way = input_.grid.points()[j] - eye.at;
     const float squared = way.squaredNorm();
-    measure_gap(eye, first + q, j, way, squared);
+    if (viewer_ && is_before(eye, j, way, squared)) grown_.hidden[first + q] = 1;
     const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet &&
                           sheets_.sheet[j] != SurfacePoints::Sheets::kNone;
     if (votes_on) others_[q].push_back({squared, j});
   }
 
-  void measure_gap(const Eye& eye, std::uint32_t i, std::uint32_t j, const Vector3f& way,
-                   float squared) {
+  /// Does j belong to a sheet between the point and the viewer?
+  [[nodiscard]] bool is_before(const Eye& eye, std::uint32_t j, const Vector3f& way,
+                               float squared) const {
     const float height = eye.normal.dot(way);
     const float off = std::abs(height);
-    if (off <= eye.least) return;
+    if (off <= eye.least || (height > 0) != eye.faces) return false;
     const float aside = std::max(0.f, squared - height * height);
-    if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return;
-    if (std::abs(eye.normal.dot(own_.normals[j])) < kGapCosine) return;
-    float& gap = height > 0 ? grown_.above[i] : grown_.below[i];
-    gap = std::min(gap, off);
+    if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return false;
+    return std::abs(eye.normal.dot(own_.normals[j])) >= kGapCosine;
   }
 
   /// The nearest points of the nearest other sheets.
@@ -150,6 +152,8 @@ class Outlook {
 
   const SheetInput& input_;
   const PointFits& own_;
+  const std::optional<Vector3f>& viewer_;
+  const float reach_ = viewer_ ? kGapReach : kVoteReach;  // R
   Growths& grown_;
   const SurfacePoints::Sheets& sheets_;
   detail::NearPairs pairs_;
@@ -159,14 +163,14 @@ class Outlook {
 
 }  // namespace
 
-std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own, Growths& grown) {
-  grown.above.assign(input.grid.size(), kNoneNear);
-  grown.below.assign(input.grid.size(), kNoneNear);
+std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
+                                   const std::optional<Vector3f>& eye, Growths& grown) {
+  if (eye) grown.hidden.assign(input.grid.size(), 0);
   const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
   std::vector<std::vector<SheetVote>> votes(blocks.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
     detail::Surroundings surroundings;
-    Outlook outlook(input, own, grown);
+    Outlook outlook(input, own, eye, grown);
     for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
   });
   std::vector<SheetVote> all;

@@ -12,6 +12,7 @@
 #include "prepare/sheet_fit.hpp"
 
 namespace palpate {
+
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
   own.normals[i] = fit.normal.cast<float>();
   own.confidences[i] = static_cast<float>(fit.planarity);

@@ -48,8 +48,8 @@ namespace {
 // Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
 constexpr double kNoiseToTilt = 3.2;
 
-// No R is above this many floors (2.5 spacings each): more smoothing would cost shape and time, and
-// noise that needs it is the sensor's to filter; judgement.
+// No R is above this many floors, or as many times 2.5 spacings: more smoothing would cost shape
+// and time, and noise that needs it is the sensor's to filter; judgement.
 constexpr double kMostFloors = 2.4;
 
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R

@@ -61,8 +61,8 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
-      const bool hidden = std::isfinite(cosine > 0 ? grown.above[i] : grown.below[i]);
-      hidden ? void(++counts[sheet].hidden) : seen[sheet].add(static_cast<double>(cosine));
+      grown.hidden[i] != 0 ? void(++counts[sheet].hidden)
+                           : seen[sheet].add(static_cast<double>(cosine));
     }
   }
   for (std::uint32_t k = 0; k < seen.size(); ++k) {
@@ -203,7 +203,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
                                   std::vector<Twin>& twins) {
   Growths grown = grow_sheets(input, own);
   twins = std::move(grown.twins);
-  const std::vector<SheetVote> votes = look_around(input, own, grown);
+  const std::vector<SheetVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
   join_parts(input, bonds_of(votes), evidence, known.middle, own, sheets);

@@ -60,9 +60,8 @@ struct Growths {
   std::vector<std::uint8_t>
       sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
   std::vector<Twin> twins;  ///< in rising order
-  // look_around() fills these, for each point.
-  std::vector<float> above;  ///< along +n to the next other sheet, m; infinity: none near
-  std::vector<float> below;  ///< the same along -n
+  std::vector<std::uint8_t>
+      hidden;  ///< 1: another sheet is near on the eye's side (look_around() tells)
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.
@@ -79,9 +78,10 @@ struct SheetVote {
   float value = 0;
 };
 
-/// Measures how far the next sheet is above and below each point; returns what sheets say of each
-/// other, in the order of their numbers.
+/// Says what sheets say of each other, in the order of their numbers. Where there is an eye, notes
+/// which points another sheet hides from it.
 [[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
+                                                 const std::optional<Eigen::Vector3f>& eye,
                                                  Growths& grown);
 
 inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index

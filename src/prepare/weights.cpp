@@ -173,12 +173,12 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 }
 
 std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
-                                       const WeightSums& sums) {
+                                       std::span<const float> own) {
   std::vector<std::uint8_t> mask(grid.size());
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       grid.size(), 4096, [&](std::size_t k, auto& near) {
         const auto i = static_cast<std::uint32_t>(k);
-        mask[i] = has_company(grid, radii, sums.own[i], i, near) ? 0 : 1;
+        mask[i] = has_company(grid, radii, own[i], i, near) ? 0 : 1;
       });
   return mask;
 }
@@ -190,7 +190,7 @@ Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& su
     weigh_by_counts(sampling.grid, sampling.counts, radii.values, weights.values);
   }
   if (!options.remove_speckle || options.paper) return weights;
-  auto mask = speckle_mask(sampling.grid, radii.values, sums);
+  auto mask = speckle_mask(sampling.grid, radii.values, sums.own);
   for (std::size_t i = 0; i < radii.strays.size(); ++i) mask[i] |= radii.strays[i];
   const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
   // A whole cloud of nothing but speckle is a sparse one and keeps its weights. A part of a cloud,

@@ -45,10 +45,11 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
                      std::span<const float> radii, std::vector<float>& weights);
 
 /// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
-/// others are within 2 R_i and 2 R_j of each other (docs/method.md 5.4). `sums`: of the same radii.
+/// others are within 2 R_i and 2 R_j of each other (docs/method.md 5.4). `own`: WeightSums' of the
+/// same radii.
 [[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
                                                      std::span<const float> radii,
-                                                     const WeightSums& sums);
+                                                     std::span<const float> own);
 
 struct Weights {
   std::vector<float> values;  ///< a_i in sorted order; 0: noise put the point there

@@ -76,7 +76,7 @@ TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
       const bool wall = std::abs(n.x()) > 0.9f;
       n = wall ? Vector3f(turned, 0, 0) : Vector3f::UnitZ();
     }
-    const std::vector<SheetVote> votes = look_around(fitted.input(), fitted.own, grown);
+    const std::vector<SheetVote> votes = look_around(fitted.input(), fitted.own, {}, grown);
     ASSERT_FALSE(votes.empty());
     float sum = 0;
     float squares = 0;
@@ -93,17 +93,18 @@ TEST(Votes, AreNotHeardAcrossMoreThanR) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 3.5f})));
   Growths grown = grow_sheets(fitted.input(), fitted.own);
   EXPECT_EQ(grown.sheets.part.size(), 2u);
-  EXPECT_TRUE(look_around(fitted.input(), fitted.own, grown).empty());
+  EXPECT_TRUE(look_around(fitted.input(), fitted.own, {}, grown).empty());
 }
 
-TEST(LookAround, MeasuresTheWayToTheNextSheet) {
+TEST(LookAround, TellsWhatAnotherSheetHides) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 2})));
   Growths grown = grow_sheets(fitted.input(), fitted.own);
-  (void)look_around(fitted.input(), fitted.own, grown);
-  for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
-    const bool up = (fitted.grid.points()[i].z() < 1) == (fitted.own.normals[i].z() > 0);
-    EXPECT_FLOAT_EQ(up ? grown.above[i] : grown.below[i], 2);
-    EXPECT_TRUE(std::isinf(up ? grown.below[i] : grown.above[i]));
+  for (const float z : {-20.f, 20.f}) {
+    (void)look_around(fitted.input(), fitted.own, Vector3f(6, 6, z), grown);
+    for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
+      const bool below = fitted.grid.points()[i].z() < 1;
+      EXPECT_EQ(grown.hidden[i] != 0, below == (z > 0)) << i << ", from " << z;
+    }
   }
 }
 
