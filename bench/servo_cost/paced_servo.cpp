@@ -16,8 +16,8 @@ namespace palpate::servo_cost {
 namespace {
 
 constexpr std::size_t kMostWaiting = 1 << 17;  // steps; derived: two minutes at 1 kHz
-constexpr double kPatch = 0.15;  // m, that the hand explores; judgement: in sight of all cameras
-constexpr double kDepth = 3e-3;  // m; judgement: as in table A
+constexpr double kRegion = 0.15;  // m, that the hand explores; judgement: in sight of all cameras
+constexpr double kDepth = 3e-3;   // m; judgement: as in table A
 
 ServoOptions noted_by(ServoState::Queue& steps) {
   ServoOptions options;
@@ -74,7 +74,7 @@ Trajectory hand_over(const Scene& scene, double seconds) {
   options.duration = seconds;
   options.radius = points->radius;
   options.depth = kDepth;
-  options.region = kPatch;
+  options.region = kRegion;
   return explore({points->origin, points->grid.points(), points->normals}, options);
 }
 

@@ -245,8 +245,8 @@ void SheetView::look(const Stance& stance, double way, bool from_behind) noexcep
     if (decided(sheet)) continue;
     const Vector3f back = eye.place - p.place;
     const float squared = back.squaredNorm();
-    const float height = height_over(*this, p);
     if (squared >= eye.view * eye.view) continue;
+    const float height = height_over(*this, p);
     const double w = static_cast<double>(p.confidence) * weight_within(squared, eye.view);
     sheet.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts all points on the first of these sheets, whose parts know no side; none hides another.
+/// Puts all points on the first of these sheets, whose parts know no side.
 void put_on_sheets(SurfacePoints& points, std::vector<std::uint32_t> parts) {
   points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
                    .part = std::move(parts),
