@@ -104,8 +104,7 @@ void fill_gaps(const Blocks& blocks, const NoiseModel& noise, const BlockRange& 
   if (filled.grid != blocks.grid) filled.resize(blocks.grid);
   const SameSurface same(noise, blocks.grid);
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
-  detail::parallel_each(static_cast<std::size_t>(range.rows), kLinesAtATime, [&](std::size_t r) {
-    const int row = range.first_row + static_cast<int>(r);
+  for_rows(range, [&](int row) {
     const auto at = static_cast<std::ptrdiff_t>(blocks.at(range.first_column, row));
     std::copy_n(blocks.rho.begin() + at, range.columns, filled.rho.begin() + at);
     std::copy_n(blocks.counts.begin() + at, range.columns, filled.counts.begin() + at);

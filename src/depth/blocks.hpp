@@ -66,11 +66,17 @@ struct BlockRange {
 
 inline constexpr std::size_t kLinesAtATime = 8;  ///< that a thread takes at once (judgement)
 
-/// Calls body(row) for each row, on several threads: see parallel_ranges().
+/// Calls body(row) for each row of a range, on several threads: see parallel_ranges().
+template <class Body>
+void for_rows(const BlockRange& range, const Body& body) {
+  detail::parallel_each(static_cast<std::size_t>(range.rows), kLinesAtATime,
+                        [&](std::size_t row) { body(range.first_row + static_cast<int>(row)); });
+}
+
+/// The same for all rows.
 template <class Body>
 void for_rows(const BlockGrid& grid, const Body& body) {
-  detail::parallel_each(static_cast<std::size_t>(grid.rows), kLinesAtATime,
-                        [&](std::size_t row) { body(static_cast<int>(row)); });
+  for_rows(BlockRange{0, 0, grid.columns, grid.rows}, body);
 }
 
 /// Largest difference of depths on one surface: three deviations of a pixel, plus the slope over

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "depth/blocks.hpp"
-#include "geometry/parallel.hpp"
 
 namespace palpate::depth {
 namespace {
@@ -164,17 +163,14 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
   const BlockRange range = region.range().grown(kBorder, grid);
   fill_gaps(blocks, noise, range, filled_);
   const simd::FitInput in = input(blocks, noise, normal_error, range);
-  const auto row_count = static_cast<std::size_t>(range.rows);
-  const auto fit_plainly = [&](std::size_t r) {
-    const int row = range.first_row + static_cast<int>(r);
+  const auto fit_plainly = [&](int row) {
     kept.each_other(row, [&](int first_column, int count) {
       fit_plain(blocks, noise, row, first_column, count, fits);
     });
   };
   tbb::parallel_invoke([&] { functions_->table(in.table, rows_of(filled_)); },
-                       [&] { detail::parallel_each(row_count, kLinesAtATime, fit_plainly); });
-  detail::parallel_each(row_count, kLinesAtATime, [&](std::size_t r) {
-    const int row = range.first_row + static_cast<int>(r);
+                       [&] { for_rows(range, fit_plainly); });
+  for_rows(range, [&](int row) {
     const std::size_t first = grid.index(0, row);
     std::int32_t* const columns = &columns_[first];
     const int count = region.columns(blocks, kept, row, columns);

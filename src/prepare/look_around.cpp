@@ -49,7 +49,7 @@ class Outlook {
   }
 
  private:
-  /// Is there but one sheet, and does it not curl up before itself?
+  /// Is there but one sheet, and does it not curl so far that it may hide itself?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
     // Cosine (73 degrees) that normals turn by where a sheet curls; judgement.
     constexpr float kCurled = 0.3f;

@@ -60,8 +60,8 @@ struct Growths {
   std::vector<std::uint8_t>
       sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
   std::vector<Twin> twins;  ///< in rising order
-  std::vector<std::uint8_t>
-      hidden;  ///< 1: another sheet is near on the eye's side (look_around() tells)
+  std::vector<std::uint8_t> hidden;  ///< look_around() tells, 1: another sheet is near on the
+                                     ///< eye's side
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.

@@ -147,7 +147,7 @@ TEST_F(BlockMatchesTest, NothingIsListedBeforehandForACameraThatMoves) {
   show(wall(0.5), true);
   const std::vector<Entry> none;
   matches_.end(none);
-  EXPECT_EQ(matches_.at(shown_.entries()[middle()].place).empty(), false);
+  EXPECT_FALSE(matches_.at(shown_.entries()[middle()].place).empty());
 }
 
 TEST_F(BlockMatchesTest, APointThatComesBackIntoTheImageIsLiveAgain) {

@@ -93,7 +93,7 @@ void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count
 }
 
 // Two passes over the image carry a small radius to everywhere (a chamfer transform). Most blocks
-// have no much smaller one beside them, and are not looked at but where one becomes smaller.
+// have no much smaller one beside them; they are passed over until one becomes smaller.
 void BlockSurface::limit_growth(const FilteredDepth& depth) {
   fours_ = (static_cast<std::size_t>(depth.columns) + kLanes - 1) / kLanes;
   steep_.resize(fours_ * static_cast<std::size_t>(depth.rows));
@@ -131,8 +131,9 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
     const float room = radii_[b] - radii_[by];
     if (room <= step * depth.positions[b].z() || radii_[by] == 0) return false;
     const float way = kSlope * (depth.positions[b] - depth.positions[by]).norm();
-    if (way < room) radii_[b] = radii_[by] + way;
-    return way < room;
+    if (!(way < room)) return false;
+    radii_[b] = radii_[by] + way;
+    return true;
   };
   const auto steep = [&](std::ptrdiff_t u, std::ptrdiff_t v) -> std::uint8_t& {
     return steep_[static_cast<std::size_t>(v) * fours_ + static_cast<std::size_t>(u / kLanes)];

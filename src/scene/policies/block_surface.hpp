@@ -65,7 +65,7 @@ class BlockSurface {
   std::vector<float> radii_;  // 0: no point
   std::vector<float> areas_;
   std::vector<float> trusts_;
-  std::vector<std::uint8_t> steep_;  // of four blocks each, row by row
+  std::vector<std::uint8_t> steep_;  // of four blocks each: may a neighbour limit one of them?
   std::size_t fours_ = 0;            // in a row
   PaddedBlocks padded_;
   BlockRims rims_;
