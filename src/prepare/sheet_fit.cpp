@@ -24,6 +24,9 @@ constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
 constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
 constexpr std::size_t kFewestInSheet = 5;  // points; with fewer confidence is 0; judgement
+constexpr std::size_t kFewestToSplit = 6;  // points, one more than stay; judgement
+constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
+constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue; judgement
 
 constexpr int kTerms = 6;  // derived: terms of a quadric's height
 using Terms = Eigen::Matrix<double, kTerms, 1>;
@@ -108,7 +111,7 @@ bool SheetFit::is_sheet(double radius, double noise) const {
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.
 bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
-  if (offsets_.size() <= kFewestInSheet || axis.isZero()) return false;
+  if (offsets_.size() < kFewestToSplit || axis.isZero()) return false;
   heights_.clear();
   for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
   const double gap = gap_in(heights_, spacing);
@@ -120,6 +123,19 @@ bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
   if (some_.size() < kFewestInSheet) return false;
   std::swap(some_, offsets_);
   return true;
+}
+
+/// The normal that the nearest points have, where they are flat.
+Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) {
+  some_.clear();
+  const double reach = kNearest * spacing;
+  for (const Vector3d& offset : offsets_) {
+    if (offset.squaredNorm() <= reach * reach) some_.push_back(offset);
+  }
+  if (some_.size() < kFewestToSplit) return fallback;
+  const Plane plane = plane_of(some_);
+  const bool flat = plane.variances[0] < kFlatNearest * plane.variances[1];
+  return flat && !plane.normal.isZero() ? plane.normal : fallback;
 }
 
 SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
@@ -140,7 +156,7 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
   for (const auto i : near) offsets_.push_back((grid.points()[i] - center).cast<double>());
   SheetFit fit = fit_offsets(reach);
   if (fit.bend > smooth && spacing > 0 && !fit.normal.isZero()) {
-    Vector3d axis = fit.normal;
+    Vector3d axis = axis_of_nearest(spacing, fit.normal);
     bool others = false;
     for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
       others = true;

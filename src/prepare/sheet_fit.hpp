@@ -34,8 +34,7 @@ struct SheetFit {
 
 inline constexpr double kPlanar = 0.5;  ///< planarity of a plane, at least; judgement
 
-/// The residual up to which a plane is enough and no quadric is tried, and up to which a quadric is
-/// enough and no other sheets are looked for, m.
+/// The residual up to which a plane is enough and no quadric is tried, m.
 [[nodiscard]] double flat_residual(double radius, double noise);
 
 /// Fits one place after another; keeps its memory in between.
@@ -63,6 +62,7 @@ class SheetFitter {
 
  private:
   [[nodiscard]] bool keep_own_group(const Eigen::Vector3d& axis, double spacing);
+  [[nodiscard]] Eigen::Vector3d axis_of_nearest(double spacing, const Eigen::Vector3d& fallback);
   [[nodiscard]] SheetFit fit_offsets(double reach);
   void subtract_quadric(double reach, SheetFit& fit);
 

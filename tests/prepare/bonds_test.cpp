@@ -88,7 +88,7 @@ TEST(Bonds, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
                           part_at({5, 30, 4}) == floor;
     apart += together ? 0 : 1;
   }
-  EXPECT_GE(apart, 28);  // of 300 seeds 232 are, and 122 where sheets are joined one by one
+  EXPECT_GE(apart, 28);  // of 300 seeds 242 are, and 122 where sheets are joined one by one
 }
 
 }  // namespace
