@@ -63,6 +63,7 @@ Normals estimate_normals(const CellGrid& grid, std::span<const float> radii, flo
   result.normals.resize(grid.size(), Eigen::Vector3f::Zero());
   result.confidences.resize(grid.size(), 0);
   result.residuals.resize(grid.size(), 0);
+  result.asides.resize(grid.size(), 0);
   const simd::JoinFunctions& joins = simd::best_joins();
   detail::for_each_neighborhood(
       grid, {.of_points = radii, .times = times, .of_cells = {}},
@@ -76,6 +77,8 @@ Normals estimate_normals(const CellGrid& grid, std::span<const float> radii, flo
         joins.planes(moments, &planes);
         for (std::uint32_t q = 0; q < count; ++q) {
           write(moments[0][q], planes, q, first + q, result);
+          const Eigen::Vector3f sum(moments[1][q], moments[2][q], moments[3][q]);
+          result.asides[first + q] = sum.norm() / (moments[0][q] * times * radii[first + q]);
         }
       });
   return result;

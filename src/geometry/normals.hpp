@@ -23,6 +23,10 @@ struct Normals {
   /// Rms distance of the neighbours from the plane, m; unbiased (n - 3 degrees of freedom), 0 for
   /// three points or fewer.
   std::vector<float> residuals;
+
+  /// How far the neighbours' mean is from the point, of the radius looked within; 0 where they lie
+  /// evenly around.
+  std::vector<float> asides;
 };
 
 /// Principal-component normals from all points within `radius` (m) of each, itself included.

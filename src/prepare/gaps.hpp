@@ -20,15 +20,18 @@ namespace palpate {
 [[nodiscard]] WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
                                     PointFits& fits);
 
-/// Raises the support radii (m) of points that hardly any other's support reaches, though others
-/// lie on opposite sides of them, to 2.5 times the way to those, where one sheet goes on over the
-/// gap; that sheet becomes the point's own, and the way its spacing. Beside far denser points (a
-/// handful of near-duplicates is enough) spacings and limit_growth() make R too small, which tears
-/// a hole. A stray point has all others on one side and keeps its radius; so does the corner of a
-/// sheet. None is raised above `largest`, m. Returns how many were raised. Does not depend on the
-/// number of threads.
+/// Raises the support radii (m) of points beside holes in their sheet that supports do not bridge,
+/// where one sheet goes on over the hole: to those of the square grid with holes as wide or, where
+/// no sheet goes on so far, to 2.5 times the hole's radius. That sheet becomes the point's own.
+/// Clusters of points, points that lie anywhere and triangles of many sizes leave holes wider than
+/// spacings tell; beside far denser points limit_growth() makes R too small. A stray point has all
+/// others on one side and keeps its radius; so does the border of a sheet. Holes whose radius is
+/// above 0.8 R stay, except around points that hardly any other's support reaches, where those above
+/// 3 R do. `sums`: WeightSums::own; `noise`: of each point, m. None is raised above `largest`, m.
+/// Returns how many were raised. Does not depend on the number of threads.
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
-                       std::vector<float>& spacings, std::vector<float>& radii, PointFits& own,
+                       std::span<const float> noise, std::vector<float>& spacings,
+                       std::vector<float>& radii, PointFits& own,
                        float largest = std::numeric_limits<float>::infinity());
 
 }  // namespace palpate

@@ -28,6 +28,14 @@ constexpr std::size_t kTried = 64;      // nearest points beside a line
 constexpr float kThin = 0.2f;           // deviation of a line across, against along
 constexpr float kLines = 0.5f;          // of the sampled points, on lines: a cloud of lines
 
+/// The line that a point and its nearest places are on.
+struct Line {
+  Eigen::Vector3f along = Eigen::Vector3f::UnitX();
+  float spacing = 0;  // m, to the farthest of the nearest
+  float step = 0;     // m, from one of them to the next
+  float off = 1;      // deviation across the line, against that along it
+};
+
 /// The further of the nearest two, aside of the line that a point is on, that lie on opposite
 /// sides of it; 0: there are none among those that are near, m.
 float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
@@ -59,11 +67,11 @@ float side_of_square(float gap, float along) {
 }
 
 /// Calls find(reach) once `near` holds the points within `reach` of a point, then within twice as
-/// much each time that it finds 0, `times` in all. @return what it found
+/// much each time that it finds 0, kLineWidenings times in all. @return what it found
 template <class Find>
-float widen(const CellGrid& grid, std::uint32_t i, float reach, int times,
-            std::vector<std::uint32_t>& near, const Find& find) {
-  for (int k = 0; k < times; ++k, reach *= 2) {
+float widen(const CellGrid& grid, std::uint32_t i, float reach, std::vector<std::uint32_t>& near,
+            const Find& find) {
+  for (int k = 0; k < kLineWidenings; ++k, reach *= 2) {
     near.clear();
     grid.within(grid.points()[i], reach, near);
     if (near.size() > kEnough) break;
@@ -91,19 +99,12 @@ Line line_among(const CellGrid& grid, std::uint32_t i,
   return line;
 }
 
-}  // namespace
-
-Line line_at(const CellGrid& grid, std::uint32_t i, std::vector<CellGrid::Neighbor>& nearest) {
-  nearest_places(grid, i, kOnLine, nearest);
-  return line_among(grid, i, nearest);
-}
-
-namespace {
-
-/// The line at the smallest scale at which there is one.
+/// The line at the smallest scale at which there is one: of the point and the four places nearest
+/// to it, or of more of its nearest. `nearest`: memory.
 Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
                    std::vector<CellGrid::Neighbor>& nearest) {
-  Line line = line_at(grid, i, nearest);
+  nearest_places(grid, i, kOnLine, nearest);
+  Line line = line_among(grid, i, nearest);
   std::size_t others = kOnLine - 1;
   for (int k = 1; k < kLineScales && line.off >= kThin; ++k) {
     others *= 2;
@@ -113,12 +114,15 @@ Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
   return line;
 }
 
-}  // namespace
-
-float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach, int times,
+/// The gap that a point lies in, m: the further of the nearest two beside its line, on opposite
+/// sides of it. Looks within `reach` (m), and within twice as much each time that it finds none, up
+/// to kLineWidenings times; 0: there is none. `near`: memory.
+float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach,
                  std::vector<std::uint32_t>& near) {
-  return widen(grid, i, reach, times, near, [&](float) { return gap_among(grid, i, line, near); });
+  return widen(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
+
+}  // namespace
 
 bool lies_in_lines(const CellGrid& grid) {
   std::vector<CellGrid::Neighbor> nearest;
@@ -137,7 +141,7 @@ namespace {
 /// there is none. The square of a gap is at most 2 s^2 (side_of_square).
 float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
                      std::span<const float> spacings, std::vector<std::uint32_t>& near) {
-  return widen(grid, i, 2 * line.spacing, kLineWidenings, near, [&](float nearest) {
+  return widen(grid, i, 2 * line.spacing, near, [&](float nearest) {
     float spacing = 0;
     for (const std::uint32_t j : near) {
       const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
@@ -162,7 +166,7 @@ std::vector<float> sides_of_squares(const CellGrid& grid) {
       const auto at = static_cast<std::uint32_t>(i);
       const Line line = noisy_line_at(grid, at, found);
       if (line.off >= kThin) continue;
-      const float gap = gap_across(grid, at, line, 2 * line.spacing, kLineWidenings, near);
+      const float gap = gap_across(grid, at, line, 2 * line.spacing, near);
       if (gap > 0) sides[i] = side_of_square(gap, line.step);
     }
   });

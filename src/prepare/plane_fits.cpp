@@ -36,7 +36,8 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                    std::move(planes.confidences),
                    std::move(planes.residuals),
                    {},
-                   std::vector<std::uint8_t>(grid.size())};
+                   std::vector<std::uint8_t>(grid.size()),
+                   std::move(planes.asides)};
   sheets.bends = sheets.residuals;
   std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
   const auto flat_at = [&](std::size_t i) {

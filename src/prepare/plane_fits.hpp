@@ -20,11 +20,12 @@ struct PointFits {
   std::vector<float> residuals;          ///< from the plane, m
   std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
   std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
+  std::vector<float> asides;             ///< of the mean of those around, of their reach
 };
 
 struct SheetFit;
 
-/// Makes a fit that of point i; `others` stays as it is.
+/// Makes a fit that of point i; `others` and `asides` stay as they are.
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
 /// Returns what is kept of the fit of point i: its normal, planarity, residual and bend alone.
 [[nodiscard]] SheetFit fit_of(const PointFits& own, std::size_t i);

@@ -4,45 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "geometry/normals.hpp"
-#include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/limit_growth.hpp"
-#include "prepare/places.hpp"
 #include "prepare/strays.hpp"
 
 namespace palpate {
-namespace {
-
-// Nearest points, the point itself and copies of its position among them; judgement.
-constexpr std::size_t kLooked = 9;
-
-// Nearest distance in spacings. Measured: random points 0.52; meshes, frames and jittered grids
-// 0.71 and above (docs/preparation.md, Support radius).
-constexpr double kIrregular = 0.65;
-
-}  // namespace
-
-double nearest_share(const CellGrid& grid, std::span<const float> spacings) {
-  std::vector<float> shares;
-  std::vector<CellGrid::Neighbor> near;
-  each_sample(grid, [&](std::uint32_t i) {
-    grid.nearest(grid.points()[i], kLooked, near);
-    const auto other =
-        std::ranges::find_if(near, [](const auto& found) { return found.squared_distance > 0; });
-    if (other != near.end()) shares.push_back(std::sqrt(other->squared_distance) / spacings[i]);
-  });
-  return shares.empty() ? 1 : median(shares);
-}
-
-bool is_irregular(const CellGrid& grid, std::span<const float> spacings) {
-  return nearest_share(grid, spacings) < kIrregular;
-}
-
 namespace {
 
 // Noise tilts normals by 3.2 sigma_n delta / R^2 (docs/method.md 5.3).
@@ -90,10 +60,6 @@ namespace {
 // No R is above this part of the cloud's size for noise's sake; judgement.
 constexpr double kFinestShape = 25;
 
-// R in spacings at least, where points lie irregularly: gaps between random points are wider than
-// 2.5 spacings' support bridges. Measured: tests/scene/no_holes_test.cpp.
-constexpr double kIrregularMultiple = 3;
-
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
 /// R by spacing and noise, which is taken from place to place where the cloud was thinned for it.
@@ -101,8 +67,6 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
   const CloudFacts& facts = sampling.facts;
   const bool by_place = !sampling.local.products.empty();
   const double noise = by_place ? 0 : facts.noise.sigma;
-  const bool irregular = facts.irregular && sampling.voxel <= 0;
-  const double multiple = irregular ? kIrregularMultiple : kUsualMultiple;
   const double finest = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape;
   std::vector<float> radii(sampling.spacings.size());
   std::ranges::transform(sampling.spacings, radii.begin(), [&](float of_point) {
@@ -111,7 +75,8 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
     const double for_noise =
         std::min({std::sqrt(kNoiseToTilt * noise * footprint / options.normal_error),
                   kMostFloors * kUsualMultiple * spacing, finest});
-    return static_cast<float>(std::max({multiple * spacing, options.minimum_radius, for_noise}));
+    return static_cast<float>(
+        std::max({kUsualMultiple * spacing, options.minimum_radius, for_noise}));
   });
   if (!by_place) return radii;
   return noisy_radii(sampling.grid, sampling.local, options.normal_error, std::move(radii));

@@ -8,7 +8,6 @@
 
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/lines.hpp"
-#include "prepare/radii.hpp"
 #include "prepare/stopwatch.hpp"
 
 namespace palpate {
@@ -53,13 +52,11 @@ void measure_spacings(const PrepareOptions& options, Sampling& sampling) {
   sampling.spacing = options.facts ? facts.spacing : median(sampling.spacings);
 }
 
-/// Measures the noise and irregularity of all points where no facts are given.
-void measure_of_all(const PrepareOptions& options, Sampling& sampling) {
+/// Measures the noise of all points where no facts are given.
+void measure_noise_of_all(const PrepareOptions& options, Sampling& sampling) {
   if (options.facts || options.paper) return;
   const CellGrid& grid = sampling.grid;
   sampling.facts.noise = measure_noise(grid, sampling.spacing);
-  if (options.radius || sampling.facts.in_lines) return;
-  sampling.facts.irregular = is_irregular(grid, sampling.spacings);
 }
 
 bool is_noisy(const CloudFacts& facts) {
@@ -137,7 +134,7 @@ Sampling sample(const Placed& placed, const PrepareOptions& options, Prepared::R
   measure_spacings(options, sampling);
   CloudFacts& facts = sampling.facts;
   if (!options.facts) facts.spacing = sampling.spacing;
-  measure_of_all(options, sampling);
+  measure_noise_of_all(options, sampling);
   sampling.voxel = voxel_of(facts, options);
   watch.lap(report.seconds_spacing);
   if (sampling.voxel > 0) thin(options, less, cloud, sampling, report);

@@ -44,7 +44,7 @@ std::size_t close(Case& made, PointFits& own) {
   const std::vector<float> noise(made.grid.size(), 0.f);
   own = fit_points(made.grid, spacings, made.radii, noise);
   const WeightSums sums(made.grid, made.radii);
-  return close_gaps(made.grid, sums.own, spacings, made.radii, own);
+  return close_gaps(made.grid, sums.own, noise, spacings, made.radii, own);
 }
 
 TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {
@@ -64,6 +64,38 @@ TEST(CloseGaps, LeavesStrayPointsAndWholeSheetsAlone) {
     EXPECT_EQ(close(made, own), 0u) << height;
     EXPECT_EQ(made.radii, before);
   }
+}
+
+/// A square grid of side 1 mm without the points less than `hole` (m) from the middle of a cell.
+Case grid_around(float hole) {
+  constexpr float kSide = 1e-3f;
+  std::vector<Vector3f> points;
+  for (int i = -12; i <= 12; ++i) {
+    for (int j = -12; j <= 12; ++j) {
+      const Vector3f place((static_cast<float>(i) + 0.5f) * kSide,
+                           (static_cast<float>(j) + 0.5f) * kSide, 0);
+      if (place.norm() >= hole) points.push_back(place);
+    }
+  }
+  Case made{CellGrid(points), {}, 0};
+  made.radii.assign(points.size(), 2.5f * kSide);
+  return made;
+}
+
+TEST(CloseGaps, BridgesHolesOfTwoByTwoPoints) {
+  Case made = grid_around(1e-3f);
+  PointFits own;
+  EXPECT_EQ(close(made, own), 8u);
+  for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
+    const bool on_rim = made.grid.points()[i].norm() < 1.6e-3f;
+    EXPECT_NEAR(made.radii[i], on_rim ? 5.59e-3f : 2.5e-3f, 1e-5f);  // 2.5 sqrt(2) sqrt(2.5) mm
+  }
+}
+
+TEST(CloseGaps, LeavesHolesWiderThanASupport) {
+  Case made = grid_around(3.2e-3f);
+  PointFits own;
+  EXPECT_EQ(close(made, own), 0u);
 }
 
 TEST(CloseGaps, TakesCloudsWithoutGaps) {

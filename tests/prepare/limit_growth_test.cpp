@@ -77,6 +77,7 @@ TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
                       std::vector<float>(points.size(), 1.0f),
                       std::vector<float>(points.size(), 0.0f),
                       {},
+                      {},
                       {}};
   limit_growth(grid, 0.5f, radii, &own);
   for (std::size_t i = 0; i < grid.size(); ++i) {

@@ -48,11 +48,6 @@ TEST_F(SupportRadii, AreTwoAndAHalfSpacings) {
   expect(0, 6e-3);
 }
 
-TEST_F(SupportRadii, AreLargerWherePointsLieAnywhere) {
-  sampling_.facts.irregular = true;
-  expect(1, 3 * kTypicalSpacing);
-}
-
 TEST_F(SupportRadii, KeepTheWantedErrorOfNormals) {
   sampling_.facts.noise.sigma = 0.35e-3;
   const double radius = std::sqrt(3.2 * 0.35e-3 * kTypicalSpacing / options_.normal_error);

@@ -90,9 +90,8 @@ void members(auto f, Noise& o) {
   f({"sigma", "excess", "shared"}, sigma, excess, shared);
 }
 void members(auto f, CloudFacts& o) {
-  auto& [spacing, noise, irregular, lines, extent, radius] = o;
-  f({"spacing", "noise", "irregular", "in_lines", "extent", "radius"}, spacing, noise, irregular,
-    lines, extent, radius);
+  auto& [spacing, noise, lines, extent, radius] = o;
+  f({"spacing", "noise", "in_lines", "extent", "radius"}, spacing, noise, lines, extent, radius);
 }
 void members(auto f, PrepareOptions& o) {
   auto& [voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,

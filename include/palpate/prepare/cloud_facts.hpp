@@ -26,7 +26,6 @@ struct Noise {
 struct CloudFacts {
   double spacing = 0;      ///< s of the points as given, the median, m
   Noise noise = {};        ///< of the points as given
-  bool irregular = false;  ///< do they lie so irregularly that gaps need a larger support?
   bool in_lines = false;   ///< do they lie on lines, nearer to each other than the lines are?
   Box extent = {};         ///< of all but a few strays, world frame, m
   double radius = 0;       ///< a typical R, m; 0: not known, and R has no cap
