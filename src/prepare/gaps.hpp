@@ -26,9 +26,9 @@ namespace palpate {
 /// Clusters of points, points that lie anywhere and triangles of many sizes leave holes wider than
 /// spacings tell; beside far denser points limit_growth() makes R too small. A stray point has all
 /// others on one side and keeps its radius; so does the border of a sheet. Holes whose radius is
-/// above 0.8 R stay, except around points that hardly any other's support reaches, where those above
-/// 3 R do. `sums`: WeightSums::own; `noise`: of each point, m. None is raised above `largest`, m.
-/// Returns how many were raised. Does not depend on the number of threads.
+/// above 0.8 R stay, except around points that hardly any other's support reaches, where those
+/// above 3 R do. `sums`: WeightSums::own; `noise`: of each point, m. None is raised above
+/// `largest`, m. Returns how many were raised. Does not depend on the number of threads.
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
                        std::span<const float> noise, std::vector<float>& spacings,
                        std::vector<float>& radii, PointFits& own,
