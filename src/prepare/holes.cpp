@@ -3,6 +3,7 @@
 
 #include "prepare/holes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
