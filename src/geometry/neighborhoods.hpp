@@ -250,7 +250,26 @@ void for_each_part(const CellGrid& grid, const Reach& reach, const Block& block,
   }
 }
 
-/// The same for all points, on every core when there are many.
+/// Calls body(worker, i, near) for all points i whose reach is above 0, on every core when there
+/// are many. `near`: the points within that reach, m, in rising order; `make_worker()`: memory of a
+/// block.
+template <class MakeWorker, class Body>
+void for_each_near(const CellGrid& grid, std::span<const float> reaches,
+                   const MakeWorker& make_worker, const Body& body) {
+  for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {
+    auto worker = make_worker();
+    NearLists near;
+    for_each_part(grid, {.of_points = reaches, .of_cells = {}}, block, surroundings,
+                  [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+                    near.find(grid, first, count, runs, reaches);
+                    for (std::uint32_t q = 0; q < count; ++q) {
+                      if (reaches[first + q] > 0) body(worker, first + q, near.of(q));
+                    }
+                  });
+  });
+}
+
+/// for_each_part() of all points, on every core when there are many.
 template <class Body>
 void for_each_neighborhood(const CellGrid& grid, const Reach& reach, const Body& body) {
   for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {

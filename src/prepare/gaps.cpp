@@ -90,35 +90,24 @@ class Closer {
 std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
                        std::span<const float> noise, std::vector<float>& spacings,
                        std::vector<float>& radii, PointFits& own, float largest) {
-  const std::vector<float> before = radii;
   std::vector<float> reaches(grid.size());  // m; 0: no hole is beside the point
   for (std::uint32_t i = 0; i < grid.size(); ++i) {
     const bool beside = own.asides[i] > kBesideHole || own.others[i] != 0;
-    if (sums[i] < kFaint || beside) reaches[i] = 2 * kBridged * before[i];
+    if (sums[i] < kFaint || beside) reaches[i] = 2 * kBridged * radii[i];
   }
   std::vector<std::uint8_t> raised(grid.size());
   const auto close = [&](Closer& closer, std::uint32_t i, std::span<const std::uint32_t> near) {
-    const float widest = (sums[i] < kFaint ? kFaintWidestHole : kWidestHole) * before[i];
+    const float widest = (sums[i] < kFaint ? kFaintWidestHole : kWidestHole) * radii[i];
     const Bridge bridge =
-        closer.bridge({i, before[i], widest, spacings[i], noise[i], own.normals[i]}, near);
+        closer.bridge({i, radii[i], widest, spacings[i], noise[i], own.normals[i]}, near);
     if (bridge.radius <= 0) return;
     radii[i] = bridge.radius;
     spacings[i] = std::max(spacings[i], bridge.radius / kUsualMultiple);
     take_fit(bridge.sheet, i, own);
     raised[i] = 1;
   };
-  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    Closer closer(grid, largest);
-    detail::NearLists near;
-    detail::for_each_part(
-        grid, {.of_points = reaches, .of_cells = {}}, block, around,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          near.find(grid, first, count, runs, reaches);
-          for (std::uint32_t q = 0; q < count; ++q) {
-            if (reaches[first + q] > 0) close(closer, first + q, near.of(q));
-          }
-        });
-  });
+  detail::for_each_near(
+      grid, reaches, [&] { return Closer(grid, largest); }, close);
   return static_cast<std::size_t>(std::ranges::count(raised, 1));
 }
 

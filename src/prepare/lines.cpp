@@ -122,6 +122,17 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return widen(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
+/// Calls visit(i) for about a thousand points, spread over the cloud. Clouds of fewer than 100
+/// points tell nothing: none.
+template <class Visit>
+void each_sample(const CellGrid& grid, const Visit& visit) {
+  constexpr std::size_t kSamples = 1000;  // points, about; judgement
+  constexpr std::size_t kFewest = 100;    // points of a cloud; judgement
+  if (grid.size() < kFewest) return;
+  const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
+  for (std::size_t i = step / 2; i < grid.size(); i += step) visit(static_cast<std::uint32_t>(i));
+}
+
 }  // namespace
 
 bool lies_in_lines(const CellGrid& grid) {

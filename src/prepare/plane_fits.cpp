@@ -54,18 +54,8 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
     take_fit(fit, i, sheets);
     sheets.others[i] = fit.others ? 1 : 0;
   };
-  detail::for_each_block(grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    SheetFitter fitter;
-    detail::NearLists near;
-    detail::for_each_part(
-        grid, {.of_points = reaches, .of_cells = {}}, block, around,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          near.find(grid, first, count, runs, reaches);
-          for (std::uint32_t q = 0; q < count; ++q) {
-            if (reaches[first + q] > 0) refit(fitter, first + q, near.of(q));
-          }
-        });
-  });
+  detail::for_each_near(
+      grid, reaches, [] { return SheetFitter(); }, refit);
   return sheets;
 }
 

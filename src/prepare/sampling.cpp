@@ -55,8 +55,7 @@ void measure_spacings(const PrepareOptions& options, Sampling& sampling) {
 /// Measures the noise of all points where no facts are given.
 void measure_noise_of_all(const PrepareOptions& options, Sampling& sampling) {
   if (options.facts || options.paper) return;
-  const CellGrid& grid = sampling.grid;
-  sampling.facts.noise = measure_noise(grid, sampling.spacing);
+  sampling.facts.noise = measure_noise(sampling.grid, sampling.spacing);
 }
 
 bool is_noisy(const CloudFacts& facts) {

@@ -24,7 +24,6 @@ constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
 constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
 constexpr std::size_t kFewestInSheet = 5;  // points; with fewer confidence is 0; judgement
-constexpr std::size_t kFewestToSplit = 6;  // points, one more than stay; judgement
 constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
 constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue; judgement
 
@@ -111,7 +110,7 @@ bool SheetFit::is_sheet(double radius, double noise) const {
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.
 bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
-  if (offsets_.size() < kFewestToSplit || axis.isZero()) return false;
+  if (offsets_.size() <= kFewestInSheet || axis.isZero()) return false;
   heights_.clear();
   for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
   const double gap = gap_in(heights_, spacing);
@@ -132,7 +131,7 @@ Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) 
   for (const Vector3d& offset : offsets_) {
     if (offset.squaredNorm() <= reach * reach) some_.push_back(offset);
   }
-  if (some_.size() < kFewestToSplit) return fallback;
+  if (some_.size() <= kFewestInSheet) return fallback;
   const Plane plane = plane_of(some_);
   const bool flat = plane.variances[0] < kFlatNearest * plane.variances[1];
   return flat && !plane.normal.isZero() ? plane.normal : fallback;

@@ -34,7 +34,8 @@ struct SheetFit {
 
 inline constexpr double kPlanar = 0.5;  ///< planarity of a plane, at least; judgement
 
-/// The residual up to which a plane is enough and no quadric is tried, m.
+/// The residual up to which a plane is enough and no quadric is tried, and up to which a quadric is
+/// enough and no other sheets are looked for, m.
 [[nodiscard]] double flat_residual(double radius, double noise);
 
 /// Fits one place after another; keeps its memory in between.
