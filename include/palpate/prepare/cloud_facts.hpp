@@ -24,11 +24,11 @@ struct Noise {
 /// finds what preparing the whole finds there: all else depends on what lies around a point. Up is
 /// +z, always.
 struct CloudFacts {
-  double spacing = 0;      ///< s of the points as given, the median, m
-  Noise noise = {};        ///< of the points as given
-  bool in_lines = false;   ///< do they lie on lines, nearer to each other than the lines are?
-  Box extent = {};         ///< of all but a few strays, world frame, m
-  double radius = 0;       ///< a typical R, m; 0: not known, and R has no cap
+  double spacing = 0;     ///< s of the points as given, the median, m
+  Noise noise = {};       ///< of the points as given
+  bool in_lines = false;  ///< do they lie on lines, nearer to each other than the lines are?
+  Box extent = {};        ///< of all but a few strays, world frame, m
+  double radius = 0;      ///< a typical R, m; 0: not known, and R has no cap
 };
 
 /// Measures the facts of a cloud in places that are drawn, always the same of the same cloud: some
