@@ -51,14 +51,16 @@ class Outlook {
  private:
   /// Is there but one sheet, and does it not curl so far that it may hide itself?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    // Cosine (73 degrees) that normals turn by where a sheet curls; judgement.
-    constexpr float kCurled = 0.3f;
+    // One that hides another is turned by 143 degrees or more (kGapCosine), so one of the two by
+    // half of that from the first.
+    constexpr float kSquaredCurl = 0.5f * (1 - kGapCosine);
     const std::uint32_t sheet = sheets_.sheet[first];
     const Vector3f& n = own_.normals[first];
     for (const simd::Run& run : runs) {
       for (std::uint32_t j = run.begin; j < run.end; ++j) {
         if (sheets_.sheet[j] != sheet) return false;
-        if (viewer_ && !(n.dot(own_.normals[j]) > kCurled)) return false;
+        const float cosine = n.dot(own_.normals[j]);
+        if (viewer_ && !(cosine > 0 && cosine * cosine > kSquaredCurl)) return false;
       }
     }
     return true;
