@@ -7,6 +7,7 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"
+#include "prepare/layered_sets.hpp"
 #include "prepare/sheets.hpp"
 
 namespace palpate {
@@ -33,6 +34,7 @@ struct Pair {
   std::uint32_t b;
   int sign;
   float skew;  // 1 - cosine of the angle between the normals; 0 where that is kParallel or less
+  bool layers = false;  // they do not continue each other, one lies over the other
 };
 
 /// Joins points that continue each other's sheets: those with parallel normals within each block on
@@ -54,13 +56,26 @@ class Growth {
       detail::NearPairs pairs;
       for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, pairs, later[b]);
     });
+    join(later);
+    return sets_;
+  }
+
+ private:
+  void join(const std::vector<std::vector<Pair>>& later) {
+    LayeredSets layered(sets_);
+    for (const auto& pairs : later) {
+      for (const Pair& pair : pairs) {
+        if (pair.layers) layered.add_layers(pair.a, pair.b, pair.sign);
+      }
+    }
     std::vector<Pair> turning;
     for (const auto& pairs : later) {
       for (const Pair& pair : pairs) {
+        if (pair.layers) continue;
         if (pair.skew > 0) {
           turning.push_back(pair);
         } else {
-          sets_.join(pair.a, pair.b, pair.sign);
+          layered.join(pair.a, pair.b, pair.sign);
         }
       }
     }
@@ -68,11 +83,9 @@ class Growth {
       return sets_.find(pair.a).first == sets_.find(pair.b).first;
     });
     std::ranges::stable_sort(turning, {}, &Pair::skew);
-    for (const Pair& pair : turning) sets_.join(pair.a, pair.b, pair.sign);
-    return sets_;
+    for (const Pair& pair : turning) layered.join(pair.a, pair.b, pair.sign);
   }
 
- private:
   void look(const detail::Block& block, detail::Surroundings& surroundings,
             detail::NearPairs& pairs, std::vector<Pair>& later) {
     const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
@@ -109,8 +122,11 @@ class Growth {
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
     const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
     const float arc = kChord * std::max(kTurn * near, bend * length);
-    if (off > std::max(sheet_tolerance(input_, a, b), arc)) return;
     const int sign = cosine < 0 ? -1 : 1;
+    if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
+      if (a == i && b == j && lie_over(i, j)) later.push_back({i, j, sign, 0, true});
+      return;
+    }
     const float skew = 1 - std::abs(cosine);
     const bool parallel = skew <= 0.5f * kParallel * kParallel;
     if (inside && parallel) {
@@ -118,6 +134,15 @@ class Growth {
     } else {
       later.push_back({i, j, sign, parallel ? 0 : skew});
     }
+  }
+
+  /// Does each lie over the other's plane rather than beside the other?
+  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j) const {
+    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+    const float height =
+        std::min(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
+    const float aside = std::sqrt(std::max(0.f, way.squaredNorm() - height * height));
+    return height > sheet_tolerance(input_, i, j) && height >= kGapSlope * aside;
   }
 
   const SheetInput& input_;

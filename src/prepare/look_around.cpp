@@ -19,7 +19,6 @@ using Eigen::Vector3f;
 // Which points belong to another sheet above or below one; all are judgement.
 constexpr float kGapReach = 1.6f;   // R
 constexpr float kGapTube = 1.3f;    // spacings to the side
-constexpr float kGapSlope = 0.5f;   // least height over the way to the side
 constexpr float kGapCosine = 0.8f;  // of the angle between both normals, at least (37 degrees)
 constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 

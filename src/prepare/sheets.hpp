@@ -104,6 +104,9 @@ struct Snapped {
 /// off its plane by k a^2 / sqrt(48) RMS.
 [[nodiscard]] float bow(const SheetInput& input, const PointFits& own, std::uint32_t i);
 
+// Least height over the way to the side of what lies over a point rather than beside it.
+inline constexpr float kGapSlope = 0.5f;  // judgement
+
 // How far normals may turn where both fits are bowed, over what their arc turns.
 inline constexpr float kTurnMargin = 1.5f;  // judgement
 // How far a point may be off the other's plane, over distance times turn (rad): an arc has half.
