@@ -1,10 +1,8 @@
-// Joins sets of sheets and sums up what they say of others.
+// Joins sets of sheets by what they say of each other.
 
 #include "prepare/bonds.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace palpate {
 
@@ -15,40 +13,23 @@ int Said::sign() const {
   return value < 0 ? -1 : 1;
 }
 
+Said& Said::operator+=(const Said& other) {
+  value += other.value;
+  squares += other.squares;
+  return *this;
+}
+
 BondedSets::BondedSets(std::span<const Bond> bonds, std::size_t sheets)
-    : sets_(sheets), slots_(sheets), turns_(sheets, 1), said_(sheets) {
-  std::iota(slots_.begin(), slots_.end(), 0u);
-  for (const Bond& bond : bonds) {
-    said_[bond.a].emplace(bond.b, bond.said);
-    said_[bond.b].emplace(bond.a, bond.said);
-  }
+    : sets_(sheets), said_(sheets) {
+  for (const Bond& bond : bonds) said_.add(bond.a, bond.b, bond.said);
 }
 
 int BondedSets::sign_between(std::uint32_t root_a, std::uint32_t root_b) const {
-  if (root_a == root_b) return 0;
-  const std::uint32_t a = slots_[root_a];
-  const std::uint32_t b = slots_[root_b];
-  const auto said = said_[a].find(b);
-  return said == said_[a].end() ? 0 : said->second.sign() * turns_[a] * turns_[b];
+  return root_a == root_b ? 0 : said_.between(root_a, root_b).sign();
 }
 
 void BondedSets::join(std::uint32_t root_a, std::uint32_t root_b, int sign) {
-  std::uint32_t kept = slots_[root_a];
-  std::uint32_t gone = slots_[root_b];
-  if (said_[kept].size() < said_[gone].size()) std::swap(kept, gone);  // so that few move
-  const int turn = sign * turns_[kept] * turns_[gone];
-  for (const auto& [other, said] : said_[gone]) {
-    said_[other].erase(gone);
-    if (other == kept) continue;
-    for (Said* sum : {&said_[kept][other], &said_[other][kept]}) {
-      sum->value += turn * said.value;
-      sum->squares += said.squares;
-    }
-  }
-  said_[gone].clear();
-  const std::uint32_t root = std::min(root_a, root_b);
-  if (slots_[root] == gone) turns_[kept] *= sign;
-  slots_[root] = kept;
+  said_.join(root_a, root_b, sign);
   sets_.join(root_a, root_b, sign);
 }
 

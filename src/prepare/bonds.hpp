@@ -3,12 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "geometry/signed_sets.hpp"
+#include "prepare/said_by_sets.hpp"
 
 namespace palpate {
 
@@ -19,6 +18,8 @@ struct Said {
 
   /// 1, -1, or 0: they disagree, or there are hardly any.
   [[nodiscard]] int sign() const;
+  [[nodiscard]] Said turned(int sign) const { return {sign * value, squares}; }
+  Said& operator+=(const Said& other);
 };
 
 struct Bond {
@@ -49,9 +50,7 @@ class BondedSets {
 
  private:
   detail::SignedSets sets_;
-  std::vector<std::uint32_t> slots_;                 // where the set of a root keeps what it says
-  std::vector<int> turns_;                           // a slot's sign relative to its set's root
-  std::vector<std::map<std::uint32_t, Said>> said_;  // what a slot says of other slots
+  SaidBySets<Said> said_;
 };
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -33,8 +34,14 @@ struct Pair {
   std::uint32_t a;
   std::uint32_t b;
   int sign;
-  float skew;  // 1 - cosine of the angle between the normals; 0 where that is kParallel or less
-  bool layers = false;  // they do not continue each other, one lies over the other
+  float skew;  // 1 - cosine of the angle between the normals
+};
+
+/// Pairs of points of a block that wait until those with parallel normals in it are joined.
+struct Later {
+  std::vector<Pair> parallel;  // across blocks
+  std::vector<Pair> turning;   // continue each other, and are not parallel
+  std::vector<Pair> layers;    // do not: one lies over the other
 };
 
 /// Joins points that continue each other's sheets: those with parallel normals within each block on
@@ -50,7 +57,7 @@ class Growth {
 
   detail::SignedSets& run() {
     const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
-    std::vector<std::vector<Pair>> later(blocks.size());
+    std::vector<Later> later(blocks.size());
     detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
       detail::Surroundings surroundings;
       detail::NearPairs pairs;
@@ -61,33 +68,26 @@ class Growth {
   }
 
  private:
-  void join(const std::vector<std::vector<Pair>>& later) {
-    LayeredSets layered(sets_);
-    for (const auto& pairs : later) {
-      for (const Pair& pair : pairs) {
-        if (pair.layers) layered.add_layers(pair.a, pair.b, pair.sign);
-      }
+  void join(const std::vector<Later>& later) {
+    LayeredSets layered(sets_, input_.grid.size());
+    for (const Later& block : later) {
+      for (const Pair& pair : block.layers) layered.add_layers(pair.a, pair.b, pair.sign);
+    }
+    for (const Later& block : later) {
+      for (const Pair& pair : block.parallel) layered.join(pair.a, pair.b, pair.sign);
     }
     std::vector<Pair> turning;
-    for (const auto& pairs : later) {
-      for (const Pair& pair : pairs) {
-        if (pair.layers) continue;
-        if (pair.skew > 0) {
-          turning.push_back(pair);
-        } else {
-          layered.join(pair.a, pair.b, pair.sign);
-        }
-      }
+    for (const Later& block : later) {
+      std::ranges::copy_if(block.turning, std::back_inserter(turning), [this](const Pair& pair) {
+        return sets_.find(pair.a).first != sets_.find(pair.b).first;
+      });
     }
-    std::erase_if(turning, [this](const Pair& pair) {
-      return sets_.find(pair.a).first == sets_.find(pair.b).first;
-    });
     std::ranges::stable_sort(turning, {}, &Pair::skew);
     for (const Pair& pair : turning) layered.join(pair.a, pair.b, pair.sign);
   }
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
-            detail::NearPairs& pairs, std::vector<Pair>& later) {
+            detail::NearPairs& pairs, Later& later) {
     const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
     detail::for_each_part(
         input_.grid, reach, block, surroundings,
@@ -101,8 +101,7 @@ class Growth {
 
   /// Joins i and j, which are near each other, if they lie on one sheet. Compares their hosts: at a
   /// sharp rim, where two sides meet, these are as far apart as the sides are.
-  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
-            std::vector<Pair>& later) {
+  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
     if (i == j || hosts_[i] == kNoHost || hosts_[j] == kNoHost) return;
     const bool inside = j >= block.begin && j < block.end;
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
@@ -122,23 +121,20 @@ class Growth {
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
     const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
     const float arc = kChord * std::max(kTurn * near, bend * length);
-    const int sign = cosine < 0 ? -1 : 1;
+    const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
     if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
-      if (a == i && b == j && lie_over(i, j)) later.push_back({i, j, sign, 0, true});
-      return;
-    }
-    const float skew = 1 - std::abs(cosine);
-    const bool parallel = skew <= 0.5f * kParallel * kParallel;
-    if (inside && parallel) {
-      sets_.join(i, j, sign);
+      if (a == i && b == j && lie_over(i, j, way)) later.layers.push_back(pair);
+    } else if (pair.skew > 0.5f * kParallel * kParallel) {
+      later.turning.push_back(pair);
+    } else if (inside) {
+      sets_.join(i, j, pair.sign);
     } else {
-      later.push_back({i, j, sign, parallel ? 0 : skew});
+      later.parallel.push_back(pair);
     }
   }
 
   /// Does each lie over the other's plane rather than beside the other?
-  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j) const {
-    const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j, const Vector3f& way) const {
     const float height =
         std::min(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
     const float aside = std::sqrt(std::max(0.f, way.squaredNorm() - height * height));

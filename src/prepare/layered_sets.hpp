@@ -2,12 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <map>
-#include <unordered_map>
-#include <utility>
 
 #include "geometry/signed_sets.hpp"
+#include "prepare/said_by_sets.hpp"
 
 namespace palpate {
 
@@ -17,32 +16,30 @@ namespace palpate {
 /// over each other.
 class LayeredSets {
  public:
-  explicit LayeredSets(detail::SignedSets& sets) : sets_(sets) {}
+  /// `sets`: of so many points.
+  LayeredSets(detail::SignedSets& sets, std::size_t count) : sets_(sets), against_(count) {}
 
   /// Notes that i and j lie over each other, whose normals have this sign relative to each other.
-  /// Before the first join.
   void add_layers(std::uint32_t i, std::uint32_t j, int sign);
 
   /// Joins the sets of i and j so that these have this sign, if nothing stands against it.
   void join(std::uint32_t i, std::uint32_t j, int sign);
 
  private:
-  /// Pairs of points of two sets, by the sign that one set has relative to the other then.
-  struct Pairs {
-    std::array<int, 2> layers{};
-    std::array<int, 2> asked{};
-  };
-  using PairsWith = std::map<std::uint32_t, Pairs>;
+  /// How many more pairs lie over each other than have asked, by the sign of one root relative to
+  /// the other that they speak of: -1, 1.
+  struct Against {
+    std::array<int, 2> pairs{};
 
-  [[nodiscard]] std::uint32_t slot_of(std::uint32_t root) const;
-  [[nodiscard]] bool is_refused(std::uint32_t slot_a, std::uint32_t slot_b, int sign);
-  void merge(std::uint32_t kept, std::uint32_t gone, int sign);
+    [[nodiscard]] int& of(int sign) { return pairs[sign > 0 ? 1 : 0]; }
+    [[nodiscard]] Against turned(int sign) const;
+    Against& operator+=(const Against& other);
+  };
+
+  void count(std::uint32_t root_i, std::uint32_t root_j, int sign, int pairs);
 
   detail::SignedSets& sets_;
-  // What a set says is kept at one of its points, its slot, and relative to that point's sign: the
-  // root, or what stands here.
-  std::unordered_map<std::uint32_t, std::uint32_t> slots_;
-  std::unordered_map<std::uint32_t, PairsWith> said_;  // by slots, in both directions
+  SaidBySets<Against> against_;
 };
 
 }  // namespace palpate

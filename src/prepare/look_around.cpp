@@ -50,8 +50,8 @@ class Outlook {
  private:
   /// Is there but one sheet, and does it not curl so far that it may hide itself?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    // One that hides another is turned by 143 degrees or more (kGapCosine), so one of the two by
-    // half of that from the first.
+    // A point of one sheet that hides another is turned from it by 143 degrees or more
+    // (kGapCosine), so one of the two by half of that from the first.
     constexpr float kSquaredCurl = 0.5f * (1 - kGapCosine);
     const std::uint32_t sheet = sheets_.sheet[first];
     const Vector3f& n = own_.normals[first];

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <vector>
 
 #include "geometry/clouds.hpp"
+#include "palpate/prepare/prepare.hpp"
 #include "prepare/assemble.hpp"
 #include "prepare/fitted.hpp"
 
@@ -39,6 +42,44 @@ TEST(Growth, OfAFloorAndAWallMakesTwoSheets) {
     const bool wall = p.x() == 0;
     EXPECT_GT(std::abs(wall ? fitted.own.normals[i].x() : fitted.own.normals[i].z()), 0.99f);
   }
+}
+
+/// A flat ring, seven points wide, that turns over within `twist` of its `length` points.
+std::vector<Vector3f> band_with_half_twist(int length, int twist) {
+  constexpr double kPi = std::numbers::pi;
+  const double radius = length / (2 * kPi);
+  std::vector<Vector3f> points;
+  for (int k = 0; k < length; ++k) {
+    const double around = 2 * kPi * k / length;
+    const double over = k < twist ? kPi * k / twist : kPi;
+    for (int u = -3; u <= 3; ++u) {
+      const double out = radius + u * std::cos(over);
+      const double x = out * std::cos(around);
+      const double y = out * std::sin(around);
+      points.push_back(Eigen::Vector3d(x, y, u * std::sin(over)).cast<float>());
+    }
+  }
+  return points;
+}
+
+// No signs agree all around such a band.
+TEST(Growth, LetsSignsPartWhereASheetTurnsTheMost) {
+  constexpr int kLength = 400;
+  constexpr int kTwist = 20;
+  PointCloud cloud;
+  cloud.positions = band_with_half_twist(kLength, kTwist);
+  const SurfacePoints points = prepare(cloud, {.voxel = 0.0}).points;
+  int up = 0;
+  int all = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3f& p = points.grid.points()[i];
+    const double place = kLength * std::atan2(p.y(), p.x()) / (2 * std::numbers::pi);
+    if (place > -3 && place < kTwist + 3) continue;
+    ++all;
+    if (points.normals[i].z() > 0) ++up;
+  }
+  EXPECT_GT(all, 2600);
+  EXPECT_TRUE(up == 0 || up == all) << up << " of " << all;
 }
 
 TEST(Growth, OfASphereMakesOneSheetWhoseNormalsAgree) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -219,41 +218,7 @@ TEST(Signs, DoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(many.sheets.part, few.sheets.part);
 }
 
-/// A flat ring, seven points wide, that turns over within `twist` of its `length` points.
-Points band_with_half_twist(int length, int twist) {
-  constexpr double kPi = std::numbers::pi;
-  const double radius = length / (2 * kPi);
-  Points points;
-  for (int k = 0; k < length; ++k) {
-    const double around = 2 * kPi * k / length;
-    const double over = k < twist ? kPi * k / twist : kPi;
-    for (int u = -3; u <= 3; ++u) {
-      const double out = radius + u * std::cos(over);
-      const double x = out * std::cos(around);
-      const double y = out * std::sin(around);
-      points.push_back(Eigen::Vector3d(x, y, u * std::sin(over)).cast<float>());
-    }
-  }
-  return points;
-}
-
-// No signs agree all around such a band.
-TEST(Signs, PartWhereASheetTurnsTheMost) {
-  constexpr int kLength = 400;
-  constexpr int kTwist = 20;
-  const SurfacePoints points = prepared(band_with_half_twist(kLength, kTwist), {.voxel = 0.0});
-  int up = 0;
-  int all = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector3f& p = points.grid.points()[i];
-    const double place = kLength * std::atan2(p.y(), p.x()) / (2 * std::numbers::pi);
-    all += place < -3 || place > kTwist + 3 ? 1 : 0;
-    up += (place < -3 || place > kTwist + 3) && points.normals[i].z() > 0 ? 1 : 0;
-  }
-  EXPECT_TRUE(all > 2600 && (up == 0 || up == all)) << up << " of " << all;
-}
-
-/// Vertices and their outward directions.
+/// Vertices and, from the faces, their outward directions.
 bool read_mesh(const std::filesystem::path& path, Points& points, Points& directions) {
   std::ifstream file(path);
   std::string line;
