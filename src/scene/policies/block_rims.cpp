@@ -4,23 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "field/formulas.hpp"
+#include "scene/simd/rims.hpp"
 
 namespace palpate {
 namespace {
 
 // Least weight of a rim beside the mean of its neighbours (docs/method.md 2.2).
 constexpr float kShareOfAround = 0.8f;
-
-Floats weight(Kernel kernel, const Floats& q) {
-  if (kernel == Kernel::wendland) {
-    Floats w{};
-    for (int l = 0; l < kLanes; ++l) w[l] = float(wendland(double(q[l])).w);
-    return w;
-  }
-  const Floats s = 1 - q;
-  return s * s * (5 + 4 * s) * (1.0f / 9);
-}
 
 /// Are the blocks at `at` outside of a ball, by more than single precision may err?
 bool are_far(const PaddedBlocks& padded, std::size_t at, const Ball& ball) {
@@ -37,7 +27,7 @@ bool are_far(const PaddedBlocks& padded, std::size_t at, const Ball& ball) {
 // image's first block to it are empty or lie beside another surface.
 void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of,
                      const PaddedBlocks& padded) {
-  halves_.assign(depth.size() + kLanes, 0);
+  halves_.assign(depth.size() + simd::kRimLanes, 0);
   row_halves_.assign(static_cast<std::size_t>(depth.rows), 0);
   const std::ptrdiff_t columns = depth.columns;
   const auto width = static_cast<std::size_t>(columns + 1);
@@ -121,34 +111,19 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
 template <class Take>
 void BlockRims::sum_around(const FilteredDepth& depth, const PaddedBlocks& padded,
                            const float* factors, const Take& take) const {
-  const auto sum = [&](std::size_t at, const Ints& halves, int half) {
-    const auto x = load<Floats>(&padded.x[at]);
-    const auto y = load<Floats>(&padded.y[at]);
-    const auto z = load<Floats>(&padded.z[at]);
-    Floats total{};
-    for (int dv = -half; dv <= half; ++dv) {
-      for (int du = -half; du <= half; ++du) {
-        const std::size_t from = at + dv * static_cast<std::ptrdiff_t>(padded.stride) + du;
-        const Floats dx = load<Floats>(&padded.x[from]) - x;
-        const Floats dy = load<Floats>(&padded.y[from]) - y;
-        const Floats dz = load<Floats>(&padded.z[from]) - z;
-        const Floats q = (dx * dx + dy * dy + dz * dz) * load<Floats>(&padded.per_r2[from]);
-        const Floats w = weight(kernel_, q) * load<Floats>(factors + from);
-        const Ints inside = (q < 1) & (halves >= std::max(std::abs(du), std::abs(dv)));
-        total += inside ? w : Floats{};
-      }
-    }
-    return total;
-  };
+  constexpr int kSide = simd::kRimLanes;
   const auto row = [&](int v) {
-    for (int u = 0; u < depth.columns; u += kLanes) {
+    for (int u = 0; u < depth.columns; u += kSide) {
       const std::size_t first = static_cast<std::size_t>(v) * depth.columns + u;
-      const auto halves = load<Ints>(&halves_[first]);
-      const int half = std::max({halves[0], halves[1], halves[2], halves[3]});
-      if (half == 0) continue;
-      const Floats sums = sum(padded.place(u, v), halves, half);
-      for (int l = 0; l < std::min(kLanes, depth.columns - u); ++l) {
-        if (halves[l] > 0) take(first + l, padded.place(u + l, v), sums[l]);
+      const std::int32_t* const halves = &halves_[first];
+      if (std::all_of(halves, halves + kSide, [](int half) { return half == 0; })) continue;
+      const std::size_t at = padded.place(u, v);
+      float sums[kSide];
+      simd::best_rims().around({&padded.x[at], &padded.y[at], &padded.z[at], &padded.per_r2[at],
+                                factors + at, static_cast<std::ptrdiff_t>(padded.stride)},
+                               kernel_ == Kernel::wendland, halves, sums);
+      for (int l = 0; l < std::min(kSide, depth.columns - u); ++l) {
+        if (halves[l] > 0) take(first + l, at + l, sums[l]);
       }
     }
   };

@@ -1,13 +1,14 @@
 // Lays blocks out side by side.
 #include "scene/policies/padded_blocks.hpp"
 
-#include "scene/policies/lanes.hpp"
+#include "scene/simd/rims.hpp"
 
 namespace palpate {
 
 bool PaddedBlocks::make_room(const FilteredDepth& depth, int blocks) {
   const auto wide = static_cast<std::size_t>(depth.columns + 2 * blocks);
-  const std::size_t size = wide * static_cast<std::size_t>(depth.rows + 2 * blocks) + kLanes;
+  const std::size_t size =
+      wide * static_cast<std::size_t>(depth.rows + 2 * blocks) + simd::kRimLanes;
   if (blocks == margin && wide == stride && size == x.size()) return false;
   margin = blocks;
   stride = wide;
