@@ -191,8 +191,8 @@ struct Search {
   int shift_u, shift_v, half_u, half_v;
 };
 
-// Tries four windows, takes the best of the explained ones if it wins, and returns which they are.
-inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search& search) {
+// Tries four windows and takes the best of the explained ones if it wins.
+inline void look(const FitInput& in, const Chunk& c, const Aside& aside, Search& search) {
   const Directions& to = kDirections[aside.diagonal ? 1 : 0];
   const int half_u = c.half_u[aside.size][search.i];
   const int half_v = c.half_v[aside.size][search.i];
@@ -209,15 +209,15 @@ inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   s.v = double(search.row - in.table.rows / 2) - dv;
   const Fits f = fit(in, shape(half_u, half_v), s);
   const Mask good = f.affine | bends(f, aside.size);
-  if (!any(good)) return good;
+  if (!any(good)) return;
   const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
   Mask wins = good & (scores < search.score);
-  if (!any(wins)) return good;
+  if (!any(wins)) return;
   const Rays rays = rays_of(in, double(in.table.columns / 2 + in.table.first_column) + s.u,
                             double(in.table.rows / 2 + in.table.first_row) + s.v);
   const Doubles off = surface_at(f, f.affine, rays, du, dv).rho - c.rho[search.i];
   wins &= off * off <= 4 * c.variance[search.i];
-  if (!any(wins)) return good;
+  if (!any(wins)) return;
   for (int l = 0; l < kLanes; ++l) {
     if (!wins[l] || !(scores[l] < search.score)) continue;
     search.score = scores[l];
@@ -227,7 +227,6 @@ inline Mask look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
     search.shift_u = to.u[l] * shift_u;
     search.shift_v = to.v[l] * shift_v;
   }
-  return good;
 }
 
 inline double centred_score(const FitInput& in, int row, const Chunk& c, const Search& search) {
@@ -237,9 +236,8 @@ inline double centred_score(const FitInput& in, int row, const Chunk& c, const S
   return score(f, affine, Doubles{}, Doubles{}, search.lever_u2, search.lever_v2)[0];
 }
 
-// Looks for a better window beside a block: near an edge it sees more of the block's surface than
-// one around it. Tries the most promising windows of a way first and then, before all others of
-// that way, the smallest: where none of these is explained, no larger one is.
+// Looks for a better window beside a block, the most promising first: near an edge it sees more of
+// the block's surface than one around it.
 inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
   const auto lever_u = static_cast<double>(c.lever_u[i]);
   const auto lever_v = static_cast<double>(c.lever_v[i]);
@@ -259,14 +257,9 @@ inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
   const double per_n =
       kExtents.of[c.half_u[kLast][i]].per_n * kExtents.of[c.half_v[kLast][i]].per_n;
   const double mean = shared_over(in.shared, 1, per_n) * c.variance[i] * per_n;
-  int tried[kWays] = {};
   for (const Aside& aside : kAsidesInOrder.of) {
     if (!(aside.promise * mean < search.score)) break;
-    int& times = tried[2 * int{aside.whole} + int{aside.diagonal}];
-    if (times == 1 && !any(look(in, c, {0, aside.whole, aside.diagonal, 0}, search))) times = -1;
-    if (times < 0 || (times > 0 && aside.size == 0)) continue;
     look(in, c, aside, search);
-    ++times;
   }
   c.kind[i] = search.kind;
   c.shift_u[i] = search.shift_u;

@@ -61,7 +61,6 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
   Mask good{};    // is the last size taken?
   Mask affine{};  // of the largest windows that are explained
   Mask edge{};
-  Mask curved{};           // by what the first window shows that is too large
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
     if (same_size(c, k, four)) {
@@ -72,7 +71,6 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
     const Mask vague = f.full & f.torn & ~f.affine;
     const Mask ends = growing & ~vague & ~(f.affine | bends(f, k));
     edge |= ends & ~f.quadratic;
-    curved |= ends & f.quadratic & f.bent;
     growing &= ~ends;
     good = growing & ~vague;
     affine = good ? f.affine : affine;
@@ -82,9 +80,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
     const int i = four[l];
     c.edge[i] = edge[l] != 0;
     if (size[l] < 0) continue;
-    // Where the next window is clearly bent, this one seemed flat by luck.
-    const bool flat = affine[l] && !(curved[l] && size[l] <= kBentSizes);
-    c.kind[i] = flat ? kAffine : kQuadratic;
+    c.kind[i] = affine[l] ? kAffine : kQuadratic;
     c.best_u[i] = c.half_u[size[l]][i];
     c.best_v[i] = c.half_v[size[l]][i];
   }
