@@ -207,7 +207,7 @@ inline void look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   const Doubles dv = lanes(to.v, -shift_v);
   s.u = double(search.column - in.table.columns / 2) - du;
   s.v = double(search.row - in.table.rows / 2) - dv;
-  const Fits f = fit(in, shape(half_u, half_v), s);
+  const Fits f = fit(in, shape(half_u, half_v), s, aside.size > kBentSizes);
   const Mask good = f.affine | bends(f, aside.size);
   if (!any(good)) return;
   const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);

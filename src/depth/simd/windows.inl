@@ -170,7 +170,9 @@ template <class T>
   return shared / (1.0 + kUnseenShare[degree] * (shared - 1) * per_n);
 }
 
-[[gnu::always_inline]] inline Fits fit(const FitInput& input, const Shape& g, const Moments& s) {
+// `planes`: only planes count; where the noise explains none, all but the masks is left unknown.
+[[gnu::always_inline]] inline Fits fit(const FitInput& input, const Shape& g, const Moments& s,
+                                       bool planes = false) {
   Fits f;
   f.shape = g;
   const Four low = transpose(s.low[0], s.low[1], s.low[2], s.low[3]);
@@ -179,15 +181,9 @@ template <class T>
   const auto& [suv, svv, srr, counts] = high.v;
   const Doubles bu = su - s.u * r;
   const Doubles bv = sv - s.v * r;
-  const Doubles buv = suv - s.u * sv - s.v * bu;
-  const Doubles buu = suu - s.u * (su + bu) - g.mu * r;
-  const Doubles bvv = svv - s.v * (sv + bv) - g.mv * r;
   f.m = r * g.per_n;
   f.cu = bu * (g.per_n * g.per_mu);
   f.cv = bv * (g.per_n * g.per_mv);
-  f.cuv = buv * (g.per_n * g.per_mu * g.per_mv);
-  f.cuu = buu * (g.per_n * g.per_ku);
-  f.cvv = bvv * (g.per_n * g.per_kv);
   const Doubles weights = counts - kBlock * g.area;  // negative where there is a hole
   const Doubles sigma = noise_sigma(input.noise, f.m);
   // The rounding to whole units is noise too.
@@ -195,12 +191,23 @@ template <class T>
   f.variance = variance;
   f.shared = input.shared;
   const Doubles left = srr - r * f.m - f.cu * bu - f.cv * bv;
-  const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
-  f.full = weights >= 0.0;
   // A Gaussian's square is half as wide, so squares share half of what the errors do.
   const double together = input.shared > 2 ? 0.5 * input.shared : 1;
+  f.full = weights >= 0.0;
+  f.affine = f.full & explained(left, variance, g.area - 3.0, together);
+  if (planes && !any(f.affine)) {
+    f.torn = f.quadratic = f.bent = Mask{};
+    return f;
+  }
+  const Doubles buv = suv - s.u * sv - s.v * bu;
+  const Doubles buu = suu - s.u * (su + bu) - g.mu * r;
+  const Doubles bvv = svv - s.v * (sv + bv) - g.mv * r;
+  f.cuv = buv * (g.per_n * g.per_mu * g.per_mv);
+  f.cuu = buu * (g.per_n * g.per_ku);
+  f.cvv = bvv * (g.per_n * g.per_kv);
+  const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
   const Doubles bend = variance * shared_over(input.shared, 2, g.per_n);
-  f.affine = f.full & explained(left, variance, g.area - 3.0, together) & (bent <= 12.0 * bend);
+  f.affine &= bent <= 12.0 * bend;
   f.bent = bent > 30.0 * bend;
   const Doubles same_surface = input.close * sigma + input.steep * f.m;
   f.torn = (g.few_u & (absolute(f.cu) + absolute(f.cuu) > same_surface)) |
