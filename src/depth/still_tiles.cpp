@@ -12,9 +12,9 @@ constexpr int kSide = KeptTiles::kSide;  // blocks
 constexpr float kBlock = 25;  // of a block's difference (judgement)
 constexpr float kMean = 9;    // of the mean difference of tiles (judgement)
 
-// Frames in which each tile is filtered once, though it stands still: a quarter of a second at 30
-// Hz (judgement).
-constexpr int kInTurn = 8;
+// Frames in which each tile is filtered once, though it stands still: half a second at 30 Hz
+// (judgement).
+constexpr int kInTurn = 16;
 
 }  // namespace
 
@@ -76,7 +76,7 @@ bool StillTiles::stays(int tile, int row, float shared) const {
 
 void StillTiles::find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change,
                       int memory, KeptTiles& kept) {
-  const auto frames = static_cast<unsigned>(std::min(memory, kInTurn));
+  const auto frames = static_cast<unsigned>(std::min(2 * memory - 1, kInTurn));
   ++frame_;
   kept.columns = grid_.columns;
   kept.flags.resize(kept.index(0, grid_.rows + kSide - 1));

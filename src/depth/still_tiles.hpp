@@ -16,8 +16,8 @@ class StillTiles {
   /// Nothing stands still until it has been filtered again.
   void forget(const BlockGrid& grid);
 
-  /// Blocks in `change` do not stand still. Each tile is filtered once in eight frames all the
-  /// same, or in `memory` if that is less, so that what moves within noise is followed.
+  /// Blocks in `change` do not stand still. Each tile is filtered once in 16 frames all the same,
+  /// or in 2 `memory` - 1 if that is less, so that what moves within noise is followed.
   void find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change, int memory,
             KeptTiles& kept);
 
