@@ -188,7 +188,7 @@ struct DepthFilter::State {
   const FilteredDepth& points(const DepthFrame& frame) {
     average(frame);
     if (!temporal.begin(fits.grid, out.T_world_sensor)) tiles.forget(fits.grid);
-    tiles.find(blocks, out.noise, region.change_from(last_region), options.memory, out.kept);
+    tiles.find(blocks, out.noise, region.change_from(last_region), options.memory > 1, out.kept);
     last_region = region;
     const depth::BlockRange fitted =
         window_fits.fit(blocks, out.noise, options.normal_error, region, out.kept, fits);

@@ -14,7 +14,7 @@ constexpr float kMean = 9;    // of the mean difference of tiles (judgement)
 
 // Frames in which each tile is filtered once, though it stands still: half a second at 30 Hz
 // (judgement).
-constexpr int kInTurn = 16;
+constexpr unsigned kInTurn = 16;
 
 }  // namespace
 
@@ -75,8 +75,8 @@ bool StillTiles::stays(int tile, int row, float shared) const {
 }
 
 void StillTiles::find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change,
-                      int memory, KeptTiles& kept) {
-  const auto frames = static_cast<unsigned>(std::min(2 * memory - 1, kInTurn));
+                      bool averaged, KeptTiles& kept) {
+  const unsigned frames = averaged ? kInTurn : 1;
   ++frame_;
   kept.columns = grid_.columns;
   kept.flags.resize(kept.index(0, grid_.rows + kSide - 1));

@@ -17,8 +17,8 @@ class StillTiles {
   void forget(const BlockGrid& grid);
 
   /// Blocks in `change` do not stand still. Each tile is filtered once in 16 frames all the same,
-  /// or in 2 `memory` - 1 if that is less, so that what moves within noise is followed.
-  void find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change, int memory,
+  /// so that what moves within noise is followed; always where frames are not `averaged`.
+  void find(const Blocks& blocks, const NoiseModel& noise, const BlockRange& change, bool averaged,
             KeptTiles& kept);
 
   /// Remembers what some blocks of a row, a whole number of tiles, were filtered from.

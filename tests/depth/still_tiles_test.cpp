@@ -74,7 +74,7 @@ TEST_F(KeptTilesTest, HaveTheAnswerOfTheFrameBeforeBitForBit) {
 TEST_F(KeptTilesTest, TakeTurnsInBeingFilteredAgain) {
   settle();
   std::vector<std::uint8_t> ever_filtered(show(kWall).kept.flags.size(), 0);
-  for (int k = 0; k < 8; ++k) {
+  for (int k = 0; k < 16; ++k) {
     const auto& flags = show(kWall).kept.flags;
     for (std::size_t i = 0; i < flags.size(); ++i) ever_filtered[i] |= flags[i] == 0 ? 1 : 0;
   }

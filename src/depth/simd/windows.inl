@@ -170,7 +170,25 @@ template <class T>
   return shared / (1.0 + kUnseenShare[degree] * (shared - 1) * per_n);
 }
 
-// `planes`: only planes count; where the noise explains none, all but the masks is left unknown.
+// What paraboloids add to the fits: `left` and `sigma` of planes, sums without those of planes.
+[[gnu::always_inline]] inline void bend(const FitInput& input, const Doubles& left,
+                                        const Doubles& sigma, double together, const Doubles& buv,
+                                        const Doubles& buu, const Doubles& bvv, Fits& f) {
+  const Shape& g = f.shape;
+  f.cuv = buv * (g.per_n * g.per_mu * g.per_mv);
+  f.cuu = buu * (g.per_n * g.per_ku);
+  f.cvv = bvv * (g.per_n * g.per_kv);
+  const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
+  const Doubles bend = f.variance * shared_over(input.shared, 2, g.per_n);
+  f.affine &= bent <= 12.0 * bend;
+  f.bent = bent > 30.0 * bend;
+  const Doubles same_surface = input.close * sigma + input.steep * f.m;
+  f.torn = (g.few_u & (absolute(f.cu) + absolute(f.cuu) > same_surface)) |
+           (g.few_v & (absolute(f.cv) + absolute(f.cvv) > same_surface));
+  f.quadratic = f.full & ~f.torn & explained(left - bent, f.variance, g.area - 6.0, together);
+}
+
+// `planes`: only planes count; where noise explains none, terms of the second degree are not set.
 [[gnu::always_inline]] inline Fits fit(const FitInput& input, const Shape& g, const Moments& s,
                                        bool planes = false) {
   Fits f;
@@ -202,17 +220,7 @@ template <class T>
   const Doubles buv = suv - s.u * sv - s.v * bu;
   const Doubles buu = suu - s.u * (su + bu) - g.mu * r;
   const Doubles bvv = svv - s.v * (sv + bv) - g.mv * r;
-  f.cuv = buv * (g.per_n * g.per_mu * g.per_mv);
-  f.cuu = buu * (g.per_n * g.per_ku);
-  f.cvv = bvv * (g.per_n * g.per_kv);
-  const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
-  const Doubles bend = variance * shared_over(input.shared, 2, g.per_n);
-  f.affine &= bent <= 12.0 * bend;
-  f.bent = bent > 30.0 * bend;
-  const Doubles same_surface = input.close * sigma + input.steep * f.m;
-  f.torn = (g.few_u & (absolute(f.cu) + absolute(f.cuu) > same_surface)) |
-           (g.few_v & (absolute(f.cv) + absolute(f.cvv) > same_surface));
-  f.quadratic = f.full & ~f.torn & explained(left - bent, variance, g.area - 6.0, together);
+  bend(input, left, sigma, together, buv, buu, bvv, f);
   return f;
 }
 

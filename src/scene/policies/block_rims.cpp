@@ -111,18 +111,19 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
 template <class Take>
 void BlockRims::sum_around(const FilteredDepth& depth, const PaddedBlocks& padded,
                            const float* factors, const Take& take) const {
-  constexpr int kSide = simd::kRimLanes;
+  const simd::RimFunctions& best = simd::best_rims();
   const auto row = [&](int v) {
-    for (int u = 0; u < depth.columns; u += kSide) {
+    for (int u = 0; u < depth.columns; u += simd::kRimLanes) {
       const std::size_t first = static_cast<std::size_t>(v) * depth.columns + u;
       const std::int32_t* const halves = &halves_[first];
-      if (std::all_of(halves, halves + kSide, [](int half) { return half == 0; })) continue;
+      if (std::all_of(halves, halves + simd::kRimLanes, [](int half) { return half == 0; }))
+        continue;
       const std::size_t at = padded.place(u, v);
-      float sums[kSide];
-      simd::best_rims().around({&padded.x[at], &padded.y[at], &padded.z[at], &padded.per_r2[at],
-                                factors + at, static_cast<std::ptrdiff_t>(padded.stride)},
-                               kernel_ == Kernel::wendland, halves, sums);
-      for (int l = 0; l < std::min(kSide, depth.columns - u); ++l) {
+      float sums[simd::kRimLanes];
+      best.around({&padded.x[at], &padded.y[at], &padded.z[at], &padded.per_r2[at], factors + at,
+                   static_cast<std::ptrdiff_t>(padded.stride)},
+                  kernel_ == Kernel::wendland, halves, sums);
+      for (int l = 0; l < std::min(simd::kRimLanes, depth.columns - u); ++l) {
         if (halves[l] > 0) take(first + l, at + l, sums[l]);
       }
     }
