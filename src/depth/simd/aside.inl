@@ -196,6 +196,10 @@ inline void look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   const Directions& to = kDirections[aside.diagonal ? 1 : 0];
   const int half_u = c.half_u[aside.size][search.i];
   const int half_v = c.half_v[aside.size][search.i];
+  if (aside.size > 0 && half_u == c.half_u[aside.size - 1][search.i] &&
+      half_v == c.half_v[aside.size - 1][search.i]) {
+    return;  // the size below is as large
+  }
   const int shift_u = aside.whole ? half_u : (half_u + 1) / 2;
   const int shift_v = aside.whole ? half_v : (half_v + 1) / 2;
   Moments s;
