@@ -59,6 +59,12 @@ inline void round_sizes(Chunk& c) {
   }
 }
 
+// Are a block's windows of this size as large as those of the size below?
+inline bool as_below(const Chunk& c, int size, int i) {
+  return size > 0 && c.half_u[size][i] == c.half_u[size - 1][i] &&
+         c.half_v[size][i] == c.half_v[size - 1][i];
+}
+
 // Sets the largest windows: by noise and wanted error, in blocks that the slopes foreshorten.
 inline void size_windows(const FitInput& in, int row, Chunk& c) {
   // Half side over radius: a rectangle has a disc's second moments at sqrt(3) / 2 = .866 and its
@@ -196,10 +202,6 @@ inline void look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   const Directions& to = kDirections[aside.diagonal ? 1 : 0];
   const int half_u = c.half_u[aside.size][search.i];
   const int half_v = c.half_v[aside.size][search.i];
-  if (aside.size > 0 && half_u == c.half_u[aside.size - 1][search.i] &&
-      half_v == c.half_v[aside.size - 1][search.i]) {
-    return;  // the size below is as large
-  }
   const int shift_u = aside.whole ? half_u : (half_u + 1) / 2;
   const int shift_v = aside.whole ? half_v : (half_v + 1) / 2;
   Moments s;
@@ -263,7 +265,7 @@ inline void try_aside(const FitInput& in, int row, Chunk& c, int i) {
   const double mean = shared_over(in.shared, 1, per_n) * c.variance[i] * per_n;
   for (const Aside& aside : kAsidesInOrder.of) {
     if (!(aside.promise * mean < search.score)) break;
-    look(in, c, aside, search);
+    if (!as_below(c, aside.size, i)) look(in, c, aside, search);
   }
   c.kind[i] = search.kind;
   c.shift_u[i] = search.shift_u;

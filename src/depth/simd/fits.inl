@@ -44,16 +44,6 @@ inline void widen_slopes(const FitInput& in, int row, Chunk& c) {
   }
 }
 
-inline bool same_size(const Chunk& c, int k, const int four[kLanes]) {
-  if (k == 0) return false;
-  int differ = 0;
-  for (int l = 0; l < kLanes; ++l) {
-    differ |= c.half_u[k][four[l]] ^ c.half_u[k - 1][four[l]];
-    differ |= c.half_v[k][four[l]] ^ c.half_v[k - 1][four[l]];
-  }
-  return differ == 0;
-}
-
 // Grows windows around four blocks for as long as one surface explains them. A torn window that no
 // plane explains tells nothing: growing goes on over it, but does not take it.
 inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk& c) {
@@ -63,7 +53,9 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
   Mask edge{};
   Mask size = Mask{} - 1;  // their number
   for (int k = 0; k < kSizes && any(growing); ++k) {
-    if (same_size(c, k, four)) {
+    bool as_large = true;
+    for (int l = 0; l < kLanes; ++l) as_large &= as_below(c, k, four[l]);
+    if (as_large) {
       size -= good;
       continue;
     }
