@@ -136,6 +136,20 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
   return shared / (1 + simd::kUnseenShare[degree] * (shared - 1) / blocks);
 }
 
+/// Are residuals larger than noise of this variance for each of `degrees` of freedom makes them: by
+/// three deviations of chi^2? `excess`: their sum of squares above the one expected. `shared`: by
+/// how much means of many vary more than if their blocks erred alone; squares share half of it.
+[[nodiscard]] inline bool exceeds_noise(double excess, double degrees, double variance,
+                                        double shared) {
+  constexpr double kExplained = 18;  // 2 x 3^2 (docs/method.md 6.3)
+  const double together = std::max(0.5 * shared, 1.0);
+  return excess > 0 && excess * excess > kExplained * together * degrees * variance * variance;
+}
+
+inline constexpr double kOffFace = 16;  ///< four deviations, squared (docs/method.md 6.4)
+/// Times the variance of slopes that a window tells; a vaguer face adds nothing (judgement).
+inline constexpr double kLessSure = 2;
+
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.
 [[nodiscard]] inline float block_sigma(const NoiseModel& noise, float rho) {
   const auto& s = noise.coefficients;
@@ -176,6 +190,18 @@ struct BlockFits {
     for (auto* column : {&rho, &variance, &slope_x, &slope_y, &slope_variance, &confidences}) {
       column->resize(size);
     }
+  }
+
+  /// Writes a surface that is sure of its slopes, given from block to block as their variance is.
+  void set(std::size_t i, double new_rho, double new_variance, double x, double y,
+           double new_slope_variance) {
+    const double least = std::min(grid.step_x * grid.step_x, grid.step_y * grid.step_y);
+    rho[i] = static_cast<float>(new_rho);
+    variance[i] = static_cast<float>(new_variance);
+    slope_x[i] = static_cast<float>(x / grid.step_x);
+    slope_y[i] = static_cast<float>(y / grid.step_y);
+    slope_variance[i] = static_cast<float>(new_slope_variance / least);
+    confidences[i] = 1;
   }
 
   /// Pointers to a block of a row in each column.

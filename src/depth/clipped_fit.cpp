@@ -12,7 +12,6 @@ using Eigen::Vector3d;
 
 constexpr int kStrips = 8;            // strips that a window is cut into (judgement)
 constexpr double kFewestBlocks = 25;  // blocks; fewer fit no plane (judgement)
-constexpr double kExplained = 18;     // 2 x 3^2: three deviations of chi^2 (docs/method.md 6.3)
 // Times the variance of a quadratic term: the most that noise makes of three (docs/method.md 6.3)
 constexpr double kBent = 12;
 
@@ -96,14 +95,6 @@ void move_to_block(double u, double v, const Vector3d& plane, Sums& s) {
   s.r -= s.products.leftCols<3>() * plane;
 }
 
-// Are residuals of n blocks larger than noise makes them? `excess`: their sum of squares above the
-// one expected.
-bool exceeds_noise(double excess, double n, double variance, double shared) {
-  const double together = std::max(0.5 * shared, 1.0);
-  const double limit = kExplained * together * (n - 3) * variance * variance;
-  return excess > 0 && excess * excess > limit;
-}
-
 }  // namespace
 
 std::optional<FacePlane> clipped_fit(const simd::FitInput& input, const NoiseModel& noise,
@@ -124,7 +115,7 @@ std::optional<FacePlane> clipped_fit(const simd::FitInput& input, const NoiseMod
   const double sigma = simd::kRhoUnits * block_sigma(noise, static_cast<float>(plane[0]));
   const double variance = std::max(sigma * sigma * weights / (3 * n), 1. / 12);
   const double told = s.r.head<3>().dot(change);
-  if (exceeds_noise(s.rr - told - (n - 3) * variance, n, variance, input.shared)) return {};
+  if (exceeds_noise(s.rr - told - (n - 3) * variance, n - 3, variance, input.shared)) return {};
   const double bent = s.r.dot(s.products.ldlt().solve(s.r)) - told;
   const double bend = variance * shared_error(noise.correlation, 2, n);
   if (!(bent <= kBent * bend)) return {};

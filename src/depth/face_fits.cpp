@@ -23,9 +23,6 @@ constexpr double kTurnedSquare = 0.5;
 // Variances: three deviations squared between planes, and by which a paraboloid has to fit better
 // (docs/method.md 6.4)
 constexpr double kSurelyAhead = 9;
-constexpr double kOffFace = 16;  // four deviations, squared (docs/method.md 6.4)
-// Times the slopes' variance before; a vaguer plane adds nothing (judgement)
-constexpr double kLessSure = 2;
 
 FacePlane face_plane(const BlockFits& fits, int column, int row) {
   const std::size_t i = fits.grid.index(column, row);
@@ -210,14 +207,7 @@ void FaceFits::give(std::span<const Face* const> faces, float rho, float sigma, 
     if (std::abs(u) > plane.reach_u || std::abs(v) > plane.reach_v) continue;
     if (!(flat || plane.straight) || !inside_borders(face->sides(), u, v)) continue;
     least = u * u + v * v;
-    const double x = fits.grid.step_x;
-    const double y = fits.grid.step_y;
-    fits.rho[i] = static_cast<float>(plane.at(u, v));
-    fits.variance[i] = static_cast<float>(plane.variance_at(u, v));
-    fits.slope_x[i] = static_cast<float>(plane.x / x);
-    fits.slope_y[i] = static_cast<float>(plane.y / y);
-    fits.slope_variance[i] = static_cast<float>(plane.slope_variance / std::min(x * x, y * y));
-    fits.confidences[i] = 1;
+    fits.set(i, plane.at(u, v), plane.variance_at(u, v), plane.x, plane.y, plane.slope_variance);
   }
 }
 

@@ -179,6 +179,7 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
       fits.states[first + static_cast<std::size_t>(columns[k])] = FilteredDepth::State::fitted;
     }
   });
+  bent_.refit(in, noise, kept, fits);
   faces_.refit(in, filled_, noise, kept, fits);
   return range;
 }

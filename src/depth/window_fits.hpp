@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "depth/bent_faces.hpp"
 #include "depth/blocks.hpp"
 #include "depth/simd/fits.hpp"
 #include "palpate/geometry/shapes.hpp"
@@ -149,6 +150,7 @@ class WindowFits {
   Blocks filled_;
   std::vector<Place> table_;
   std::vector<std::int32_t> columns_;  // of the region's blocks, with room for all of each row
+  BentFaces bent_;
   FaceFits faces_;
 };
 

@@ -11,14 +11,13 @@ namespace palpate::simd {
 namespace {
 
 constexpr int kChunk = 64;  // blocks (judgement)
-// Sizes of quadratic fits, up to 0.57 r_max; the next one, 0.76 r_max, serves where the bend is
-// clear. Terms of the fourth degree would bias larger ones (docs/method.md 6.3).
+// Sizes of quadratic fits, up to 0.57 r_max. Terms of the fourth degree would bias larger ones
+// (docs/method.md 6.3).
 constexpr int kBentSizes = 4;
 
 // Where a fit with quadratic terms serves at this size.
 [[gnu::always_inline]] inline Mask bends(const Fits& f, int size) {
-  if (size < kBentSizes) return f.quadratic;
-  return size == kBentSizes ? f.quadratic & f.bent : Mask{};
+  return size < kBentSizes ? f.quadratic : Mask{};
 }
 
 enum Kind : int { kNone, kAffine, kQuadratic };
@@ -145,12 +144,6 @@ inline void start(const FitInput& in, int row, const FitRow& plain, Chunk& c) {
   return fit(in, shape(half_u, half_v), s);
 }
 
-// `column`, `row`: of the windows' middles, in blocks of the image.
-[[gnu::always_inline]] inline Rays rays_of(const FitInput& in, const Doubles& column,
-                                           const Doubles& row) {
-  return {in.x0 + in.step_x * column, in.y0 + in.step_y * row, 1 / in.step_x, 1 / in.step_y};
-}
-
 // Four windows beside a block.
 struct Directions {
   int u[kLanes];
@@ -213,15 +206,13 @@ inline void look(const FitInput& in, const Chunk& c, const Aside& aside, Search&
   const Doubles dv = lanes(to.v, -shift_v);
   s.u = double(search.column - in.table.columns / 2) - du;
   s.v = double(search.row - in.table.rows / 2) - dv;
-  const Fits f = fit(in, shape(half_u, half_v), s, aside.size > kBentSizes);
+  const Fits f = fit(in, shape(half_u, half_v), s, aside.size >= kBentSizes);
   const Mask good = f.affine | bends(f, aside.size);
   if (!any(good)) return;
   const Doubles scores = score(f, f.affine, du, dv, search.lever_u2, search.lever_v2);
   Mask wins = good & (scores < search.score);
   if (!any(wins)) return;
-  const Rays rays = rays_of(in, double(in.table.columns / 2 + in.table.first_column) + s.u,
-                            double(in.table.rows / 2 + in.table.first_row) + s.v);
-  const Doubles off = surface_at(f, f.affine, rays, du, dv).rho - c.rho[search.i];
+  const Doubles off = surface_at(f, f.affine, du, dv).rho - c.rho[search.i];
   wins &= off * off <= 4 * c.variance[search.i];
   if (!any(wins)) return;
   for (int l = 0; l < kLanes; ++l) {

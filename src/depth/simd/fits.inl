@@ -134,19 +134,16 @@ inline int fit_planes(const FitInput& in, int row, Chunk& c, const FitRow& out, 
 inline void finish(const FitInput& in, int row, const Chunk& c, const int* blocks, int count,
                    const FitRow& out) {
   by_fours(blocks, count, [&](const int* four, int filled) {
-    Doubles columns;
     Doubles du;
     Doubles dv;
     Mask affine;
     for (int l = 0; l < kLanes; ++l) {
-      columns[l] = c.columns[four[l]];
       du[l] = -c.shift_u[four[l]];
       dv[l] = -c.shift_v[four[l]];
       affine[l] = c.kind[four[l]] == kAffine ? -1 : 0;
     }
     const Fits f = fit_four(in, row, c, four, c.best_u, c.best_v);
-    const Rays rays = rays_of(in, columns - du, double(row) - dv);
-    const Surface s = surface_at(f, affine, rays, du, dv);
+    const Surface s = surface_at(f, affine, du, dv);
     for (int l = 0; l < filled; ++l) write(in, c, four[l], s, l, out);
   });
 }

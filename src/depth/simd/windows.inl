@@ -149,7 +149,6 @@ struct Fits {
   Mask torn;         // the three rows or columns need not be one surface: a parabola tells nothing
   Mask affine;       // full, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
-  Mask bent;         // by far more than noise would bend it
 };
 
 // Is chi^2 = left / variance one that `degrees` of freedom may have: within three deviations?
@@ -181,7 +180,6 @@ template <class T>
   const Doubles bent = f.cuv * buv + f.cuu * buu + f.cvv * bvv;
   const Doubles bend = f.variance * shared_over(input.shared, 2, g.per_n);
   f.affine &= bent <= 12.0 * bend;
-  f.bent = bent > 30.0 * bend;
   const Doubles same_surface = input.close * sigma + input.steep * f.m;
   f.torn = (g.few_u & (absolute(f.cu) + absolute(f.cuu) > same_surface)) |
            (g.few_v & (absolute(f.cv) + absolute(f.cvv) > same_surface));
@@ -214,7 +212,7 @@ template <class T>
   f.full = weights >= 0.0;
   f.affine = f.full & explained(left, variance, g.area - 3.0, together);
   if (planes && !any(f.affine)) {
-    f.torn = f.quadratic = f.bent = Mask{};
+    f.torn = f.quadratic = Mask{};
     return f;
   }
   const Doubles buv = suv - s.u * sv - s.v * bu;
