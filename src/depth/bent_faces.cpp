@@ -5,13 +5,8 @@
 #include <cmath>
 #include <span>
 
-#include "geometry/parallel.hpp"
-
 namespace palpate::depth {
 namespace {
-
-constexpr int kBentTile = 8;  // blocks of a tile; the one in the middle looks (judgement)
-static_assert(kBentTile % KeptTiles::kSide == 0);
 
 // Are its slopes at its own block not much vaguer than the window's? Few rows of blocks tell
 // little.
@@ -59,66 +54,48 @@ void give(std::span<const Quadric* const> faces, float rho, double sigma, int co
 
 void BentFaces::find(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                      const BlockFits& fits, int tile_row) {
-  const int row = std::min(tile_row * kBentTile + kBentTile / 2, fits.grid.rows - 1);
-  const int v = row - input.table.first_row;
-  for (int tile = 0; tile < columns_; ++tile) {
-    const int column = std::min(tile * kBentTile + kBentTile / 2, fits.grid.columns - 1);
-    const int u = column - input.table.first_column;
-    const std::size_t place = static_cast<std::size_t>(tile_row) * columns_ + tile;
-    if (kept.at(column, row) && is_bent(fits, fits.grid.index(column, row))) continue;
+  const simd::WindowTable& table = input.table;
+  const BlockRange range{table.first_column, table.first_row, table.columns, table.rows};
+  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t place, int column, int row) {
+    const bool bent = is_bent(fits, fits.grid.index(column, row));
+    if (bent && kept.at(column, row)) return;  // it was fitted last time
     found_[place] = 0;
-    const bool inside = u >= 0 && u < input.table.columns && v >= 0 && v < input.table.rows;
-    if (!inside || !is_bent(fits, fits.grid.index(column, row))) continue;
+    if (!bent || !range.overlaps({column, row, 1, 1})) return;
     const auto face = fit_quadric(input, noise, fits, column, row);
-    if (!face || !knows_more(*face, fits)) continue;
+    if (!face || !knows_more(*face, fits)) return;
     faces_[place] = *face;
     found_[place] = 1;
-  }
+  });
 }
 
 // Bent blocks of each tile of a row take the quadric that they lie on and that explains most, the
 // first of equals. The surer one would be a bad choice: a strip of another surface makes it so.
 void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                       int tile_row, BlockFits& fits) const {
-  constexpr int kAround = kLargestReach / kBentTile + 1;  // tiles
-  const int top = std::max(tile_row - kAround, 0);
-  const int bottom = std::min(tile_row + kAround, rows_ - 1);
-  for (int tile = 0; tile < columns_; ++tile) {
+  for (int tile = 0; tile < tiles_.columns; ++tile) {
     const Quadric* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
-    const int right = std::min(tile + kAround, columns_ - 1);
-    for (int r = top; r <= bottom; ++r) {
-      for (int c = std::max(tile - kAround, 0); c <= right; ++c) {
-        const std::size_t place = static_cast<std::size_t>(r) * columns_ + c;
-        if (found_[place]) near[count++] = &faces_[place];
-      }
-    }
+    tiles_.each_near(tile, tile_row, [&](std::size_t place) {
+      if (found_[place]) near[count++] = &faces_[place];
+    });
+    if (count == 0) continue;
     std::sort(near, near + count, [](const Quadric* a, const Quadric* b) {
       return a->support > b->support || (a->support == b->support && a < b);
     });
-    for (int k = 0; count > 0 && k < kBentTile * kBentTile; ++k) {
-      const int column = tile * kBentTile + k % kBentTile;
-      const int row = tile_row * kBentTile + k / kBentTile;
-      if (column >= fits.grid.columns || row >= fits.grid.rows) continue;
-      if (!is_bent(fits, fits.grid.index(column, row)) || kept.at(column, row)) continue;
+    tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {
+      if (!is_bent(fits, fits.grid.index(column, row)) || kept.at(column, row)) return;
       const float rho = input.blocks.rho[row * input.blocks.stride + column];
       give({near, count}, rho, block_sigma(noise, rho), column, row, fits);
-    }
+    });
   }
 }
 
 void BentFaces::refit(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                       BlockFits& fits) {
-  columns_ = (fits.grid.columns + kBentTile - 1) / kBentTile;
-  rows_ = (fits.grid.rows + kBentTile - 1) / kBentTile;
-  found_.resize(static_cast<std::size_t>(columns_) * rows_);
+  found_.resize(tiles_.set(fits.grid, input.table));
   faces_.resize(found_.size());
-  detail::parallel_each(static_cast<std::size_t>(rows_), 1, [&](std::size_t tile_row) {
-    find(input, noise, kept, fits, static_cast<int>(tile_row));
-  });
-  detail::parallel_each(static_cast<std::size_t>(rows_), 1, [&](std::size_t tile_row) {
-    share(input, noise, kept, static_cast<int>(tile_row), fits);
-  });
+  tiles_.for_rows(1, [&](int row) { find(input, noise, kept, fits, row); });
+  tiles_.for_rows(1, [&](int row) { share(input, noise, kept, row, fits); });
 }
 
 }  // namespace palpate::depth

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "depth/face_tiles.hpp"
 #include "depth/quadric.hpp"
 
 namespace palpate::depth {
@@ -27,8 +28,12 @@ class BentFaces {
   void share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
              int tile_row, BlockFits& fits) const;
 
-  int columns_ = 0;  // of tiles
-  int rows_ = 0;
+  static constexpr int kTile = 8;  // blocks to a side (judgement)
+  static_assert(kTile % KeptTiles::kSide == 0);
+  // Tiles within whose reach a block may lie (derived).
+  static constexpr int kAround = kLargestReach / kTile + 1;
+
+  FaceTiles tiles_{kTile, kAround};
   std::vector<std::uint8_t> found_;  // of each tile: has it a quadric?
   std::vector<Quadric> faces_;
 };

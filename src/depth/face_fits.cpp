@@ -4,17 +4,13 @@
 #include <limits>
 
 #include "depth/window_fits.hpp"
-#include "geometry/parallel.hpp"
 
 namespace palpate::depth {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kTile = 4;  // blocks to a side; one in the middle looks (docs/method.md 6.4)
-static_assert(KeptTiles::kSide % kTile == 0);
 constexpr int kWays[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
-constexpr int kAround = 2;  // tiles to each side that share faces: ten blocks (docs/method.md 6.4)
 constexpr int kBehind = 4;  // blocks from a face's end to one that shows what is beyond (judgement)
 constexpr int kLook = 2;    // blocks around the meeting line: 5 x 5 (docs/method.md 6.4)
 constexpr int kFarLook = 6;  // blocks; largest reach of the paraboloid (judgement)
@@ -178,18 +174,16 @@ struct FaceFits::Search {
 
 void FaceFits::find(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
                     const KeptTiles& kept, const BlockFits& fits, int tile_row) {
-  const int row = std::min(tile_row * kTile + kTile / 2, fits.grid.rows - 1);
-  for (int tile = 0; tile < tiles_; ++tile) {
-    const int column = std::min(tile * kTile + kTile / 2, fits.grid.columns - 1);
-    if (kept.at(column, row) && is_flat(fits, column, row)) continue;  // it was fitted last time
-    Face& face = faces_[static_cast<std::size_t>(tile_row) * tiles_ + tile];
+  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t place, int column, int row) {
+    if (kept.at(column, row) && is_flat(fits, column, row)) return;  // it was fitted last time
+    Face& face = faces_[place];
     face.count = 0;
     face.found = false;
-    if (!is_flat(fits, column, row) || fits.reach_u[fits.grid.index(column, row)] == 0) continue;
+    if (!is_flat(fits, column, row) || fits.reach_u[fits.grid.index(column, row)] == 0) return;
     const FacePlane own = face_plane(fits, column, row);
     const float sigma = block_sigma(noise, static_cast<float>(own.rho));
     face.found = Search{input, filled, noise, fits, face, own, double{sigma} * sigma}.run();
-  }
+  });
 }
 
 // Gives a block the nearest plane that it lies on.
@@ -213,44 +207,29 @@ void FaceFits::give(std::span<const Face* const> faces, float rho, float sigma, 
 
 void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                      int tile_row, BlockFits& fits) const {
-  const int bottom = std::min(tile_row + kAround, end_ - 1);
-  for (int tile = 0; tile < tiles_; ++tile) {
+  for (int tile = 0; tile < tiles_.columns; ++tile) {
     if (kept.at(tile * kTile, tile_row * kTile)) continue;
     const Face* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
-    const int right = std::min(tile + kAround, tiles_ - 1);
-    for (int r = std::max(tile_row - kAround, first_); r <= bottom; ++r) {
-      for (int c = std::max(tile - kAround, 0); c <= right; ++c) {
-        const Face& face = faces_[static_cast<std::size_t>(r) * tiles_ + c];
-        if (face.found) near[count++] = &face;
-      }
-    }
-    for (int k = 0; count > 0 && k < kTile * kTile; ++k) {
-      const int column = tile * kTile + k % kTile;
-      const int row = tile_row * kTile + k / kTile;
-      if (column >= fits.grid.columns || row >= fits.grid.rows) continue;
+    tiles_.each_near(tile, tile_row, [&](std::size_t place) {
+      if (faces_[place].found) near[count++] = &faces_[place];
+    });
+    if (count == 0) continue;
+    tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {
       const std::size_t i = fits.grid.index(column, row);
-      if (fits.states[i] != FilteredDepth::State::fitted) continue;
+      if (fits.states[i] != FilteredDepth::State::fitted) return;
       const float rho = input.blocks.rho[row * input.blocks.stride + column];
       give({near, count}, rho, block_sigma(noise, rho), column, row, fits);
-    }
+    });
   }
 }
 
 void FaceFits::refit(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
                      const KeptTiles& kept, BlockFits& fits) {
-  tiles_ = (fits.grid.columns + kTile - 1) / kTile;
-  first_ = input.table.first_row / kTile;
-  end_ = (input.table.first_row + input.table.rows + kTile - 1) / kTile;
-  faces_.resize(static_cast<std::size_t>(tiles_) * end_);
+  faces_.resize(tiles_.set(fits.grid, input.table));
   constexpr std::size_t kAtATime = 4;  // rows of tiles that a thread takes at once (judgement)
-  const auto rows = static_cast<std::size_t>(end_ - first_);
-  detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
-    find(input, filled, noise, kept, fits, first_ + static_cast<int>(row));
-  });
-  detail::parallel_each(rows, kAtATime, [&](std::size_t row) {
-    share(input, noise, kept, first_ + static_cast<int>(row), fits);
-  });
+  tiles_.for_rows(kAtATime, [&](int row) { find(input, filled, noise, kept, fits, row); });
+  tiles_.for_rows(kAtATime, [&](int row) { share(input, noise, kept, row, fits); });
 }
 
 }  // namespace palpate::depth

@@ -180,29 +180,27 @@ bool Fitting::run(double variance, double correlation) {
   const int coarse = std::max(1, 2 * q.reach / kStepsAcross);
   const int edge = -q.reach / coarse * coarse;
   Samples next{edge, edge, q.reach, q.reach, coarse};
-  std::optional<double> left;
+  Samples held{};
   double n = 0;
-  int step = coarse;
-  double seen = 0;
+  std::optional<double> left;
   for (int pass = 0; pass < kPasses; ++pass) {
-    Samples held{};
-    step = next.step;
     const Moments moments = gather(next, held);
     n = moments.count();
-    seen = held.seen;
     if (n < kFewestSamples) return false;
     left = solve(moments);
     if (!left) return false;
+    const int step = held.step;
     q.support = n * step * step;
     next = {std::max(held.left - step, -q.reach), std::max(held.top - step, -q.reach),
             std::min(held.right + step, q.reach), std::min(held.bottom + step, q.reach),
             std::max(1, static_cast<int>(std::sqrt(q.support / kSamples)))};
   }
-  if (n < kShare * seen) return false;
-  const double shared = shared_error(correlation / step);  // blocks in between do not count
-  if (exceeds_noise(n * *left - (n - kFree) * variance, n - kFree, variance, shared)) return false;
+  if (n < kShare * held.seen) return false;
+  const double apart = correlation / held.step;  // blocks in between do not count
+  const double excess = n * *left - (n - kFree) * variance;
+  if (exceeds_noise(excess, n - kFree, variance, shared_error(apart))) return false;
   products += n * q.a * q.a.transpose();  // regular along a, too
-  q.covariance = variance * shared_error(correlation / step, 1, n) * products.inverse();
+  q.covariance = variance * shared_error(apart, 1, n) * products.inverse();
   return q.holds(0, 0, q.rho, square * q.unit * q.unit);
 }
 

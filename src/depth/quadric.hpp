@@ -27,13 +27,13 @@ struct Quadric {
   int column, row;                         ///< of the block
   int reach;                               ///< blocks to each side that are looked at
   double rho, unit;                        ///< 1/m
-  Terms a = {};                            ///< the squared derivative by r is 1 in the mean
+  Terms a = Terms::Zero();                 ///< the squared derivative by r is 1 in the mean
   double side = 0;                         ///< sign of that derivative on the side that is seen
   double support = 0;                      ///< blocks that it explains
   Products covariance = Products::Zero();  ///< of a
 
-  /// Does the block (u, v) away, of inverse depth `there`, lie on it, or is it off by more than the
-  /// root of `square`, to the first order?
+  /// Is the block (u, v) away, of inverse depth `there`, off by no more than the root of `square`,
+  /// to the first order?
   [[nodiscard]] bool holds(int u, int v, double there, double square) const;
   /// nullopt where the ray passes it.
   [[nodiscard]] std::optional<Sight> at(int u, int v) const;

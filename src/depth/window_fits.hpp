@@ -10,6 +10,7 @@
 
 #include "depth/bent_faces.hpp"
 #include "depth/blocks.hpp"
+#include "depth/face_tiles.hpp"
 #include "depth/simd/fits.hpp"
 #include "palpate/geometry/shapes.hpp"
 
@@ -91,9 +92,11 @@ class FaceFits {
   static void give(std::span<const Face* const> faces, float rho, float sigma, int column, int row,
                    BlockFits& fits);
 
-  int tiles_ = 0;  // in a row
-  int first_ = 0;  // row of tiles with rows of the input; others hold no fitted block
-  int end_ = 0;
+  static constexpr int kTile = 4;    // blocks to a side (docs/method.md 6.4)
+  static constexpr int kAround = 2;  // tiles that share faces: ten blocks (docs/method.md 6.4)
+  static_assert(KeptTiles::kSide % kTile == 0);
+
+  FaceTiles tiles_{kTile, kAround};
   std::vector<Face> faces_;
 };
 
