@@ -72,7 +72,14 @@ void BentFaces::find(const simd::FitInput& input, const NoiseModel& noise, const
 // first of equals. The surer one would be a bad choice: a strip of another surface makes it so.
 void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                       int tile_row, BlockFits& fits) const {
+  const auto takes = [&](int column, int row) {
+    return is_bent(fits, fits.grid.index(column, row)) && !kept.at(column, row);
+  };
   for (int tile = 0; tile < tiles_.columns; ++tile) {
+    bool any = false;
+    tiles_.each_block(fits.grid, tile, tile_row,
+                      [&](int column, int row) { any |= takes(column, row); });
+    if (!any) continue;
     const Quadric* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
     tiles_.each_near(tile, tile_row, [&](std::size_t place) {
@@ -83,7 +90,7 @@ void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, cons
       return a->support > b->support || (a->support == b->support && a < b);
     });
     tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {
-      if (!is_bent(fits, fits.grid.index(column, row)) || kept.at(column, row)) return;
+      if (!takes(column, row)) return;
       const float rho = input.blocks.rho[row * input.blocks.stride + column];
       give({near, count}, rho, block_sigma(noise, rho), column, row, fits);
     });

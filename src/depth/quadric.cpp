@@ -238,10 +238,11 @@ std::optional<Quadric::Sight> Quadric::at(int u, int v) const {
   ty << 0, 0, 1, 0, x, 2 * y, ry, ry * x, ry * y + r, 2 * r * ry;
   tx -= (a[7] + 2 * line.a * rx) / root * t;
   ty -= (a[8] + 2 * line.a * ry) / root * t;
+  const auto spread = [&](const Terms& of) { return of.dot(covariance.lazyProduct(of)); };
   const double per_block = unit / reach;
-  const double slope = std::max(tx.dot(covariance * tx), ty.dot(covariance * ty)) / square;
-  return Sight{rho + unit * r, rx * per_block, ry * per_block,
-               unit * unit * t.dot(covariance * t) / square, per_block * per_block * slope};
+  const double slope = std::max(spread(tx), spread(ty)) / square;
+  return Sight{rho + unit * r, rx * per_block, ry * per_block, unit * unit * spread(t) / square,
+               per_block * per_block * slope};
 }
 
 std::optional<Quadric> fit_quadric(const simd::FitInput& input, const NoiseModel& noise,
