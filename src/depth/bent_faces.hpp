@@ -9,7 +9,7 @@
 namespace palpate::depth {
 
 /// Fits quadrics to what is bent, over all of it that is seen up to some 25 blocks away, and gives
-/// bent blocks the one that explains most.
+/// its blocks the one that explains most.
 ///
 /// Windows of single blocks are a few blocks large where a ball or a bottle turns away from the
 /// camera, and noise leaves little of their slopes. What the whole thing shows is known several

@@ -1,4 +1,4 @@
-// Fits a quadric to the bent blocks around one.
+// What a quadric tells of the blocks around its own.
 #include "depth/quadric.hpp"
 
 #include <Eigen/Dense>
@@ -8,201 +8,9 @@
 namespace palpate::depth {
 namespace {
 
-using Eigen::Matrix4d;
-using Products = Quadric::Products;
 using Terms = Quadric::Terms;
 
-// Blocks to each side: 66 mm at 0.7 m, what is held in a hand, and half of it where that is more
-// than one surface (judgement).
-constexpr int kReaches[] = {kLargestReach, kLargestReach / 2};
-// The second fit takes the blocks that lie on the first one. A third tells no more (measured).
-constexpr int kPasses = 2;
-constexpr int kStepsAcross = 16;       // of the first pass (judgement)
-constexpr double kSamples = 256;       // blocks; half as many err twice as much (measured on balls)
-constexpr double kFewestSamples = 30;  // of the first pass, too: three for each term (judgement)
-// Share of the bent blocks around, as far as they may be of its surface, that it has to explain.
-// 0.95 to 0.99 tell the same on 18 kinds of shapes (measured).
-constexpr double kShare = 0.98;
-constexpr int kFree = 9;        // terms, but for a factor
-constexpr int kPowers = 5;      // 0 to 4, of products of two terms
-constexpr double kTiny = 1e-9;  // keeps matrices regular where blocks are in two rows (judgement)
-
-// Powers of r, u and v in each term.
-constexpr int kTerms[10][3] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 2, 0}, {0, 1, 1},
-                               {0, 0, 2}, {1, 0, 0}, {1, 1, 0}, {1, 0, 1}, {2, 0, 0}};
-
-// The quadric's value along a line of blocks.
-struct Line {
-  double c0, c1, c2, b0, b1, a;
-
-  Line(const Terms& t, double v)
-      : c0(t[0] + v * (t[2] + t[5] * v)),
-        c1(t[1] + t[4] * v),
-        c2(t[3]),
-        b0(t[6] + t[8] * v),
-        b1(t[7]),
-        a(t[9]) {}
-
-  // value(u, r) = c(u) + r (b(u) + a r)
-  [[nodiscard]] double c(double u) const { return c0 + u * (c1 + c2 * u); }
-  [[nodiscard]] double b(double u) const { return b0 + b1 * u; }
-  // Is (u, r) within a square of the surface that has this side?
-  [[nodiscard]] bool holds(double u, double r, double side, double square) const {
-    const double linear = b(u);
-    const double value = c(u) + r * (linear + a * r);
-    const double slope = side * (linear + 2 * a * r);
-    return slope > 0 && value * value <= square * slope * slope;
-  }
-};
-
-// Sums of r^k u^j v^m over blocks, k + j + m <= 4.
-struct Moments {
-  double of[kPowers][kPowers][kPowers] = {};
-
-  void add_line(const double (&line)[kPowers][kPowers], double v) {
-    for (int k = 0; k < kPowers; ++k) {
-      for (int j = 0; k + j < kPowers; ++j) {
-        double sum = line[k][j];
-        for (int m = 0; k + j + m < kPowers; ++m, sum *= v) of[k][j][m] += sum;
-      }
-    }
-  }
-
-  [[nodiscard]] double count() const { return of[0][0][0]; }
-  [[nodiscard]] double product(int i, int j) const {
-    const auto& s = kTerms[i];
-    const auto& t = kTerms[j];
-    return of[s[0] + t[0]][s[1] + t[1]][s[2] + t[2]];
-  }
-  [[nodiscard]] Products products() const {
-    Products all;
-    for (int i = 0; i < 10; ++i) {
-      for (int j = 0; j < 10; ++j) all(i, j) = product(i, j);
-    }
-    return all;
-  }
-  // Products of the derivatives by r of the last four terms: 1, u, v, 2 r.
-  [[nodiscard]] Matrix4d derivatives() const {
-    constexpr int kTerm[] = {0, 1, 2, 6};       // the terms 1, u, v, r (derived)
-    constexpr double kFactor[] = {1, 1, 1, 2};  // of the derivatives (derived)
-    Matrix4d all;
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) all(i, j) = kFactor[i] * kFactor[j] * product(kTerm[i], kTerm[j]);
-    }
-    return all;
-  }
-};
-
-// Every `step`th block of every `step`th row, relative to the block.
-struct Samples {
-  int left, top, right, bottom;
-  int step;
-  int seen = 0;  // bent blocks whose depths may be of the block's surface
-};
-
-struct Fitting {
-  const simd::FitInput& in;
-  const BlockFits& fits;
-  Quadric q;
-  double square;                         // within which blocks lie on it, in units
-  double slab;                           // the same in the first pass, from the block's depth
-  Products products = Products::Zero();  // of the terms, summed
-
-  void add_line(const Samples& s, int v, Moments& moments, Samples& held) const;
-  Moments gather(const Samples& s, Samples& held) const;
-  std::optional<double> solve(const Moments& moments);
-  bool run(double variance, double correlation);
-};
-
-// Adds the bent blocks of a row that lie on the quadric. `held` grows by them.
-void Fitting::add_line(const Samples& s, int v, Moments& moments, Samples& held) const {
-  const int begin = in.table.first_column - q.column;
-  const int end = std::min(s.right, begin + in.table.columns - 1);
-  const float* const rho = in.blocks.rho + (q.row + v) * in.blocks.stride + q.column;
-  const std::size_t row = fits.grid.index(q.column, q.row + v);
-  const double y = static_cast<double>(v) / q.reach;
-  const Line line(q.a, y);
-  double sums[kPowers][kPowers] = {};
-  for (int u = s.left; u <= end; u += s.step) {
-    if (u < begin || !is_bent(fits, row + static_cast<std::size_t>(u))) continue;
-    const double x = static_cast<double>(u) / q.reach;
-    const double r = (rho[u] - q.rho) / q.unit;
-    if (!(std::abs(r) <= slab)) continue;
-    ++held.seen;
-    if (q.side != 0 && !line.holds(x, r, q.side, square)) continue;
-    double power = 1;
-    for (int k = 0; k < kPowers; ++k, power *= r) {
-      double term = power;
-      for (int j = 0; k + j < kPowers; ++j, term *= x) sums[k][j] += term;
-    }
-    held.left = std::min(held.left, u);
-    held.right = std::max(held.right, u);
-  }
-  if (sums[0][0] == 0) return;
-  held.top = std::min(held.top, v);
-  held.bottom = std::max(held.bottom, v);
-  moments.add_line(sums, y);
-}
-
-Moments Fitting::gather(const Samples& s, Samples& held) const {
-  const int begin = in.table.first_row - q.row;
-  const int end = std::min(s.bottom, begin + in.table.rows - 1);
-  Moments moments;
-  held = {q.reach, q.reach, -q.reach, -q.reach, s.step};
-  for (int v = s.top; v <= end; v += s.step) {
-    if (v >= begin) add_line(s, v, moments, held);
-  }
-  return moments;
-}
-
-// Finds the quadric with the least sum of squares for a mean squared derivative of 1: its value
-// over the derivative is how far a block is off along its ray. Blocks count by the square of their
-// derivative, which falls to 0 at the rim. The first six terms have no errors, so they follow from
-// the others. Returns the mean of the squares; nullopt where numbers are too large.
-std::optional<double> Fitting::solve(const Moments& moments) {
-  products = moments.products();
-  products.diagonal().array() += kTiny * moments.count();
-  const Eigen::Matrix<double, 6, 4> mixed = products.topRightCorner<6, 4>();
-  const Eigen::Matrix<double, 6, 4> taken = products.topLeftCorner<6, 6>().ldlt().solve(mixed);
-  const Matrix4d left = products.bottomRightCorner<4, 4>() - mixed.transpose() * taken;
-  Matrix4d norm = moments.derivatives();
-  norm.diagonal().array() += kTiny * norm.trace();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix4d> solver(left, norm);
-  if (solver.info() != Eigen::Success) return {};
-  const Eigen::Vector4d b = std::sqrt(moments.count()) * solver.eigenvectors().col(0);
-  q.a << -taken * b, b;
-  q.side = q.a[6] > 0 ? 1 : -1;
-  if (!q.a.allFinite()) return {};
-  return std::max(0.0, solver.eigenvalues()[0]);
-}
-
-bool Fitting::run(double variance, double correlation) {
-  const int coarse = std::max(1, 2 * q.reach / kStepsAcross);
-  const int edge = -q.reach / coarse * coarse;
-  Samples next{edge, edge, q.reach, q.reach, coarse};
-  Samples held{};
-  double n = 0;
-  std::optional<double> left;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const Moments moments = gather(next, held);
-    n = moments.count();
-    if (n < kFewestSamples) return false;
-    left = solve(moments);
-    if (!left) return false;
-    const int step = held.step;
-    q.support = n * step * step;
-    next = {std::max(held.left - step, -q.reach), std::max(held.top - step, -q.reach),
-            std::min(held.right + step, q.reach), std::min(held.bottom + step, q.reach),
-            std::max(1, static_cast<int>(std::sqrt(q.support / kSamples)))};
-  }
-  if (n < kShare * held.seen) return false;
-  const double apart = correlation / held.step;  // blocks in between do not count
-  const double excess = n * *left - (n - kFree) * variance;
-  if (exceeds_noise(excess, n - kFree, variance, shared_error(apart))) return false;
-  products += n * q.a * q.a.transpose();  // regular along a, too
-  q.covariance = variance * shared_error(apart, 1, n) * products.inverse();
-  return q.holds(0, 0, q.rho, square * q.unit * q.unit);
-}
+constexpr int kNear = 2;  // blocks to each side of one that tell its slopes (judgement)
 
 Terms terms(double u, double v, double r) {
   Terms t;
@@ -210,18 +18,61 @@ Terms terms(double u, double v, double r) {
   return t;
 }
 
+using Along = Eigen::Matrix<double, 10, 4, Eigen::RowMajor>;
+
+// Squared lengths of a lower triangular matrix's products with four vectors.
+Eigen::Array4d squares(const Quadric::Products& lower, const Along& of) {
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  for (int i = 0; i < 10; ++i) {
+    Eigen::Array4d product = Eigen::Array4d::Zero();
+    for (int j = 0; j <= i; ++j) product += lower(i, j) * of.row(j).transpose().array();
+    sum += product.square();
+  }
+  return sum;
+}
+
 }  // namespace
 
 bool Quadric::holds(int u, int v, double there, double square) const {
-  const Line line(a, static_cast<double>(v) / reach);
+  const QuadricLine line(a, static_cast<double>(v) / reach);
   return line.holds(static_cast<double>(u) / reach, (there - rho) / unit, side,
                     square / (unit * unit));
+}
+
+bool Quadric::explains(const simd::FitInput& input, const SameSurface& same, int u, int v) const {
+  const BlockRange blocks{input.table.first_column, input.table.first_row, input.table.columns,
+                          input.table.rows};
+  const float* const here = input.blocks.rho + (row + v) * input.blocks.stride + column + u;
+  const float slab = same.limit(*here, kNear);
+  Eigen::Array3d sums = Eigen::Array3d::Zero();
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  int count = 0;
+  for (int y = -kNear; y <= kNear; ++y) {
+    const QuadricLine line(a, static_cast<double>(v + y) / reach);
+    for (int x = -kNear; x <= kNear; ++x) {
+      if (!blocks.overlaps({column + u + x, row + v + y, 1, 1})) continue;
+      const float there = here[y * input.blocks.stride + x];
+      if (!(there > 0) || !(std::abs(there - *here) <= slab)) continue;
+      const double at = static_cast<double>(u + x) / reach;
+      const double r = (there - rho) / unit;
+      const Eigen::Array3d across = line.slope(at, r) * Eigen::Array3d(1, x, y);
+      sums += line.value(at, r) * across;
+      squares += across.square();
+      ++count;
+    }
+  }
+  const double sigma = block_sigma(same.noise, *here) / unit;
+  for (int k = 0; k < 3; ++k) {
+    const double shared = shared_error(same.noise.correlation, k == 0 ? 0 : 1, count);
+    if (sums[k] * sums[k] > kOffFace * sigma * sigma * shared * squares[k]) return false;
+  }
+  return true;
 }
 
 std::optional<Quadric::Sight> Quadric::at(int u, int v) const {
   const double x = static_cast<double>(u) / reach;
   const double y = static_cast<double>(v) / reach;
-  const Line line(a, y);
+  const QuadricLine line(a, y);
   const double c = line.c(x);
   const double b = line.b(x);
   const double square = b * b - 4 * line.a * c;
@@ -232,32 +83,17 @@ std::optional<Quadric::Sight> Quadric::at(int u, int v) const {
   const double ry = -(a[2] + a[4] * x + 2 * a[5] * y + a[8] * r) / root;
   if (!std::isfinite(r)) return {};
   const Terms t = terms(x, y, r);
-  Terms tx;
-  tx << 0, 1, 0, 2 * x, y, 0, rx, rx * x + r, rx * y, 2 * r * rx;
-  Terms ty;
-  ty << 0, 0, 1, 0, x, 2 * y, ry, ry * x, ry * y + r, 2 * r * ry;
-  tx -= (a[7] + 2 * line.a * rx) / root * t;
-  ty -= (a[8] + 2 * line.a * ry) / root * t;
-  const auto spread = [&](const Terms& of) { return of.dot(covariance.lazyProduct(of)); };
+  Along all =
+      Along::Zero();  // how a counts for the value over its derivative, along the ray, u and v
+  all.col(0) = t;
+  all.col(1) << 0, 1, 0, 2 * x, y, 0, rx, rx * x + r, rx * y, 2 * r * rx;
+  all.col(2) << 0, 0, 1, 0, x, 2 * y, ry, ry * x, ry * y + r, 2 * r * ry;
+  all.col(1) -= (a[7] + 2 * line.a * rx) / root * t;
+  all.col(2) -= (a[8] + 2 * line.a * ry) / root * t;
+  const Eigen::Array4d variances = squares(spread, all) / square;
   const double per_block = unit / reach;
-  const double slope = std::max(spread(tx), spread(ty)) / square;
-  return Sight{rho + unit * r, rx * per_block, ry * per_block, unit * unit * spread(t) / square,
-               per_block * per_block * slope};
-}
-
-std::optional<Quadric> fit_quadric(const simd::FitInput& input, const NoiseModel& noise,
-                                   const BlockFits& fits, int column, int row) {
-  const float rho = input.blocks.rho[row * input.blocks.stride + column];
-  const double sigma = block_sigma(noise, rho);
-  const SameSurface same(noise, fits.grid);
-  for (const int reach : kReaches) {
-    const double unit = rho * std::abs(fits.grid.step_x) * reach;
-    const double variance = sigma * sigma / (unit * unit);
-    const double slab = same.limit(rho, static_cast<float>(reach)) / unit;
-    Fitting fitting{input, fits, {column, row, reach, rho, unit}, kOffFace * variance, slab};
-    if (fitting.run(variance, noise.correlation)) return fitting.q;
-  }
-  return {};
+  return Sight{rho + unit * r, rx * per_block, ry * per_block, unit * unit * variances[0],
+               per_block * per_block * std::max(variances[1], variances[2])};
 }
 
 }  // namespace palpate::depth
