@@ -8,8 +8,8 @@
 namespace palpate::depth {
 namespace {
 
-// Squared slopes' deviations of a quadric over those of a window, at most: few rows of blocks, or
-// blocks far away, tell little (judgement).
+// Variance of a quadric's slopes over that of the window's, at most: few rows of blocks, or blocks
+// far away, tell little, but at bends windows are farther off than their variance says (judgement).
 constexpr double kVaguer = 16;
 
 // Are a quadric's slopes not much vaguer than those that the block's window tells?
@@ -30,7 +30,7 @@ void give(std::span<const Quadric* const> faces, const simd::FitInput& input,
     const int u = column - face->column;
     const int v = row - face->row;
     if (std::abs(u) > face->reach || std::abs(v) > face->reach) continue;
-    if (!face->holds(u, v, rho, square) || !face->explains(input, same, u, v)) continue;
+    if (!face->holds(u, v, rho, square) || !face->explains(input.blocks, same, u, v)) continue;
     const auto sight = face->at(u, v);
     if (!sight || !(sight->variance > 0 && sight->slope_variance > 0)) continue;
     const double off = sight->rho - rho;
@@ -66,10 +66,12 @@ void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, cons
   const SameSurface same(noise, fits.grid);
   for (int tile = 0; tile < tiles_.columns; ++tile) {
     bool bent = false;
+    bool changed = false;
     tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {
-      bent |= is_bent(fits, fits.grid.index(column, row)) && !kept.at(column, row);
+      bent |= is_bent(fits, fits.grid.index(column, row));
+      changed |= !kept.at(column, row);
     });
-    if (!bent) continue;
+    if (!bent || !changed) continue;
     const Quadric* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
     tiles_.each_near(tile, tile_row, [&](std::size_t place) {

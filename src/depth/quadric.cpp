@@ -39,10 +39,8 @@ bool Quadric::holds(int u, int v, double there, double square) const {
                     square / (unit * unit));
 }
 
-bool Quadric::explains(const simd::FitInput& input, const SameSurface& same, int u, int v) const {
-  const BlockRange blocks{input.table.first_column, input.table.first_row, input.table.columns,
-                          input.table.rows};
-  const float* const here = input.blocks.rho + (row + v) * input.blocks.stride + column + u;
+bool Quadric::explains(const simd::BlockRows& blocks, const SameSurface& same, int u, int v) const {
+  const float* const here = blocks.rho + (row + v) * blocks.stride + column + u;
   const float slab = same.limit(*here, kNear);
   Eigen::Array3d sums = Eigen::Array3d::Zero();
   Eigen::Array3d squares = Eigen::Array3d::Zero();
@@ -50,23 +48,21 @@ bool Quadric::explains(const simd::FitInput& input, const SameSurface& same, int
   for (int y = -kNear; y <= kNear; ++y) {
     const QuadricLine line(a, static_cast<double>(v + y) / reach);
     for (int x = -kNear; x <= kNear; ++x) {
-      if (!blocks.overlaps({column + u + x, row + v + y, 1, 1})) continue;
-      const float there = here[y * input.blocks.stride + x];
+      const float there = here[y * blocks.stride + x];
       if (!(there > 0) || !(std::abs(there - *here) <= slab)) continue;
       const double at = static_cast<double>(u + x) / reach;
       const double r = (there - rho) / unit;
-      const Eigen::Array3d across = line.slope(at, r) * Eigen::Array3d(1, x, y);
-      sums += line.value(at, r) * across;
-      squares += across.square();
+      const double slope = line.slope(at, r);
+      const Eigen::Array3d along = slope * Eigen::Array3d(1, x, y);
+      sums += line.value(at, r) * along;
+      squares += (slope * along).square();
       ++count;
     }
   }
   const double sigma = block_sigma(same.noise, *here) / unit;
-  for (int k = 0; k < 3; ++k) {
-    const double shared = shared_error(same.noise.correlation, k == 0 ? 0 : 1, count);
-    if (sums[k] * sums[k] > kOffFace * sigma * sigma * shared * squares[k]) return false;
-  }
-  return true;
+  // Where rims cut the 5 x 5, tilts share the mean's error.
+  const double shared = std::max(shared_error(same.noise.correlation, 0, count), 1.0);
+  return (sums.square() <= kOffFace * sigma * sigma * shared * squares).all();
 }
 
 std::optional<Quadric::Sight> Quadric::at(int u, int v) const {

@@ -29,7 +29,7 @@ struct Quadric {
   double rho, unit;         ///< 1/m
   Terms a = Terms::Zero();  ///< the squared derivative by r is 1 in the mean
   double side = 0;          ///< sign of that derivative on the side that is seen
-  double support = 0;       ///< blocks that it explains
+  double support = 0;       ///< blocks that it holds
   Products spread =
       Products::Zero();  ///< lower triangular; its transpose times it: covariance of a
 
@@ -38,7 +38,7 @@ struct Quadric {
   [[nodiscard]] bool holds(int u, int v, double there, double square) const;
   /// Does noise explain the mean and the tilts of what it leaves of the blocks around the block (u,
   /// v) away, as far as they may be of that block's surface? To the first order.
-  [[nodiscard]] bool explains(const simd::FitInput& input, const SameSurface& same, int u,
+  [[nodiscard]] bool explains(const simd::BlockRows& blocks, const SameSurface& same, int u,
                               int v) const;
   /// nullopt where the ray passes it.
   [[nodiscard]] std::optional<Sight> at(int u, int v) const;

@@ -81,7 +81,7 @@ struct Fitting {
   const BlockFits& fits;
   Quadric q;
   double square;                         // within which blocks lie on it, in units
-  double slab;                           // the same in the first pass, from the block's depth
+  double slab;                           // from the block's depth, within which they may
   Products products = Products::Zero();  // of the terms, summed
 
   void add_line(const Samples& s, int v, Moments& moments, Samples& held) const;
@@ -176,6 +176,7 @@ bool Fitting::run(double variance, double correlation) {
   if (exceeds_noise(excess, n - kFree, variance, shared_error(apart))) return false;
   products += n * q.a * q.a.transpose();  // regular along a, too
   const Eigen::LLT<Products> root(products);
+  if (root.info() != Eigen::Success) return false;
   q.spread = root.matrixL().solve(Products::Identity());
   q.spread *= std::sqrt(variance * shared_error(apart, 1, n));
   return q.holds(0, 0, q.rho, square * q.unit * q.unit);

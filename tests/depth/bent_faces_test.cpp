@@ -107,31 +107,33 @@ TEST(Quadric, IsNotFoundWhereFewBlocksAreBent) {
 // A block lies on the ball in its mean and its tilts. One of a ball that touches it does not,
 // though its own depth is as near.
 TEST(Quadric, ExplainsItsOwnBallAndNotOneThatTouchesIt) {
-  const Solid other = sphere({0.1, 0, 0.66}, 0.04);
+  const Solid ball = sphere({0, 0, 0.66}, 0.03);
+  const Solid other = sphere({0.05, 0, 0.66}, 0.02);
   const SimulatedNoiseOptions options{.seed = 4};
-  const BentFrame frame(noisy_frame({kBall, other}, options), options.model);
-  const depth::SameSurface same(options.model, frame.fits.grid);
-  const auto quadric = frame.quadric(kColumn, kRow);
+  const BentFrame frame(noisy_frame({ball, other}, options), options.model);
+  const depth::BlockGrid& grid = frame.fits.grid;
+  const depth::SameSurface same(options.model, grid);
+  const auto quadric = frame.quadric(kColumn + 9, kRow + 5);
   ASSERT_TRUE(quadric);
-  int own = 0;
-  int own_explained = 0;
-  int foreign_explained = 0;
-  for (int row = 20; row < 40; ++row) {
-    for (int column = 25; column < 60; ++column) {
-      if (!is_bent(frame.fits, frame.fits.grid.index(column, row))) continue;
-      const Vector3d position = position_of(frame.fits, column, row);
-      const int u = column - kColumn;
-      const int v = row - kRow;
-      const bool explained = quadric->explains(frame.input(), same, u, v);
-      const bool mine = position.x() < 0.05;
-      own += mine;
-      own_explained += mine && explained;
-      foreign_explained += position.x() > 0.065 && explained;
+  int count[2] = {};  // of its own ball, of the other
+  int explained[2] = {};
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t i = grid.index(column, row);
+      if (frame.fits.states[i] != FilteredDepth::State::fitted) continue;
+      const double x = position_of(frame.fits, column, row).x();
+      const bool foreign = x > 0.035;  // a block and a half beyond where they touch
+      if (!foreign && x > 0.025) continue;
+      const int u = column - quadric->column;
+      const int v = row - quadric->row;
+      ++count[foreign];
+      explained[foreign] += quadric->explains(frame.input().blocks, same, u, v);
     }
   }
-  EXPECT_GT(own, 300);
-  EXPECT_GT(own_explained, 0.97 * own);
-  EXPECT_EQ(foreign_explained, 0);
+  EXPECT_GT(count[0], 200);
+  EXPECT_GT(count[1], 60);
+  EXPECT_GT(explained[0], 0.95 * count[0]);
+  EXPECT_EQ(explained[1], 0);
 }
 
 // Two rows say nothing of the way between them and beyond.
