@@ -12,7 +12,9 @@ namespace {
 using Eigen::Vector3f;
 
 // Limits of edges and creases (docs/method.md 6.5; judgement).
-constexpr int kApart = 3;              // blocks: a block that an edge crosses is between the two
+// Blocks: between the two are a block that an edge crosses and one to each side, whose slopes it
+// spoils (derived).
+constexpr int kApart = 4;
 constexpr float kTurned = 0.866f;      // cosine of the least angle between two faces: 30 degrees
 constexpr float kSame = 0.94f;         // and of the largest one within a face: 20 degrees
 constexpr float kCertainly = 3;        // deviations
