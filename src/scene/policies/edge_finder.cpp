@@ -11,10 +11,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Limits of edges and creases (docs/method.md 6.5; judgement).
 // Blocks: between the two are a block that an edge crosses and one to each side, whose slopes it
 // spoils (derived).
 constexpr int kApart = 4;
+
+// Limits of edges and creases (docs/method.md 6.5; judgement).
 constexpr float kTurned = 0.866f;      // cosine of the least angle between two faces: 30 degrees
 constexpr float kSame = 0.94f;         // and of the largest one within a face: 20 degrees
 constexpr float kCertainly = 3;        // deviations
