@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -47,15 +49,18 @@ TEST(Recycler, OwnersMayOutliveIt) {
 
 TEST(Recycler, ObjectsComeBackOnAnyThread) {
   Recycler<std::vector<int>> recycler;
-  std::vector<std::shared_ptr<std::vector<int>>> owned;
+  std::set<const std::vector<int>*> objects;
   for (int round = 0; round < 200; ++round) {
+    std::vector<std::shared_ptr<std::vector<int>>> owned;
     for (int i = 0; i < 4; ++i) {
       owned.push_back(recycler.take());
       owned.back()->assign(16, round);
+      objects.insert(owned.back().get());
     }
     const std::jthread other([mine = std::move(owned)]() mutable { mine.clear(); });
-    owned.clear();
+    objects.insert(recycler.take().get());  // while the others come back
   }
+  EXPECT_LE(objects.size(), 5u) << "no more than were in use at a time";
 }
 
 }  // namespace
