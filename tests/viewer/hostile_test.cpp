@@ -29,6 +29,14 @@ std::size_t threads() {
   return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
+// The system may show a thread a little longer than it is there.
+void expect_threads(std::size_t count) {
+  for (int i = 0; i < 500 && threads() != count; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(threads(), count);
+}
+
 void expect_served(RawClient& client) {
   client.send_text(R"({"type":"ping","id":5})");
   EXPECT_EQ(client.receive_json("pong")["id"], 5);
@@ -222,15 +230,20 @@ TEST(HostileClient, AViewerGoesWhileAClientCloses) {
     paused.set_value();
     ending.get_future().wait();
   };
+  const std::size_t before = threads();
   ViewerRig rig({}, controls);
   auto client = rig.enter();
   client->send(test::client_frame(1, R"({"type":"pause","on":true})") +
                test::client_frame(1, R"({"type":"ping","id":5})") +
                test::client_frame(8, "\x03\xe9"));
   paused.get_future().wait();
-  std::jthread end([&] { rig.viewer.reset(); });
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it asks for the end meanwhile
-  ending.set_value();
+  {
+    const std::jthread end([&] { rig.viewer.reset(); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // it asks for the end meanwhile
+    ending.set_value();
+  }
+  EXPECT_TRUE(client->ends());
+  expect_threads(before);
 }
 
 TEST(HostileClient, AViewerGoesWhileClientsAreThere) {
@@ -241,11 +254,7 @@ TEST(HostileClient, AViewerGoesWhileClientsAreThere) {
     auto other = rig.connect();
     RawClient idle(rig.viewer->port());
   }
-  // The system may show a thread a little longer than it is there.
-  for (int i = 0; i < 500 && threads() != before; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_EQ(threads(), before);
+  expect_threads(before);
 }
 
 }  // namespace
