@@ -24,6 +24,10 @@ def wait_for(condition, what):
     raise AssertionError(f"waited in vain for: {what}")
 
 
+def threads():
+    return len(os.listdir("/proc/self/task"))
+
+
 class Running(unittest.TestCase):
     def test_hand_touches(self):
         with pp.Servo(ball(), hand=stroke(), stiffness=300, soft_start=0) as servo:
@@ -72,8 +76,13 @@ class Running(unittest.TestCase):
         wait_for(lambda: servo.state().touching, "contact with a scene that nobody else holds")
 
     def test_servo_is_dropped(self):
+        scene = ball()
+        before = threads()
         for _ in range(5):
-            pp.Servo(ball())
+            servo = pp.Servo(scene)
+            self.assertGreater(threads(), before)
+            del servo
+            wait_for(lambda: threads() <= before, "the end of its thread")
 
     @unittest.skipUnless(FAKE, "PALPATE_FAKE_DHD is not set")
     def test_hardware(self):
