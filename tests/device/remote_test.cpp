@@ -255,14 +255,15 @@ TEST_F(RemoteDeviceTest, OthersMayLookAtItWhileItSteps) {
   RemoteClient client(device.path(), folder_ / "client");
   std::jthread watcher([&](const std::stop_token& stop) {
     std::uint64_t last = 0;
-    while (!stop.stop_requested()) {
+    do {
       const RemoteDevice::Counts counts = device.counts();
       EXPECT_GE(counts.taken, last);
       last = counts.taken;
       static_cast<void>(device.reason());
-    }
+    } while (!stop.stop_requested());
   });
   talk(device, client);
+  EXPECT_GT(device.counts().taken, 0u);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -50,16 +49,14 @@ TEST(RemoteTarget, LeavesOutPosesThatAreNotFinite) {
 
 TEST(RemoteTarget, ListenersSeeWholePosesWhileAnotherThreadSpeaks) {
   RemoteTarget hand;
-  std::atomic<bool> done{false};
-  std::jthread speaker([&] {
-    for (int i = 1; i <= test::effort(100'000); ++i) {
+  const int count = test::effort(100'000);
+  const std::jthread speaker([&] {
+    for (int i = 1; i <= count; ++i) {
       static_cast<void>(
           hand.move({Vector3d::Constant(i), static_cast<std::uint32_t>(i)}, 1e-3 * i));
     }
-    done.store(true);
   });
-  double last = 0;
-  while (!done.load()) {
+  for (double last = 0; last < count;) {
     const std::optional<RemoteTarget::Command> word = hand.command();
     if (!word || !word->held) continue;
     const double x = word->target.position.x();
