@@ -58,7 +58,7 @@ TEST(LiveProgram, RecordingsBeginTogetherWhenTheRunDoes) {
   for (const std::string name : {"a", "b"}) {
     std::filesystem::create_directory(shell.path(name));
     shell.write(name + "/sequence.json",
-                R"({"fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "fps": 10})");
+                R"({"fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "fps": 2})");
     for (int i = 0; i < 4; ++i) {
       std::string image = "P5 64 48 65535\n";
       for (int k = 0; k < 64 * 48; ++k) image += {'\x02', static_cast<char>(i + k % 7)};
@@ -67,7 +67,9 @@ TEST(LiveProgram, RecordingsBeginTogetherWhenTheRunDoes) {
   }
   const Outcome outcome = shell.run("touch sequence:a sequence:b --duration 2 --json run.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  for (const Json& source : Json::parse(shell.read("run.json"))["sources"]) {
+  const Json run = Json::parse(shell.read("run.json"));
+  ASSERT_EQ(run["sources"].size(), 2u);
+  for (const Json& source : run["sources"]) {
     EXPECT_EQ(source["frames"], 4) << "the first one, too: it was looked at before";
     EXPECT_EQ(source["drops"]["late"], 0);
   }
