@@ -30,6 +30,7 @@ Json record_and_replay(Shell& shell, const std::string& arguments) {
   EXPECT_EQ(replay.code, 0) << replay.out << replay.err;
   const Json found = Json::parse(shell.read("replay.json"));
   EXPECT_TRUE(found["exact"]) << replay.out;
+  EXPECT_FALSE(found["hands"].empty());
   for (const Json& hand : found["hands"]) {
     EXPECT_EQ(hand["largest_difference_N"], 0.0);
     EXPECT_GT(hand["steps"], 100);
@@ -67,13 +68,6 @@ TEST(ReplayProgram, ACameraInSimulatedTimeWhichRecordingDoesNotChange) {
   EXPECT_GT(report["recordings"][0]["frames"], 20);
   ASSERT_EQ(shell.run("touch " + camera + "alone.csv").code, 0);
   EXPECT_EQ(without_times(shell, "recorded.csv"), without_times(shell, "alone.csv"));
-}
-
-TEST(ReplayProgram, ACameraInRealTime) {
-  if (test::is_slow_build()) GTEST_SKIP() << "no surface is ready in time";
-  Shell shell;
-  const Json report = record_and_replay(shell, "camera:simulated --duration 1.5");
-  EXPECT_GT(report["recordings"][0]["frames"], 2);
 }
 
 TEST(ReplayProgram, TwoCamerasInRealTime) {
