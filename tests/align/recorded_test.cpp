@@ -61,6 +61,7 @@ TEST(RecordedAlign, FindsFramesOfARoomBack) {
   const char* data = std::getenv("PALPATE_DATA");
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA is not set";
   const auto frames = frames_of(std::string(data) + "/redwood_open3d_mit");
+  ASSERT_GT(frames.size(), 1u);
   for (unsigned seed = 1; seed < frames.size(); ++seed) {
     expect_same(found(frames[0], frames[seed], seed), *frames[seed].T_world_sensor, 2);
   }
@@ -73,6 +74,7 @@ TEST(RecordedAlign, FindsViewsOfAShelfBack) {
   const char* data = std::getenv("PALPATE_DATA");
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA is not set";
   const auto frames = frames_of(std::string(data) + "/multiview_shelf_apc");
+  ASSERT_GT(frames.size(), 1u);
   for (std::size_t i = 0; i + 1 < frames.size(); i += 4) {
     const auto stood = align({seen(frames[i], *frames[i].T_world_sensor),
                               seen(frames[i + 1], *frames[i + 1].T_world_sensor)});

@@ -98,7 +98,9 @@ void expect_touched(const fs::path& file) {
 }
 
 void expect_all_touched(std::initializer_list<const char*> endings) {
-  for (const fs::path& file : files_in(data_folder(), endings)) expect_touched(file);
+  const std::vector<fs::path> files = files_in(data_folder(), endings);
+  if (files.empty()) GTEST_SKIP() << "PALPATE_DATA holds no such file";
+  for (const fs::path& file : files) expect_touched(file);
 }
 
 class EveryFile : public testing::Test {
@@ -126,7 +128,9 @@ TEST_F(EveryFile, PackedSurveyOfTenMillionPointsIsTouchedWithoutAFault) {
   if (test::effort(10) < 10) GTEST_SKIP() << "too long where every test is to be quick";
   if (std::system("xz --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "xz is not installed";
   const Shell folder;
-  for (const fs::path& packed : files_in(data_folder(), {".las.xz"})) {
+  const std::vector<fs::path> files = files_in(data_folder(), {".las.xz"});
+  if (files.empty()) GTEST_SKIP() << "PALPATE_DATA holds no packed survey";
+  for (const fs::path& packed : files) {
     const std::string unpacked = folder.path(packed.stem().string());
     const std::string command = fmt::format("xz -dc -T0 '{}' > '{}'", packed.string(), unpacked);
     if (std::system(command.c_str()) != 0) GTEST_SKIP() << "there is no room to unpack " << packed;

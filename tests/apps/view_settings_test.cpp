@@ -210,6 +210,7 @@ TEST(ViewSettings, BoundsAndStepsAreThoseOfTheCloud) {
     settings.feel.texture.amplitude = 0.37 * scope.deepest_texture;
     settings.feel.texture.wavelength = 4e-3 * scale;
     settings.preparation.voxel = 2.1 * scope.spacing;
+    int numbers = 0;
     for (const Setting& setting : list_settings(settings, scope)) {
       if (setting.kind != Setting::Kind::number || setting.step == 1) continue;
       const double steps = (setting.most - setting.least) / setting.step;
@@ -220,7 +221,9 @@ TEST(ViewSettings, BoundsAndStepsAreThoseOfTheCloud) {
       EXPECT_DOUBLE_EQ(same.feel.stiffness, settings.feel.stiffness);
       EXPECT_DOUBLE_EQ(same.feel.texture.amplitude, settings.feel.texture.amplitude);
       EXPECT_DOUBLE_EQ(*same.preparation.voxel, *settings.preparation.voxel);
+      ++numbers;
     }
+    EXPECT_GT(numbers, 3) << size << " m";
   }
 }
 

@@ -85,15 +85,18 @@ TEST(DrawnScene, ShowsWhatItsPathsTouch) {
   for (std::uint64_t layout = kFirst; layout < kFirst + kCount; ++layout) {
     const TruthScene scene = draw_truth_scene(layout);
     const DepthFrame exact = exact_frame(scene);
+    int touching = 0;
     for (const Row& row : draw_rows(scene, layout)) {
       if (is_edge_row(row.name) || row.name.starts_with("crease")) continue;
       for (const Path& path : row.paths) {
         for (std::size_t i = path.begin; i < path.end; i += 20) {
           if (distance_and_normal(scene, path.hip[i]).value > 0) continue;
           ASSERT_TRUE(seen(scene, exact, path.hip[i])) << row.name << ", layout " << layout;
+          ++touching;
         }
       }
     }
+    EXPECT_GT(touching, 10) << "layout " << layout;
   }
 }
 

@@ -58,8 +58,10 @@ TEST(IdealProxy, LiesOverTheHandOnASphere) {
 
 TEST(IdealProxy, StaysInTheCreaseAndBeforeThePlate) {
   const TruthScene scene = make_truth_scene();
+  int rows = 0;
   for (const Row& row : make_rows(scene)) {
     if (row.name != "crease 10 mm" && row.name != "thin push") continue;
+    ++rows;
     const Trace trace = ideal_trace(scene, row.paths.front());
     double largest = 0;
     for (std::size_t i = 0; i < trace.proxy.size(); ++i) {
@@ -69,11 +71,13 @@ TEST(IdealProxy, StaysInTheCreaseAndBeforeThePlate) {
     // 10 mm into both walls of the crease; 30 mm past the plate's face.
     EXPECT_NEAR(largest, row.name == "thin push" ? 15.0 : 7.0711, 1e-3) << row.name;
   }
+  EXPECT_EQ(rows, 2);
 }
 
 TEST(IdealProxy, LeavesTheBoxAtItsEdge) {
   const TruthScene scene = make_truth_scene();
   const std::vector<Row> rows = make_rows(scene);
+  ASSERT_FALSE(rows[3].paths.empty());
   for (const Path& path : rows[3].paths) {
     const Trace trace = ideal_trace(scene, path);
     EXPECT_NEAR(trace.force[path.begin].norm(), 1.5, 1e-3);
@@ -86,6 +90,7 @@ TEST(IdealProxy, LeavesTheBoxAtItsEdge) {
 TEST(IdealProxy, AgreesWithTheProxyOnTheExactField) {
   const TruthScene scene = make_truth_scene();
   const TruthField field(scene);
+  int rows = 0;
   for (const Row& row : make_rows(scene)) {
     if (row.name != "plane slide" && row.name != "sphere slide" && row.name != "fast tap" &&
         row.name != "thin push") {
@@ -102,7 +107,9 @@ TEST(IdealProxy, AgreesWithTheProxyOnTheExactField) {
     EXPECT_LT(std::abs(score.height), 0.002) << row.name;
     EXPECT_EQ(score.lost, 0) << row.name;
     EXPECT_EQ(score.pops, 0) << row.name;
+    ++rows;
   }
+  EXPECT_EQ(rows, 4);
 }
 
 }  // namespace

@@ -145,12 +145,15 @@ TEST(Table, TakesMediansAndTheLargestMagnitude) {
     score.height = height;
     results.results.push_back({1, "balanced", "sphere slide", score});
   }
+  int rows = 0;
   for (const Target& target : targets(NoiseKind::independent)) {
     if (target.row != "sphere slide" || target.metric != "height, mm") continue;
+    ++rows;
     EXPECT_NEAR(spread(results, "balanced", target).median, 0.015, 1e-12);
     EXPECT_NEAR(spread(results, "balanced", target).worst, -0.08, 1e-12);
     EXPECT_TRUE(met(results, "balanced", target));
   }
+  EXPECT_EQ(rows, 1);
 }
 
 }  // namespace

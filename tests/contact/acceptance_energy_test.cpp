@@ -97,6 +97,7 @@ TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
   double most = -1;
   double least_touched = 1;
   double least_force = 100;
+  ASSERT_FALSE(scene.loops.empty());
   for (std::size_t i = 0; i < scene.loops.size(); ++i) {
     for (const double speed : {0.05, 0.2, 1.0}) {
       if (speed < 0.1 && effort(10) < 10) continue;  // three quarters of all ticks

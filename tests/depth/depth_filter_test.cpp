@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -253,6 +254,8 @@ void expect_finite(const FilteredDepth& out) {
 }
 
 TEST(DepthFilter, IsFiniteWhateverComes) {
+  std::ptrdiff_t empty = 0;
+  std::ptrdiff_t all = 0;
   for (int repeat = 0; repeat < effort(150); ++repeat) {
     Random random(static_cast<std::uint64_t>(repeat));
     DepthFilterOptions options;
@@ -274,11 +277,15 @@ TEST(DepthFilter, IsFiniteWhateverComes) {
       }
       pose.translation() += 0.1 * Vector3d(random.normal(), random.normal(), random.normal());
       const std::vector<Ball> balls = {{pose * Vector3d(0, 0, 0.5), random.uniform()}};
-      expect_finite(number % 2 == 0 ? filter.filter(frame, pose)
-                                    : filter.filter(frame, pose, balls));
+      const FilteredDepth& out =
+          number % 2 == 0 ? filter.filter(frame, pose) : filter.filter(frame, pose, balls);
+      expect_finite(out);
       if (HasFatalFailure()) return;
+      empty += std::ranges::count(out.states, FilteredDepth::State::empty);
+      all += std::ssize(out.states);
     }
   }
+  EXPECT_GT(all - empty, all / 10) << "surfaces, of whatever came";
 }
 
 }  // namespace

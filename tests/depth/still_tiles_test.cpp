@@ -59,6 +59,7 @@ TEST_F(KeptTilesTest, HaveTheAnswerOfTheFrameBeforeBitForBit) {
   settle();
   const FilteredDepth before = show(kWall);
   const FilteredDepth& now = show(kWall);
+  ASSERT_GT(kept(now), 0.5);
   for (int row = 0; row < now.rows; ++row) {
     for (int column = 0; column < now.columns; ++column) {
       if (!now.kept.at(column, row)) continue;

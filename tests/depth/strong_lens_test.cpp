@@ -116,6 +116,7 @@ TEST(StrongLens, ShowsNothingWhereTheNearestPixelDoes) {
   }
   const Image expected = nearest(image);
   const Image out = undistorted(image);
+  ASSERT_EQ(out.size(), image.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const bool measured = expected[i] >= 0.1F && expected[i] <= 20;
     ASSERT_EQ(out[i] > 0, measured);

@@ -212,6 +212,7 @@ TEST_F(TemporalFilterTest, WhatIsLessSureThanWantedRemembersLonger) {
   for (const double wanted : {0.0, kSlopeSd * 0.8 / 2}) {  // 1 / rho = 0.8 m; four times the memory
     filter_.reset();
     for (int frame = 0; frame < 40; ++frame) show({}, {.normal_error = wanted});
+    ASSERT_EQ(filter_.memory().size(), fits_.size());
     for (const BlockMemory& m : filter_.memory()) EXPECT_NEAR(m.count, wanted > 0 ? 32 : 8, 1);
   }
 }

@@ -71,6 +71,7 @@ TEST(Exploration, GoesRoundAClosedObjectAndNotThroughIt) {
   const PointCloud cloud = synthetic_cloud("sphere");
   const Trajectory rows =
       explore(view(cloud), {.duration = 10, .radius = 5e-3, .depth = 2e-3, .region = 1});
+  ASSERT_FALSE(rows.empty());
   for (const TrajectoryRow& row : rows) EXPECT_GT(row.position.norm(), 0.055);
 }
 

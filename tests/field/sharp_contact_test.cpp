@@ -45,6 +45,7 @@ TEST(SharpContact, CreasesHoldAHandInBothFaces) {
     const auto contacts = follow(sharp, path);
     const auto pressing = static_cast<std::size_t>(30e-3 / 0.1 / kTick);
     const Vector3d right = kStiffness * Vector3d(depth, 0, depth);
+    ASSERT_GT(contacts.size(), pressing + 150);
     for (std::size_t i = pressing + 150; i < contacts.size(); ++i) {
       EXPECT_LT((contacts[i].force - right).norm(), 0.15) << depth;
     }

@@ -235,9 +235,9 @@ TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
 TEST(DensityWeights, AreFiniteForCoincidentPointsAndTinyRadii) {
   const CellGrid grid(std::vector<Vector3f>(300, Vector3f(1, 2, 3)));
   for (const float radius : {1e-30f, 1e-3f, 1e18f}) {
-    for (const float w : density_weights(WeightSums(grid, std::vector<float>(300, radius)))) {
-      EXPECT_NEAR(w, 1. / 300, 1e-6);
-    }
+    const auto weights = density_weights(WeightSums(grid, std::vector<float>(300, radius)));
+    ASSERT_EQ(weights.size(), 300u);
+    for (const float w : weights) EXPECT_NEAR(w, 1. / 300, 1e-6);
   }
 }
 

@@ -78,6 +78,7 @@ TEST(LocalSpacings, FollowGradedDensity) {
   for (Vector3f p : Clouds(1).plane(30, 8e-3)) points.push_back(p + Vector3f(0.126f, 0, 0));
   const CellGrid grid(points);
   const auto spacings = local_spacings(grid);
+  ASSERT_EQ(spacings.size(), grid.size());
   for (std::size_t i = 0; i < spacings.size(); ++i) {
     const float x = grid.points()[i].x();
     EXPECT_TRUE(x >= 0.10f || spacings[i] < 3.2e-3f) << spacings[i];
@@ -90,7 +91,9 @@ TEST(LocalSpacings, OfAStrayPointStayNearThoseOfTheSurface) {
   Points points = Clouds(1).plane(60, 2e-3);
   points.push_back(Vector3f(0.06f, 0.06f, 0.5f));
   const CellGrid grid(points);
-  for (const float s : local_spacings(grid)) EXPECT_LT(s, 6e-3f);
+  const auto spacings = local_spacings(grid);
+  ASSERT_EQ(spacings.size(), grid.size());
+  for (const float s : spacings) EXPECT_LT(s, 6e-3f);
 }
 
 TEST(LocalSpacings, AreFiniteAndPositiveWhateverThePoints) {

@@ -74,6 +74,7 @@ TEST(SplatShell, StaysBoundedWhereSizesDifferWithoutMeasure) {
   splats[0].position.x() = 1e12F;
   splats[1].sigma.setConstant(std::numeric_limits<float>::max());
   const SplatShell shell = shell_of(splats);
+  EXPECT_FALSE(shell.cloud.empty());
   for (const Eigen::Vector3f& p : shell.cloud.positions) EXPECT_TRUE(p.allFinite());
   for (const Eigen::Vector3f& n : shell.cloud.normals) {
     EXPECT_TRUE(n.isZero(0) || std::abs(n.norm() - 1) < 1e-5F);

@@ -9,6 +9,7 @@ namespace palpate::test {
 
 /// The points of each node lie in its cube.
 inline void expect_in_cubes(const PointStore& store) {
+  ASSERT_FALSE(store.layout().nodes.empty());
   for (std::size_t k = 0; k < store.layout().nodes.size(); ++k) {
     Box box = store.layout().box(k);
     box.lower.array() -= 1e-3;  // coordinates are rounded

@@ -181,7 +181,9 @@ TEST(NoisyRadii, AreAtLeastFourSigma) {
   const LocalNoise noise{std::vector<float>(grid.size(), 3 * kSpacing),
                          std::vector<float>(grid.size(), 3 * kSpacing * kSpacing)};
   const std::vector<float> floors(grid.size(), 5 * kSpacing);  // as voxels of two spacings have
-  for (const float r : noisy_radii(grid, noise, 0.3, floors)) EXPECT_GE(r, 11.99f * kSpacing);
+  const std::vector<float> radii = noisy_radii(grid, noise, 0.3, floors);
+  ASSERT_EQ(radii.size(), grid.size());
+  for (const float r : radii) EXPECT_GE(r, 11.99f * kSpacing);
 }
 
 TEST(NoisyRadii, AreTheRootOfNoiseOverTheWantedError) {
@@ -189,12 +191,14 @@ TEST(NoisyRadii, AreTheRootOfNoiseOverTheWantedError) {
   const float product = 0.02f / 3.2f * 5e-5f;  // theta / 3.2 of R^2
   const LocalNoise noise{std::vector<float>(grid.size(), 0.f),
                          std::vector<float>(grid.size(), product)};
-  for (const float r : noisy_radii(grid, noise, 0.02, std::vector<float>(grid.size(), 5e-3f))) {
-    EXPECT_NEAR(r, std::sqrt(5e-5f), 1e-6f);
-  }
-  for (const float r : noisy_radii(grid, noise, 0.02, std::vector<float>(grid.size(), 2e-3f))) {
-    EXPECT_NEAR(r, 4.8e-3f, 1e-6f) << "at most 2.4 times what it would be without noise";
-  }
+  const auto expect_all = [&](float floor, float radius) {
+    const std::vector<float> floors(grid.size(), floor);
+    const std::vector<float> radii = noisy_radii(grid, noise, 0.02, floors);
+    ASSERT_EQ(radii.size(), grid.size());
+    for (const float r : radii) EXPECT_NEAR(r, radius, 1e-6f) << floor;
+  };
+  expect_all(5e-3f, std::sqrt(5e-5f));
+  expect_all(2e-3f, 4.8e-3f);  // at most 2.4 times what it would be without noise
 }
 
 TEST(NoisyRadii, ShrinkAtAnEdgeAndKeepTheirFloor) {

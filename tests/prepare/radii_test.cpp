@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate {
@@ -28,10 +29,10 @@ class SupportRadii : public testing::Test {
 
   void expect(std::size_t point, double radius) {
     const std::vector<float> radii = choose_radii(sampling_, options_).values;
-    for (std::size_t i = 0; i < radii.size(); ++i) {
-      if (sampling_.grid.order()[i] != point) continue;
-      EXPECT_NEAR(radii[i], radius, 1e-8);
-    }
+    const auto place = std::ranges::find(sampling_.grid.order(), point);
+    ASSERT_EQ(radii.size(), 3u);
+    EXPECT_NEAR(radii[static_cast<std::size_t>(place - sampling_.grid.order().begin())], radius,
+                1e-8);
   }
 
   Sampling sampling_;

@@ -204,7 +204,9 @@ TEST(GivenSigns, DoNotReachOtherObjects) {
 
 TEST(Signs, KeepDegenerateCloudsFinite) {
   for (const Points& points : {Points(1, Vector3f(1, 2, 3)), Points(400, Vector3f(1, 2, 3))}) {
-    for (const Vector3f& n : prepared(points).normals) EXPECT_TRUE(n.isZero());
+    const auto normals = prepared(points).normals;
+    EXPECT_FALSE(normals.empty());
+    for (const Vector3f& n : normals) EXPECT_TRUE(n.isZero());
   }
 }
 

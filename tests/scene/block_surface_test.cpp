@@ -55,6 +55,7 @@ void expect_weights(const test::DepthOf& surface_depth, float tolerance,
   surface.measure(depth);
   std::vector<std::size_t> blocks;
   const std::vector<float> expected = searched_weights(depth, surface, blocks);
+  ASSERT_GT(blocks.size(), 1000u);
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     EXPECT_NEAR(weight_of(surface, blocks[k]) / expected[k], 1, tolerance)
         << "column " << blocks[k] % static_cast<std::size_t>(depth.columns) << ", row "
@@ -122,6 +123,7 @@ TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
       depth_of([](double x, double) { return x < 0 ? 0.5 : 0.5 / (1 - 2.5 * x); });
   BlockSurface surface(Kernel::wyvill);
   surface.measure(depth);
+  int pairs = 0;
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 1; u < depth.columns; ++u) {
       const auto b = static_cast<std::size_t>(v * depth.columns + u);
@@ -131,8 +133,10 @@ TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
       }
       const float way = (depth.positions[b] - depth.positions[b - 1]).norm();
       EXPECT_LE(surface.radius(b) - surface.radius(b - 1), 0.5f * way + 2e-3f * way + 1.4e-3f);
+      ++pairs;
     }
   }
+  EXPECT_GT(pairs, 1000);
 }
 
 TEST(BlockSurface, TrustsAPointByItsPrecisionAmongThoseAround) {

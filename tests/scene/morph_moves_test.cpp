@@ -127,6 +127,7 @@ TEST(MorphMoves, ABlockThatTurnsAwayWithinAFrameIsNotBelieved) {
     depth.normals[middle] = Eigen::Vector3f::UnitX();
   };
   const auto points = show(morph, kFrame, test::wall(0.5), turned);
+  EXPECT_GT(points->size(), 4500u);
   for (std::size_t i = 0; i < points->size(); ++i) {
     const Eigen::Vector3f way = points->end_positions[i] - points->grid.points()[i];
     EXPECT_LT(way.norm(), 1e-3);

@@ -81,6 +81,7 @@ double disagreement(const DepthFrame& from, const DepthFrame& to,
 TEST_P(SequenceData, PosedViewsAgree) {
   if (!GetParam().posed) GTEST_SKIP() << "this sequence has no poses";
   const std::vector<DepthFrame> frames = play(sequence_);
+  ASSERT_GT(frames.size(), 1u);
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const DepthFrame& from = frames[i - 1];
     const DepthFrame& to = frames[i];
