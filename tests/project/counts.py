@@ -126,6 +126,43 @@ def classes(path):
         yield found[1], i + 1, methods, members
 
 
+ASSERTS = re.compile(r"(EXPECT|ASSERT)_|RC_ASSERT|ADD_FAILURE|FAIL$")
+
+
+def seen_by(root, path):
+    """A test's file and what it includes of the tests, with the sources of these."""
+    seen, todo = set(), [path]
+    while todo:
+        file = todo.pop()
+        if file not in seen and file.is_file():
+            seen.add(file)
+            todo += [file.with_suffix(".cpp"), *(root / "tests" / name for name in included(file))]
+    return seen
+
+
+def unproven(root):
+    """(path, line, head) of test cases that assert nothing, neither themselves nor by what they call of the tests."""
+    cases, helpers, proving = [], [], {}
+    for path in code_of(root, ("tests",)):
+        lines = [line.split("//")[0] for line in lines_of(path)]
+        seen, proving[path] = seen_by(root, path), set()
+        for head, line, length in functions(path):
+            name, *calls = re.findall(r"(\w+)(?:<[^;()]*>)?\(", "\n".join(lines[line - 1:line - 1 + length])) or [""]
+            kind = cases if re.match(r"(TYPED_)?TEST(_[FP])?\(|RC_GTEST", head) else helpers
+            kind.append((path, line, head, seen, name, calls))
+
+    def proves(seen, calls):
+        return any(ASSERTS.match(call) or any(call in proving[file] for file in seen) for call in calls)
+
+    known = -1
+    while known < sum(map(len, proving.values())):  # until no helper of a helper is new
+        known = sum(map(len, proving.values()))
+        for path, _, _, seen, name, calls in helpers:
+            if proves(seen, calls):
+                proving[path].add(name)
+    return [(path, line, head) for path, line, head, seen, _, calls in cases if not proves(seen, calls)]
+
+
 def has_header(root, path):
     """A header of its name: beside it, or a public one."""
     public = root / "include/palpate" / path.relative_to(root / "src").with_suffix(".hpp")

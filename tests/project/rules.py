@@ -210,6 +210,12 @@ def readers(root):
             yield f"{name}: {reader.relative_to(root)} alone reads it, {together} lines together"
 
 
+def proving(root):
+    """Test cases assert something, themselves or by a helper."""
+    for path, number, head in counts.unproven(root):
+        yield f"{path.relative_to(root)}:{number}: asserts nothing: {head}"
+
+
 def public_face(root):
     """What users see changes on purpose: with the list in tests/project/public_face.txt."""
     listed = root / "tests" / "project" / "public_face.txt"
@@ -264,7 +270,7 @@ def text_lines(root):
 
 RULES = {rule.__name__: rule
          for rule in (floors, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
-                      reasons, classes, readers,
+                      reasons, classes, readers, proving,
                       public_face, readme, links, documents)}
 
 

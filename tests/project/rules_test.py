@@ -107,6 +107,22 @@ class Rules(unittest.TestCase):
         tested = {**files, "tests/io/a_test.cpp": '#include "io/a.hpp"\n'}
         self.assertEqual(self.found(rules.readers, tested), [])
 
+    def test_a_test_case_that_asserts_nothing_is_found(self):
+        def of(body, kind="TEST"):
+            return f"{kind}(A, Holds) {{\n  {body}\n}}\n"
+        name, helper = "tests/io/a_test.cpp", "void check(int a,\n           int b) {\n  EXPECT_EQ(a, b);\n}\n"
+        for body in ("act();", "// EXPECT_EQ(a, b);", "check(1, 2);", "RC_PRE(a);", "FAILING();"):
+            for kind in ("TEST", "TEST_F", "TEST_P", "TYPED_TEST", "RC_GTEST_PROP"):
+                self.assertEqual(len(self.found(rules.proving, {name: of(body, kind)})), 1, body)
+        for body in ("EXPECT_EQ(a, b);", "ASSERT_TRUE(a);", "RC_ASSERT(a);", "FAIL() << a;", 'ADD_FAILURE_AT("a", 1);'):
+            self.assertEqual(self.found(rules.proving, {name: of(body)}), [], body)
+        self.assertEqual(self.found(rules.proving, {name: helper + of("check(1, 2);")}), [])
+        twice = '#include "io/a.hpp"\n#include "support/a.hpp"\ninline void twice() {\n  check<int>(1, 1);\n}\n'
+        for where, count in (("tests/io/a.hpp", 0), ("tests/support/a.cpp", 0), ("tests/io/c_test.cpp", 1)):
+            files = {name: '#include "io/b.hpp"\n' + of("twice();"), "tests/io/b.hpp": twice, "tests/support/a.hpp": "",
+                     where: helper}
+            self.assertEqual(len(self.found(rules.proving, files)), count, where)
+
     def test_a_change_of_the_public_face_is_found(self):
         files = {"include/palpate/io/a.hpp": "struct A {\n};\nenum class B { c };\n",
                  "tests/project/public_face.txt": "palpate/io/a.hpp: A B\n"}
