@@ -27,7 +27,7 @@ ${best}}
     set(best "")
     target_sources(palpate_core PRIVATE ${file})
     set_source_files_properties(${file} TARGET_DIRECTORY palpate_core PROPERTIES
-      COMPILE_OPTIONS "-O3;${twin_OPTIONS}" SKIP_UNITY_BUILD_INCLUSION ON)
+      COMPILE_OPTIONS "-O3;${twin_OPTIONS}" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     set_property(SOURCE ${file} TARGET_DIRECTORY palpate_core APPEND PROPERTY
