@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"

@@ -10,9 +10,11 @@
 #include <optional>
 #include <sstream>
 
+#include "apps/palpate/cli/checks.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/report/report.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/cli/checks.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"

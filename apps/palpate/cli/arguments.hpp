@@ -1,10 +1,8 @@
 // What is named on the command line: sources, poses, numbers.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,20 +82,6 @@ void name_all(std::vector<CloudArgument>& sources);
 
 /// Both for each argument.
 [[nodiscard]] std::vector<CloudArgument> parse_clouds(const std::vector<std::string>& arguments);
-
-/// Takes finite numbers that are `good`. `range` ends the message: "'x' is not RANGE".
-[[nodiscard]] CLI::Validator number(const std::string& range, std::function<bool(double)> good);
-[[nodiscard]] CLI::Validator positive();
-[[nodiscard]] CLI::Validator not_negative();
-[[nodiscard]] CLI::Validator whole_number(std::int64_t least, std::int64_t most);
-/// Suggests the word that was meant. Its name is the words, with ' ' between (bash_completion()).
-[[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
-
-/// A check that takes what `parse` takes, and otherwise says what its UsageError does.
-[[nodiscard]] CLI::Validator parsed_by(std::function<void(const std::string&)> parse);
-
-/// --json of a command whose report can be had as data.
-CLI::Option* add_json_option(CLI::App& command, std::string& path);
 
 /// The words behind the option's name in an error.
 [[nodiscard]] std::string without_option(const std::string& message);

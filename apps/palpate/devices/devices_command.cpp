@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/cli/checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/driver_info.hpp"

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/cli/checks.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/devices/devices_command.hpp"

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/option_table.hpp"
 
 namespace palpate::app {
 

@@ -9,6 +9,7 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "palpate/base/error.hpp"
 

@@ -5,7 +5,9 @@
 
 #include <sstream>
 
+#include "apps/palpate/cli/checks.hpp"
 #include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/page_options.hpp"
 
 namespace palpate::app {

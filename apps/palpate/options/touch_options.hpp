@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
-#include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/options/run_facts.hpp"
 #include "apps/palpate/options/touch_plan.hpp"
 
 namespace palpate::app {
+
+class OptionTable;
 
 /// A source, and the keys that its own part of a set-up file has.
 struct DescribedSource {

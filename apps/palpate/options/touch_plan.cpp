@@ -8,6 +8,7 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"

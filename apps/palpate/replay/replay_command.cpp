@@ -10,6 +10,7 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/page_options.hpp"
 #include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/replay/replay_view.hpp"

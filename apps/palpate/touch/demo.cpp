@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/cli/checks.hpp"
+#include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/page_options.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/palpate/touch/touch.hpp"
