@@ -35,9 +35,9 @@ case "$name" in
     [ -f "$PALPATE_PAGE/index.html" ] || skip "$PALPATE_PAGE is absent: the page was not built"
     npm run --silent browser
     ;;
-  program)
+  program | smoke)
     need_browser
-    npm run --silent program
+    npm run --silent "$name"
     ;;
   *)
     echo "check.sh knows no '$name'" >&2

@@ -222,20 +222,21 @@ test("after the watchdog it is said beside the force how soft it is, and that th
 
 test("plots are drawn ten times a second at most, and those that change slowly twice", () =>
   withPage(kSmall, async (page) => {
-    const times = await page.evaluate(async () => {
+    const { times, passed } = await page.evaluate(async () => {
       const times = { force: [], spectrum: [], steps: [] };
+      const begin = performance.now();
       const clear = window.CanvasRenderingContext2D.prototype.clearRect;
       window.CanvasRenderingContext2D.prototype.clearRect = function (...box) {
         times[this.canvas.closest("figure")?.classList[1]]?.push(performance.now());
         return clear.apply(this, box);
       };
       await new Promise((done) => setTimeout(done, 3000));
-      return times;
+      return { times, passed: (performance.now() - begin) / 1000 }; // longer on a busy machine
     });
     const most = { force: 10, spectrum: 2, steps: 2 };
     for (const [name, rate] of Object.entries(most)) {
       const drawn = times[name].length;
-      assert.ok(drawn > 0 && drawn <= 3 * rate + 1, `${name}: ${drawn} pictures in 3 s`);
+      assert.ok(drawn > 0 && drawn <= passed * rate + 1, `${name}: ${drawn} pictures in ${passed} s`);
     }
   }));
 

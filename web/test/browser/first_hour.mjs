@@ -4,8 +4,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
+import { distance, felt, listen } from "./heard.mjs";
 import { picture } from "./picture.mjs";
-import { shaded } from "./pixels.mjs";
+import { shaded, viewOf } from "./pixels.mjs";
 import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
 test("work under way has one notice that stays, with a percentage, until it is done", () =>
@@ -28,11 +29,12 @@ test("work under way has one notice that stays, with a percentage, until it is d
 test("while nothing of a cloud changes, its points are drawn once", async () => {
   const server = await serve({ points: 4000, still: true });
   const page = await openPage(browser, server.address, kSmall, () => {
-    window.pointsDrawn = 0;
+    window.pointsDrawn = {}; // by the picture's size
     window.drawn = 0;
     const draw = window.WebGL2RenderingContext.prototype.drawArrays;
     window.WebGL2RenderingContext.prototype.drawArrays = function (mode, ...rest) {
-      if (mode === this.POINTS) window.pointsDrawn += 1;
+      const { width } = this.canvas;
+      if (mode === this.POINTS) window.pointsDrawn[width] = (window.pointsDrawn[width] ?? 0) + 1;
       return draw.call(this, mode, ...rest);
     };
     const elements = window.WebGL2RenderingContext.prototype.drawElements;
@@ -42,17 +44,19 @@ test("while nothing of a cloud changes, its points are drawn once", async () => 
     };
   });
   await ready(page);
-  const counts = () => page.evaluate(() => ({ points: window.pointsDrawn, others: window.drawn }));
-  let settled = await counts();
+  const points = () => page.evaluate(() => Object.entries(window.pointsDrawn).join("; "));
+  let settled = "";
   await until("the picture is settled", async () => {
     const before = settled;
     await page.waitForTimeout(1000);
-    settled = await counts();
-    return settled.points > 0 && settled.points === before.points;
+    settled = await points();
+    return settled !== "" && settled === before;
   });
-  await until("the tool is drawn on", async () => (await counts()).others > settled.others + 100);
-  const { points } = await counts();
-  assert.ok(points <= settled.points + 2, `points were drawn ${points - settled.points} times more`);
+  await page.evaluate(() => Object.assign(window, { pointsDrawn: {}, drawn: 0 }));
+  await until("the tool is drawn on", () => page.evaluate(() => window.drawn > 100));
+  // Where drawing is slow the picture may get smaller meanwhile, and then both clouds are drawn once in the new size.
+  const again = await page.evaluate(() => Math.max(0, ...Object.values(window.pointsDrawn)));
+  assert.ok(again <= 2, `points were drawn ${again} times more: ${await points()}`);
   await page.context().close();
   await server.close();
 });
@@ -117,24 +121,32 @@ test("where the system forces its colours, switches and sources are still told a
     assert.notEqual(await ground(".swatch"), await page.evaluate(() => window.getComputedStyle(document.body).backgroundColor));
   }));
 
-test("a tool in the air throws a shadow on the cloud below it", async () => {
+test("a tool in the air throws a shadow on the cloud below it, which goes when the tool does", async () => {
   const server = await serve({ points: 30000, still: true });
-  const page = await openPage(browser, server.address, kSmall);
+  const page = await openPage(browser, server.address, kSmall, listen);
   await ready(page);
+  await page.getByRole("switch", { name: "Trail" }).click(); // it is no shadow
   const seenAt = async (place) => {
     server.program.servo.exploring = () => place;
-    await page.waitForTimeout(2000); // and its trail has faded
-    return page.locator("#view").screenshot({ timeout: 120_000 });
+    await until("the page knows where the tool is", async () => {
+      const { hip } = await felt(page);
+      return hip !== undefined && distance(hip, place) < 1e-3;
+    });
+    return viewOf(page);
   };
-  let pixels = 0;
-  // A processor that draws slowly is late with either of the two.
-  for (let tries = 0; tries < 4 && pixels <= 100; tries += 1) {
-    const away = await seenAt([-0.25, 0.2, 0.4]);
-    const above = await seenAt([0.15, -0.1, 0.04]);
-    pixels = await shaded(page, above, away, [300, 100, 340, 170]); // no words there
-  }
+  const kShadow = 8; // cells of the view
+  const kAway = [-0.25, 0.2, 0.4];
+  const kAbove = [0.15, -0.1, 0.04];
+  // Where drawing is slow pictures may become less sharp between two looks: then the next are compared.
+  await until("a shadow below the tool", async () => {
+    const away = await seenAt(kAway);
+    const above = await seenAt(kAbove);
+    const gone = await seenAt(kAway);
+    const cells = [await shaded(page, above, away), await shaded(page, gone, away)];
+    return cells[0] >= kShadow && cells[1] < kShadow / 4;
+  });
+  await seenAt(kAbove);
   await picture(page, "shadow");
-  assert.ok(pixels > 100, `${pixels} pixels are darker`);
   await page.context().close();
   await server.close();
 });

@@ -1,4 +1,5 @@
-// Pictures read and compared by the browser, which can.
+// Pictures read and compared by the browser, which can. Where a test can do without words and panels it looks at the
+// view's canvas alone, in small: that takes no screenshot, which a processor that draws needs long for.
 
 /** Red, green, blue and opacity of each pixel of pictures (PNG), of an area of them: x, y (negative: from below), width, height. */
 const pixels = async ([pictures, area]) => Promise.all(pictures.map(async (picture) => {
@@ -27,15 +28,46 @@ export async function changed(page, one, other) {
   return (4 * count) / first.length;
 }
 
-/** How many pixels of an area are darker in one picture than in another, in the same colour. */
-export async function shaded(page, one, other, area) {
-  const [first, second] = await page.evaluate(pixels, [coded([one, other]), area]);
-  let count = 0;
-  for (let i = 0; i < first.length; i += 4) {
-    const shares = [0, 1, 2].map((c) => first[i + c] / second[i + c]);
-    if (Math.max(...shares) < 0.88 && Math.max(...shares) - Math.min(...shares) < 0.05) count += 1;
-  }
-  return count;
+/** The view in small, 220 by 140 cells of red, green, blue and opacity, of a picture that is drawn after this is asked for. */
+const view = () => new Promise((done) => {
+  const small = document.createElement("canvas");
+  Object.assign(small, { width: 220, height: 140 });
+  const context = small.getContext("2d", { willReadFrequently: true });
+  const look = () => {
+    context.drawImage(document.getElementById("view"), 0, 0, small.width, small.height);
+    const { data } = context.getImageData(0, 0, small.width, small.height);
+    // The canvas keeps its picture until it is shown: it is black where nothing was drawn since.
+    if (data.some((value, i) => i % 4 < 3 && value > 0)) done(data);
+    else requestAnimationFrame(look);
+  };
+  requestAnimationFrame(look);
+});
+
+/** It stays in the page. */
+export const viewOf = (page) => page.evaluateHandle(view);
+
+/** Which part of the view is clearly of another colour than its upper left corner, 0 to 1. */
+export async function filled(page) {
+  return (await viewOf(page)).evaluate((data) => {
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (Math.max(...[0, 1, 2].map((c) => Math.abs(data[i + c] - data[c]))) > 24) count += 1;
+    }
+    return (4 * count) / data.length;
+  });
+}
+
+/** How many cells of one view are in shadow that are not in another: darker, but not black, and of the same colour. */
+export function shaded(page, one, other) {
+  return page.evaluate(([first, second]) => {
+    let count = 0;
+    for (let i = 0; i < first.length; i += 4) {
+      const shares = [0, 1, 2].map((c) => first[i + c] / second[i + c]);
+      const [least, most] = [Math.min(...shares), Math.max(...shares)];
+      if (most < 0.88 && least > 0.4 && most - least < 0.05) count += 1;
+    }
+    return count;
+  }, [one, other]);
 }
 
 /** Which part of an area's pixels is dark. */
