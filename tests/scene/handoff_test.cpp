@@ -158,7 +158,7 @@ TEST_F(HandoffTest, FullOfStuckReadersKeepsABoundedNumberAlive) {
 }
 
 // What a reader thread found.
-struct Seen {
+struct ReadValues {
   std::uint64_t looks = 0;
   std::uint64_t misses = 0;
   std::uint64_t torn = 0;       // a value that was freed or half written
@@ -167,8 +167,9 @@ struct Seen {
 };
 
 // Reads as a field does: keeps the current value in one slot and takes the newest into the other.
-Seen read_until(Handoff<Counted>& handoff, std::size_t reader, const std::atomic<bool>& done) {
-  Seen seen;
+ReadValues read_until(Handoff<Counted>& handoff, std::size_t reader,
+                      const std::atomic<bool>& done) {
+  ReadValues seen;
   std::size_t slot = 0;
   const Counted* current = nullptr;
   while (!done.load() || seen.looks == 0) {
@@ -199,7 +200,7 @@ TEST_F(HandoffTest, ThreadsNeverSeeAFreedOrOlderValue) {
   const Counted* stuck_second = handoff_.acquire(stuck, 1);
 
   std::atomic<bool> done{false};
-  std::array<Seen, 3> seen{};
+  std::array<ReadValues, 3> seen{};
   std::array<std::size_t, 3> readers{};
   for (auto& reader : readers) reader = handoff_.join();
   int most_alive = 0;
@@ -215,7 +216,7 @@ TEST_F(HandoffTest, ThreadsNeverSeeAFreedOrOlderValue) {
     done = true;
   }
 
-  for (const Seen& reader : seen) {
+  for (const ReadValues& reader : seen) {
     EXPECT_EQ(reader.torn, 0u);
     EXPECT_EQ(reader.backwards, 0u);
     EXPECT_GT(reader.looks, reader.misses) << "a reader never got a value";
