@@ -116,27 +116,57 @@ jobs_that_fit() {
 
 # configure PRESET [CMAKE OPTION...]
 configure() {
-  local preset=$1
+  local preset=$1 linker
   shift
-  if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
+  # What ccache has seen it need not compile, and it knows little of precompiled headers.
+  if command -v ccache >/dev/null; then
+    set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "$@"
+  fi
+  for linker in mold lld; do
+    if command -v "ld.$linker" >/dev/null; then
+      set -- -DCMAKE_EXE_LINKER_FLAGS="-fuse-ld=$linker" "$@"
+      break
+    fi
+  done
   # Sources compiled eight at a time take a third of the time.
   cmake --preset "$preset" -DCMAKE_UNITY_BUILD=ON "$@" >"build/$preset.configure.log" 2>&1 ||
     { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
 }
 
-# show_steps PRESET: of ninja's output, how far it is: on a terminal in one line, else a line each half minute.
+# last_time STEP: the seconds that a step took when it was done in full the last time; nothing if it never was.
+last_time() {
+  awk -F '\t' -v step="$1" '$1 == step { seconds = $2 } END { print seconds }' build/steps.tsv 2>/dev/null || true
+}
+
+# expected STEP: words on how long it will take.
+expected() {
+  local seconds
+  seconds=$(last_time "$1")
+  echo "${seconds:+, $seconds s the last time}"
+}
+
+# keep_time STEP SECONDS
+keep_time() { printf '%s\t%s\n' "$1" "$2" >>build/steps.tsv; }
+
+# progress WORDS: on a terminal one line that changes, else a line each half minute.
+progress_told=$SECONDS
+progress() {
+  if [ -t 1 ]; then
+    printf '\r   %s\033[K' "$1"
+  elif [ $((SECONDS - progress_told)) -ge 30 ]; then
+    note "$1"
+    progress_told=$SECONDS
+  fi
+}
+end_progress() { if [ -t 1 ]; then printf '\r\033[K'; fi; }
+
+# show_steps PRESET: of ninja's output, how far it is.
 show_steps() {
-  local line told=$SECONDS
+  local line
   while IFS= read -r line; do
-    if [[ ! $line =~ ^\[[0-9]+/[0-9]+\] ]]; then continue; fi
-    if [ -t 1 ]; then
-      printf '\r   preset %s: %s\033[K' "$1" "${BASH_REMATCH[0]}"
-    elif [ $((SECONDS - told)) -ge 30 ]; then
-      note "preset $1: ${BASH_REMATCH[0]}"
-      told=$SECONDS
-    fi
+    if [[ $line =~ ^\[[0-9]+/[0-9]+\] ]]; then progress "preset $1: building ${BASH_REMATCH[0]}$(expected "$1: build")"; fi
   done
-  if [ -t 1 ]; then printf '\r\033[K'; fi
+  end_progress
 }
 
 # build PRESET [TARGET...]
@@ -151,6 +181,7 @@ build() {
   if grep -q 'no work to do' "build/$preset.build.log"; then
     note "preset $preset: up to date, nothing to build"
   else
+    keep_time "$preset: build" $((SECONDS - started))
     note "preset $preset: built in $((SECONDS - started)) s"
   fi
 }
@@ -164,13 +195,39 @@ find_data() {
   note "real data: ${PALPATE_DATA:-none (PALPATE_DATA is not set; those tests are skipped)}"
 }
 
-# test_preset PRESET [CTEST OPTION...]: runs ctest, keeps its log, fails as it fails.
+# show_tests PRESET: of ctest's output, how far it is and what has failed.
+show_tests() {
+  local line failed=0
+  while IFS= read -r line; do
+    if [[ ! $line =~ ^\ *([0-9]+/[0-9]+)\ Test\ +#[0-9]+:\ ([^ ]+) ]]; then continue; fi
+    local done=${BASH_REMATCH[1]} name=${BASH_REMATCH[2]}
+    if [[ $line == *"***"* && $line != *"***Skipped"* ]]; then
+      failed=$((failed + 1))
+      end_progress
+      note "preset $1: $name failed"
+    fi
+    progress "preset $1: tested $done, $failed failed$(expected "$1: tests")"
+  done
+  end_progress
+}
+
+# test_preset PRESET [CTEST OPTION...]: runs ctest, keeps its log, fails as it fails; says what was slow, and how to run
+# alone what failed.
 test_preset() {
   local preset=$1 started=$SECONDS status=0
   shift
-  ctest --test-dir "build/$preset" --output-on-failure -j "$(jobs_that_fit)" "$@" \
-    >"build/$preset.test.log" 2>&1 || status=$?
-  if [ $status -ne 0 ]; then grep -vE '^ *[0-9]+/[0-9]+ Test .*Passed|^ +Start ' "build/$preset.test.log" || true; fi
+  rm -f "build/$preset"/times/*.tsv
+  ctest --test-dir "build/$preset" --output-on-failure -j "$(jobs_that_fit)" "$@" 2>&1 |
+    tee "build/$preset.test.log" | show_tests "$preset" || status=$?
+  if [ $status -eq 0 ]; then
+    keep_time "$preset: tests" $((SECONDS - started))
+  else
+    grep -vE '^ *[0-9]+/[0-9]+ Test .*Passed|^ +Start ' "build/$preset.test.log" || true
+    note "preset $preset: to run alone what failed:"
+    scripts/times.py --failed "build/$preset" | sed 's/^/     /'
+  fi
+  note "preset $preset: the slowest cases:"
+  scripts/times.py --slowest 5 "build/$preset" | sed 's/^/     /'
   note "preset $preset: $(grep -E 'tests passed|No tests' "build/$preset.test.log" || echo 'ctest did not finish') ($((SECONDS - started)) s)"
   return $status
 }
@@ -184,6 +241,40 @@ skipped() {
 # ctest's own last word on a preset.
 summary() {
   note "$1: $(grep -E 'tests passed' "build/$1.test.log" || echo 'ctest did not finish')"
+}
+
+# Sets `sanitized`, the preset of sanitized builds. With clang one build holds tests and fuzz targets; a script that sets
+# `fuzz` to no does without.
+need_sanitizers() {
+  fuzz=${fuzz:-yes}
+  if [ "$fuzz" = yes ]; then need_packages fuzz; fi
+  if [ "$fuzz" = yes ] && ! command -v clang++ >/dev/null; then
+    note "clang++ not found: no fuzz targets"
+    fuzz=no
+  fi
+  if [ "$fuzz" = yes ]; then sanitized=fuzz; else sanitized=asan; fi
+}
+
+# test_names PRESET NAME...: runs the cases of all test programs, and the other entries of ctest, whose names hold one of
+# these. Fails where one fails, or where there is none.
+test_names() {
+  local preset=$1 name program listed filter="" ran=0 status=0
+  shift
+  for name in "$@"; do filter+="*$name*:"; done
+  while read -r program; do
+    listed=$("$program" --gtest_list_tests --gtest_filter="$filter" | grep -c '^  ' || true)
+    if [ "$listed" -eq 0 ]; then continue; fi
+    ran=$((ran + listed))
+    note "$program --gtest_filter='$filter'"
+    "$program" --gtest_brief=1 --gtest_filter="$filter" || status=1
+  done < <(find "build/$preset/tests" -name '*_test' -type f -executable | sort)
+  listed=$(IFS='|'; echo "$*")
+  if ctest --test-dir "build/$preset" -N -R "$listed" | grep -q 'Test *#'; then
+    ran=$((ran + 1))
+    ctest --test-dir "build/$preset" --output-on-failure -R "$listed" || status=1
+  fi
+  if [ "$ran" -eq 0 ]; then fail "no test has a name that holds: $*"; fi
+  return $status
 }
 
 # fuzz_one NAME SECONDS: a fuzz target over its seeds in fuzz/corpus/NAME. Inputs that are found stay
