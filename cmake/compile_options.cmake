@@ -64,11 +64,10 @@ function(palpate_library target name)
   add_library(palpate::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  # The Python module is a shared object that holds it. What nothing can replace may be inlined as before.
-  if(PALPATE_BUILD_PYTHON)
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_compile_options(${target} PRIVATE -fno-semantic-interposition)
-  endif()
+  # The Python module is a shared object that holds it, and who installs Python's headers later need not compile all of
+  # it again. What nothing can replace may be inlined as before.
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   if(BUILD_SHARED_LIBS)
     target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map)
     set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN
