@@ -68,6 +68,8 @@ function(palpate_library target name)
   # it again. What nothing can replace may be inlined as before.
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+  # One precompiled header serves all of them, so none has a name of its own defined.
+  set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
   if(BUILD_SHARED_LIBS)
     target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map)
     set_target_properties(${target} PROPERTIES INSTALL_RPATH $ORIGIN
