@@ -5,7 +5,8 @@
 # scripts/check.sh PART...   these parts, in this order:
 #   sanitized  under ASan + UBSan every fuzz target for 5 s over its seeds, and every test but the long ones and those
 #              of what only computes
-#   programs   what runs beside other programs: the page in a browser, whole; ROS 2's topics between processes
+#   programs   in a release build what runs beside other programs: the page in a browser, whole, and ROS 2's topics
+#              between processes; and long cases of a quarter of a minute
 #   bare       the program without any optional library
 #   debug      every test and the benches in a Debug build
 #   threads    every test under TSan
@@ -50,7 +51,7 @@ check_sanitized() {
 check_programs() {
   configure release -DPALPATE_BUILD_TESTS=ON
   build release
-  test_preset release -R '^(page|dds)/'
+  test_preset release -R '^(page|dds)/|^(align|depth|io|scene)/long'
 }
 
 check_bare() {
@@ -139,7 +140,7 @@ parts=("$@")
 if [ $# -eq 0 ]; then parts=("${all[@]}"); fi
 for part in "${parts[@]}"; do
   if ! declare -F "check_$part" >/dev/null; then
-    sed -n '2,23s/^# \{0,1\}//p' "$0"
+    sed -n '2,21s/^# \{0,1\}//p' "$0"
     [[ "$part" == -h || "$part" == --help ]] || fail "no part is called '$part'"
     exit
   fi

@@ -133,20 +133,15 @@ configure() {
     { cat "build/$preset.configure.log" >&2; fail "cmake could not configure preset $preset"; }
 }
 
-# last_time STEP: the seconds that a step took when it was done in full the last time; nothing if it never was.
-last_time() {
-  awk -F '\t' -v step="$1" '$1 == step { seconds = $2 } END { print seconds }' build/steps.tsv 2>/dev/null || true
-}
+# keep_time STEP SECONDS PARTS: how long a step took, and of how many parts it was.
+keep_time() { printf '%s\t%s\t%s\n' "$1" "$2" "$3" >>build/steps.tsv; }
 
-# expected STEP: words on how long it will take.
-expected() {
-  local seconds
-  seconds=$(last_time "$1")
-  echo "${seconds:+, $seconds s the last time}"
+# time_left STEP PARTS: words on how long so many parts of a step will take, by the last time that it was done.
+time_left() {
+  awk -F '\t' -v step="$1" -v parts="$2" '
+    $1 == step { seconds = $2 / $3 * parts; known = 1 }
+    END { if (known) printf ", about %d s left", seconds }' build/steps.tsv 2>/dev/null || true
 }
-
-# keep_time STEP SECONDS
-keep_time() { printf '%s\t%s\n' "$1" "$2" >>build/steps.tsv; }
 
 # progress WORDS: on a terminal one line that changes, else a line each half minute.
 progress_told=$SECONDS
@@ -164,7 +159,10 @@ end_progress() { if [ -t 1 ]; then printf '\r\033[K'; fi; }
 show_steps() {
   local line
   while IFS= read -r line; do
-    if [[ $line =~ ^\[[0-9]+/[0-9]+\] ]]; then progress "preset $1: building ${BASH_REMATCH[0]}$(expected "$1: build")"; fi
+    if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      progress "preset $1: built ${BASH_REMATCH[1]}/${BASH_REMATCH[2]}$(
+        time_left "$1: build" $((BASH_REMATCH[2] - BASH_REMATCH[1])))"
+    fi
   done
   end_progress
 }
@@ -181,7 +179,7 @@ build() {
   if grep -q 'no work to do' "build/$preset.build.log"; then
     note "preset $preset: up to date, nothing to build"
   else
-    keep_time "$preset: build" $((SECONDS - started))
+    keep_time "$preset: build" $((SECONDS - started)) "$(grep -cE '^\[[0-9]+/' "build/$preset.build.log")"
     note "preset $preset: built in $((SECONDS - started)) s"
   fi
 }
@@ -195,18 +193,18 @@ find_data() {
   note "real data: ${PALPATE_DATA:-none (PALPATE_DATA is not set; those tests are skipped)}"
 }
 
-# show_tests PRESET: of ctest's output, how far it is and what has failed.
+# show_tests PRESET STEP: of ctest's output, how far it is and what has failed.
 show_tests() {
   local line failed=0
   while IFS= read -r line; do
-    if [[ ! $line =~ ^\ *([0-9]+/[0-9]+)\ Test\ +#[0-9]+:\ ([^ ]+) ]]; then continue; fi
-    local done=${BASH_REMATCH[1]} name=${BASH_REMATCH[2]}
+    if [[ ! $line =~ ^\ *([0-9]+)/([0-9]+)\ Test\ +#[0-9]+:\ ([^ ]+) ]]; then continue; fi
+    local done=${BASH_REMATCH[1]} all=${BASH_REMATCH[2]} name=${BASH_REMATCH[3]}
     if [[ $line == *"***"* && $line != *"***Skipped"* ]]; then
       failed=$((failed + 1))
       end_progress
       note "preset $1: $name failed"
     fi
-    progress "preset $1: tested $done, $failed failed$(expected "$1: tests")"
+    progress "preset $1: tested $done/$all, $failed failed$(time_left "$2" $((all - done)))"
   done
   end_progress
 }
@@ -214,13 +212,14 @@ show_tests() {
 # test_preset PRESET [CTEST OPTION...]: runs ctest, keeps its log, fails as it fails; says what was slow, and how to run
 # alone what failed.
 test_preset() {
-  local preset=$1 started=$SECONDS status=0
+  local preset=$1 started=$SECONDS status=0 step
   shift
+  step="$preset: tests $*"
   rm -f "build/$preset"/times/*.tsv
   ctest --test-dir "build/$preset" --output-on-failure -j "$(jobs_that_fit)" "$@" 2>&1 |
-    tee "build/$preset.test.log" | show_tests "$preset" || status=$?
+    tee "build/$preset.test.log" | show_tests "$preset" "$step" || status=$?
   if [ $status -eq 0 ]; then
-    keep_time "$preset: tests" $((SECONDS - started))
+    keep_time "$step" $((SECONDS - started)) "$(grep -cE '^ *[0-9]+/[0-9]+ Test' "build/$preset.test.log")"
   else
     grep -vE '^ *[0-9]+/[0-9]+ Test .*Passed|^ +Start ' "build/$preset.test.log" || true
     note "preset $preset: to run alone what failed:"
