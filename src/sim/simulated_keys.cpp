@@ -103,7 +103,7 @@ struct Key {
 };
 
 using Text = const std::string&;
-constexpr std::array<Key, 21> kKeys = {{
+constexpr std::array<Key, 24> kKeys = {{
     {"noise", [](SimulatedSetup& s, Text v) { set_noise(s.camera.noise, v); }},
     {"sigma",
      [](SimulatedSetup& s, Text v) {
@@ -113,6 +113,10 @@ constexpr std::array<Key, 21> kKeys = {{
     {"curl", [](SimulatedSetup& s, Text v) { s.camera.noise.curl = number(v); }},
     {"mixed", [](SimulatedSetup& s, Text v) { s.camera.noise.mixed = number(v); }},
     {"pattern", [](SimulatedSetup& s, Text v) { s.camera.noise.pattern = number(v); }},
+    {"correlation",
+     [](SimulatedSetup& s, Text v) { s.camera.noise.correlation = within(v, 0, 30); }},
+    {"smoothing", [](SimulatedSetup& s, Text v) { s.camera.noise.smoothing = whole(v); }},
+    {"hops", [](SimulatedSetup& s, Text v) { s.camera.noise.hops = number(v); }},
     {"holes", [](SimulatedSetup& s, Text v) { s.camera.noise.holes = number(v); }},
     {"seed",
      [](SimulatedSetup& s, Text v) { s.camera.noise.seed = static_cast<std::uint64_t>(whole(v)); }},

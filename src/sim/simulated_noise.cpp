@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/numbers.hpp"
+#include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -17,6 +18,7 @@ constexpr float kDisparityScale = 525 * 0.075f;  // focal length times base line
 constexpr float kKinectStep = 0.125f;            // of disparity, pixels, as the first Kinect has it
 constexpr std::uint64_t kSilhouetteStream = 0x9e3779b97f4a7c15u;
 constexpr std::uint64_t kPatternStream = 0xc2b2ae3d27d4eb4fu;
+constexpr std::uint64_t kHopStream = 0xd6e8feb86659fd93u;
 constexpr std::uint64_t kRowStream = 0x165667b19e3779f9u;
 constexpr int kQuantileBits = 16;
 
@@ -62,7 +64,9 @@ std::vector<float> half_gaussian(double blur) {
   return taps;
 }
 
-double blur_of(NoiseKind kind) {
+// The correlation of white noise after a Gaussian blur of s pixels is 2 sqrt(pi) s.
+double blur_of(NoiseKind kind, double correlation) {
+  if (correlation > 0) return correlation / (2 * std::sqrt(std::numbers::pi));
   if (kind == NoiseKind::blurred) return 2;
   return kind == NoiseKind::quantised ? 4 : 0;
 }
@@ -95,6 +99,14 @@ float row_offset(std::uint64_t seed, std::uint64_t row) {
   return static_cast<float>(0.5 * Random(stream(seed ^ kRowStream, row)).uniform() - 0.25);
 }
 
+// What a whole frame is off by, m: most are not.
+double hop_of(const SimulatedNoiseOptions& options, std::uint64_t frame) {
+  constexpr double kShare = 0.25;  // of frames that are off; judgement
+  Random random(stream(options.seed ^ kHopStream, frame));
+  const double drawn = random.uniform();
+  return drawn < kShare ? options.hops * (2 * random.uniform() - 1) : 0;
+}
+
 void check(const SimulatedNoiseOptions& options) {
   struct Bounded {
     const char* what;
@@ -105,6 +117,9 @@ void check(const SimulatedNoiseOptions& options) {
                                Bounded{"a curl (m)", options.curl, -0.1, 0.1},
                                Bounded{"a footprint of mixed pixels", options.mixed, 0, 1},
                                Bounded{"a pattern (m)", options.pattern, 0, 0.1},
+                               Bounded{"a correlation (pixels)", options.correlation, 0, 30},
+                               Bounded{"a smoothing (pixels)", 1.0 * options.smoothing, 0, 15},
+                               Bounded{"hops (m)", options.hops, 0, 0.1},
                                Bounded{"a share of holes", options.holes, 0, 0.9}}) {
     if (range.value >= range.least && range.value <= range.most) continue;
     throw Error(fmt::format("a simulated camera cannot have {} of {:g}; give {:g} to {:g}",
@@ -121,7 +136,7 @@ NoiseModel kinect_like_noise() {
 }
 
 SimulatedNoise::SimulatedNoise(const SimulatedNoiseOptions& options)
-    : options_(options), taps_(half_gaussian(blur_of(options.kind))) {
+    : options_(options), taps_(half_gaussian(blur_of(options.kind, options.correlation))) {
   check(options);
   if (options.kind != NoiseKind::none || options.pattern > 0) quantiles_ = normal_quantiles();
 }
@@ -189,11 +204,37 @@ void SimulatedNoise::disturb_rims(int width, int height, std::uint64_t frame,
   }
 }
 
+// Means over squares, of pixels that differ from the middle one by less than 2 %.
+void SimulatedNoise::smooth(int width, int height, std::vector<float>& depth) {
+  constexpr float kSame = 0.02F;  // of the depth; judgement
+  exact_ = depth;
+  const sim::DepthView view{width, height, exact_.data()};
+  const int reach = options_.smoothing;
+  detail::parallel_each(static_cast<std::size_t>(height), 8, [&](std::size_t row) {
+    const int v = static_cast<int>(row);
+    for (int u = 0; u < width; ++u) {
+      const float middle = view.at(u, v);
+      float sum = 0;
+      int count = 0;
+      for (int y = std::max(v - reach, 0); y <= std::min(v + reach, height - 1); ++y) {
+        for (int x = std::max(u - reach, 0); x <= std::min(u + reach, width - 1); ++x) {
+          const float z = view.at(x, y);
+          if (std::abs(z - middle) > kSame * middle) continue;
+          sum += z;
+          ++count;
+        }
+      }
+      if (middle > 0) depth[row * static_cast<std::size_t>(width) + u] = sum / count;
+    }
+  });
+}
+
 // The same in all frames.
-void SimulatedNoise::add_pattern(std::vector<float>& depth) {
+void SimulatedNoise::add_pattern(int width, int height, std::vector<float>& depth) {
   if (pattern_.size() != depth.size()) {
     noise_.resize(depth.size());
     draw(stream(options_.seed ^ kPatternStream, 0));
+    if (options_.correlation > 0 && !taps_.empty()) blur(width, height);
     pattern_ = noise_;
   }
   const auto deviation = static_cast<float>(options_.pattern);
@@ -204,7 +245,7 @@ void SimulatedNoise::add_pattern(std::vector<float>& depth) {
 
 void SimulatedNoise::apply(int width, int height, std::uint64_t frame, std::vector<float>& depth) {
   disturb_rims(width, height, frame, depth);
-  if (options_.pattern > 0) add_pattern(depth);
+  if (options_.pattern > 0) add_pattern(width, height, depth);
   const std::vector<float>& noise = unit_noise(width, height, frame);
   const auto step = static_cast<float>(options_.rounding);
   const float steps = step > 0 ? 1 / step : 0;
@@ -213,18 +254,20 @@ void SimulatedNoise::apply(int width, int height, std::uint64_t frame, std::vect
   const bool quantised = terraced || options_.kind == NoiseKind::quantised;
   const float scale =
       kDisparityScale / (terraced ? static_cast<float>(options_.disparity_step) : kKinectStep);
+  const auto hop = static_cast<float>(options_.hops > 0 ? hop_of(options_, frame) : 0);
   const auto columns = static_cast<std::size_t>(width);
   for (std::size_t first = 0; first < depth.size(); first += columns) {
     const float offset = terraced ? row_offset(options_.seed, first / columns) : 0;
     for (std::size_t i = first; i < first + columns; ++i) {
       const float exact = depth[i];
-      float z = exact + static_cast<float>(options_.model.sigma(exact)) * noise[i];
+      float z = exact + hop + static_cast<float>(options_.model.sigma(exact)) * noise[i];
       z = std::max(least, z);
       if (quantised) z = quantise_disparity(z, scale, offset);
       if (step > 0) z = step * std::rint(steps * z);
       depth[i] = exact > 0 ? z : 0;
     }
   }
+  if (options_.smoothing > 0) smooth(width, height, depth);
   if (options_.holes > 0) {
     sim::punch_holes({width, height, depth.data()}, options_, frame, depth.data());
   }

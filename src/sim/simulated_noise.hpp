@@ -29,6 +29,14 @@ struct SimulatedNoiseOptions {
   std::uint64_t seed = 0;
 
   // Further faults, all off by default; docs/simulated_cameras.md says which sensors have them.
+  /// NoiseModel::correlation of the noise, and of the pattern, 0 or 1-30: white noise after a
+  /// Gaussian blur of correlation / (2 sqrt(pi)) pixels. 0: `kind` says it.
+  double correlation = 0;
+  /// Depths are means over a square of pixels with so many to each side, 0-15, of those that differ
+  /// by less than 2 %: what phones and drivers' spatial filters do. After all else but holes.
+  int smoothing = 0;
+  /// Each frame is off as a whole: three in four not at all, one by up to this, m, 0-0.1.
+  double hops = 0;
   /// Disparities are whole multiples of it after the noise, pixels of a camera with 525 pixels of
   /// focal length and 75 mm of base line, 0-8; each row is off by up to a quarter of it before they
   /// are rounded, by the same in all frames.
@@ -64,9 +72,10 @@ class SimulatedNoise {
 
  private:
   void disturb_rims(int width, int height, std::uint64_t frame, std::vector<float>& depth);
-  void add_pattern(std::vector<float>& depth);
+  void add_pattern(int width, int height, std::vector<float>& depth);
   void draw(std::uint64_t seed);
   void blur(int width, int height);
+  void smooth(int width, int height, std::vector<float>& depth);
 
   SimulatedNoiseOptions options_;
   std::vector<float> quantiles_;  // of the normal distribution, evenly spaced in probability

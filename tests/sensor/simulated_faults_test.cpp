@@ -199,6 +199,66 @@ TEST(SimulatedFaults, HolesComeAndGoWithinAFewFrames) {
   }
 }
 
+std::vector<float> flat(float z) {
+  return std::vector<float>(kAll, z);
+}
+
+TEST(SimulatedFaults, OneFrameInFourHopsAsAWhole) {
+  SimulatedNoiseOptions options;
+  options.kind = NoiseKind::none;
+  options.rounding = 0;
+  options.hops = 0.01;
+  int off = 0;
+  for (std::uint64_t frame = 0; frame < 200; ++frame) {
+    const std::vector<float> depth = seen(options, flat(kNear), frame);
+    ASSERT_EQ(std::set<float>(depth.begin(), depth.end()).size(), 1u);
+    EXPECT_LE(std::abs(depth[0] - kNear), 0.01001f);
+    off += depth[0] == kNear ? 0 : 1;
+  }
+  EXPECT_GT(off, 30);
+  EXPECT_LT(off, 70);
+}
+
+// The variance of the mean over a large square is the sum of the autocorrelation over its pixels.
+TEST(SimulatedFaults, CorrelationIsThatOfNoiseModels) {
+  constexpr int kSide = 60;
+  SimulatedNoiseOptions options;
+  options.rounding = 0;
+  options.correlation = 8;
+  options.model.coefficients = {1e-3, 0, 0};
+  double squares = 0;
+  int means = 0;
+  for (std::uint64_t frame = 0; frame < 40; ++frame) {
+    const std::vector<float> depth = seen(options, flat(kFar), frame);
+    for (int top = 0; top + kSide <= kDown; top += kSide) {
+      for (int left = 0; left + kSide <= kAcross; left += kSide, ++means) {
+        double sum = 0;
+        for (int v = top; v < top + kSide; ++v) {
+          for (int u = left; u < left + kSide; ++u) sum += depth[at(u, v)] - kFar;
+        }
+        squares += sum * sum / (kSide * kSide);
+      }
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares / means) / 1e-3, 8, 0.8);
+}
+
+// Noise goes, the jump stays.
+TEST(SimulatedFaults, SmoothingKeepsJumps) {
+  SimulatedNoiseOptions options;
+  options.rounding = 0;
+  const auto roughness = [&](int smoothing) {
+    options.smoothing = smoothing;
+    const std::vector<float> depth = seen(options, step_edge(), 1);
+    EXPECT_NEAR(depth[at(kEdge - 1, 50)], kNear, 0.01);
+    EXPECT_NEAR(depth[at(kEdge, 50)], kFar, 0.01);
+    double sum = 0;
+    for (int u = 100; u < 300; ++u) sum += std::abs(depth[at(u, 100)] - kFar);
+    return sum;
+  };
+  EXPECT_LT(roughness(3), 0.4 * roughness(0));
+}
+
 TEST(SimulatedFaults, AreTheSameForOneSeedAndNumberAndNoneWhenOff) {
   SimulatedNoiseOptions options;
   options.seed = 8;

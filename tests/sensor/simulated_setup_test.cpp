@@ -34,18 +34,19 @@ double deviation(const std::string& keys) {
 
 TEST(SimulatedKeys, ChangeWhatIsSeen) {
   const std::string plain = "approach,width=160,seed=2";
-  for (const char* key :
-       {"sigma=0.004", "terraces=0.125", "curl=0.004", "mixed=0.5", "pattern=0.002", "holes=0.05",
-        "noise=tof", "noise=stereo", "noise=structured"}) {
+  for (const char* key : {"sigma=0.004", "terraces=0.125", "curl=0.004", "mixed=0.5",
+                          "pattern=0.002", "holes=0.05", "correlation=8", "smoothing=2",
+                          "hops=0.01", "noise=tof", "noise=stereo", "noise=structured"}) {
     EXPECT_NE(frame_of(plain), frame_of(plain + "," + key)) << key;
   }
   EXPECT_EQ(frame_of(plain), frame_of(plain + ",terraces=0,curl=0,mixed=0,pattern=0,holes=0"));
 }
 
 TEST(SimulatedKeys, SayWhichValuesMakeNoSense) {
-  for (const char* wrong : {"sigma=-0.001", "sigma=0.2", "terraces=-1", "terraces=9", "curl=0.2",
-                            "mixed=3", "pattern=-1", "holes=1", "repeat=1", "repeat=-1", "jump=-1",
-                            "tilt=91", "noise=laser", "width=4", "width=5000", "width=20.5"}) {
+  for (const char* wrong :
+       {"sigma=-0.001", "sigma=0.2", "terraces=-1", "terraces=9", "curl=0.2", "mixed=3",
+        "pattern=-1", "correlation=40", "smoothing=16", "hops=0.2", "holes=1", "repeat=1",
+        "repeat=-1", "jump=-1", "tilt=91", "noise=laser", "width=4", "width=5000", "width=20.5"}) {
     EXPECT_THROW((void)open_simulated(std::string("table,") + wrong, nullptr), Error) << wrong;
   }
 }
