@@ -1,0 +1,79 @@
+// Counts what hands felt beside what the ideal proxy feels.
+#include <algorithm>
+
+#include "eyes/view.hpp"
+
+namespace palpate::eyes {
+namespace {
+
+constexpr double kHeld = 0.5;         // N
+constexpr int kHeldTicks = 50;        // 50 ms
+constexpr double kOutside = 0.01;     // m, of the hand from all solids and all that is seen
+constexpr int kPixels = 8;            // around the hand
+constexpr double kThrown = 5;         // N
+constexpr double kThrownIdeal = 2;    // N
+constexpr double kStep = 1;           // N in a tick
+constexpr double kAsked = 1;          // N of the ideal
+constexpr double kLost = 0.2;         // of it
+constexpr double kSameDepth = 0.004;  // m: the camera sees the ideal proxy
+
+/// Is the hand in free air, in front of all that the camera sees around it?
+bool is_before_all(const View& view, const Picture& picture, const Vector3d& hip) {
+  if (distance_and_normal(view.scene, hip, 0).value < kOutside) return false;
+  const double seen = picture.depth_at(hip, kPixels);
+  return seen > picture.depth_of(hip) + kOutside;
+}
+
+}  // namespace
+
+Score& Score::operator+=(const Score& other) {
+  hands += other.hands;
+  held += other.held;
+  most = std::max(most, other.most);
+  hidden += other.hidden;
+  caught += other.caught;
+  thrown += other.thrown;
+  steps += other.steps;
+  asked += other.asked;
+  lost += other.lost;
+  asked_in_shadow += other.asked_in_shadow;
+  lost_in_shadow += other.lost_in_shadow;
+  microseconds += other.microseconds;
+  return *this;
+}
+
+Score score(const View& view, const Picture& picture, const Hand& hand, const Felt& felt) {
+  Score score;
+  score.hands = 1;
+  score.microseconds = felt.microseconds;
+  score.hidden = hand.hidden ? 1 : 0;
+  int run = 0;
+  bool shadowed = false;  // the contact has been where the camera sees nothing
+  bool astray = false;    // contact began where the camera sees nothing
+  for (std::size_t i = 1; i < hand.hip.size(); ++i) {
+    const double now = felt.force[i].norm();
+    const double ideal = felt.ideal[i].norm();
+    const bool forbidden =
+        hand.hidden || (ideal < kHeld && is_before_all(view, picture, hand.hip[i]));
+    run = forbidden && now > kHeld ? run + 1 : 0;
+    if (run >= kHeldTicks) {
+      (hand.hidden ? score.caught : score.held) = 1;
+      score.most = std::max(score.most, now);
+    }
+    if (hand.hidden) continue;
+    const Vector3d& at = felt.ideal_proxy[i];
+    const bool seen = std::abs(picture.depth_of(at) - picture.depth_at(at, 0)) < kSameDepth;
+    shadowed = ideal > 0 && (shadowed || !seen);
+    astray = astray || (ideal > 0 && felt.ideal[i - 1].norm() == 0 && !seen);
+    if (astray) continue;
+    if (now > kThrown && ideal < kThrownIdeal) score.thrown = 1;
+    const double step = (felt.force[i] - felt.force[i - 1]).norm();
+    if (step > kStep && step > 2 * (felt.ideal[i] - felt.ideal[i - 1]).norm()) ++score.steps;
+    if (ideal < kAsked) continue;
+    (shadowed ? score.asked_in_shadow : score.asked) += 1;
+    if (now < kLost * ideal) (shadowed ? score.lost_in_shadow : score.lost) += 1;
+  }
+  return score;
+}
+
+}  // namespace palpate::eyes

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/stage.hpp"
+#include "sim/simulated_camera.hpp"
+
+/// Scenes before one depth camera, the hands that meet them, and what these feel.
+namespace palpate::eyes {
+
+using bench::kTick;
+using bench::kUp;
+using Eigen::Vector3d;
+
+inline constexpr double kK = 500;     ///< N/m; the stiffness of the other benches
+inline constexpr double kWarm = 0.5;  ///< s before hands move: filters over time are full
+
+/// How what the camera sees becomes a surface.
+enum class Feed {
+  still,   ///< a stream from a camera that stands
+  moving,  ///< a stream from a camera that swings and tells its pose
+  single,  ///< one frame
+  points,  ///< the exact points of one frame with their exact normals, as a cloud
+};
+
+/// A drawn scene and its camera. World frame: a table or floor is z = 0, the camera is on the side
+/// of negative x and looks at the origin.
+struct View : bench::Stage {
+  /// Draws the camera's place.
+  explicit View(std::uint64_t number);
+
+  /// `half`: half sizes, z upright before `turn` (rad) about the vertical and `tilt` about y.
+  void block(const Vector3d& center, const Vector3d& half, double turn = 0, double tilt = 0);
+  /// Around `axis`.
+  void rod(const Vector3d& center, const Vector3d& axis, double radius, double length);
+  void ball(const Vector3d& center, double radius);
+
+  SimulatedCameraOptions camera;
+  Feed feed = Feed::still;
+};
+
+struct Kind {
+  std::string name;
+  void (*draw)(View&);
+};
+
+/// The kinds of scenes, each drawn by a view's seed.
+[[nodiscard]] const std::vector<Kind>& kinds();
+
+/// The noise of a name: "a", "b" and "c" as NoiseKind has them, "structured", "stereo" and "tof" as
+/// simulated cameras have them, and "waves": a correlation of 8 to 18 pixels, terraces and a fixed
+/// pattern, smoothed by up to 3 pixels, with frames that hop by up to 10 mm.
+/// @throws Error for any other.
+void set_noise(const std::string& name, View& view);
+
+/// What the camera sees without noise.
+struct Picture {
+  explicit Picture(const View& view);
+
+  /// Depth of the pixel that sees x, and of those beside it (m): the least within `around` pixels;
+  /// 0 outside of the image.
+  [[nodiscard]] double depth_at(const Vector3d& x, int around) const;
+  /// Along the optical axis, m.
+  [[nodiscard]] double depth_of(const Vector3d& x) const { return (T_camera_world * x).z(); }
+  [[nodiscard]] Vector3d point(int u, int v) const;
+
+  CameraModel camera;
+  Eigen::Isometry3d T_camera_world;
+  std::vector<float> depth;
+};
+
+/// A hand's path from kWarm on, tick by tick.
+struct Hand {
+  std::string kind;           ///< slide, poke, aside, behind
+  std::vector<Vector3d> hip;  ///< m
+  bool hidden = false;        ///< it goes where the camera sees nothing: nothing may hold it
+};
+
+/// Draws a hand's path; empty where the scene has no place for it.
+[[nodiscard]] Hand draw_hand(View& view, const Picture& picture, const std::string& kind);
+
+/// What one hand felt, and what the ideal proxy on the exact solids feels.
+struct Felt {
+  std::vector<Vector3d> force, ideal;        ///< N
+  std::vector<Vector3d> proxy, ideal_proxy;  ///< m
+  double microseconds = 0;                   ///< of a step, the mean
+};
+
+/// Plays all hands at once.
+[[nodiscard]] std::vector<Felt> play(const View& view, const std::vector<Hand>& hands);
+
+/// Counts over hands.
+struct Score {
+  double hands = 0;
+  double held = 0;  ///< hands held in free air in front of all that is seen, above 0.5 N for 50 ms
+  double most = 0;  ///< largest force there, N
+  double hidden = 0;           ///< hands that go behind things
+  double caught = 0;           ///< of them those that something holds
+  double thrown = 0;           ///< hands that feel more than 5 N where the ideal feels less than 2
+  double steps = 0;            ///< changes of more than 1 N in a tick that the ideal has not
+  double asked = 0;            ///< ticks in which the ideal feels 1 N, all of its contact seen
+  double lost = 0;             ///< of them those with less than a fifth of it
+  double asked_in_shadow = 0;  ///< the same where a part of it was not
+  double lost_in_shadow = 0;
+  double microseconds = 0;
+
+  Score& operator+=(const Score& other);
+};
+
+[[nodiscard]] Score score(const View& view, const Picture& picture, const Hand& hand,
+                          const Felt& felt);
+
+}  // namespace palpate::eyes
