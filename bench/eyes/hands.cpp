@@ -142,6 +142,7 @@ std::vector<Vector3d> behind(View& view, const Picture& picture, const Place& pl
   }
   const Vector3d goal = back - view.between(0.012, 0.03) * place.to_eye;
   if (clearance(view, goal) < 0.01) return {};
+  const double deep = std::min(0.004, 0.4 * (back - place.at).norm());
   const Vector3d side = across(view, place.to_eye);
   for (double out = 0.02; out < 0.25; out += 0.01) {
     const Vector3d beside = goal + out * side;
@@ -149,7 +150,7 @@ std::vector<Vector3d> behind(View& view, const Picture& picture, const Place& pl
     if (!(seen > picture.depth_of(beside) + 0.01)) continue;
     if (!is_clear(view, beside, goal, 0.006)) return {};
     Path path(beside);
-    path.wait(0.05).to(goal, 0.15).to(back + 0.004 * place.to_eye, 0.06).wait(0.15);
+    path.wait(0.05).to(goal, 0.15).to(back + deep * place.to_eye, 0.06).wait(0.15);
     path.to(goal, 0.1).to(beside, 0.15).wait(0.1);
     return path.take();
   }

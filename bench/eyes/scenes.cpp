@@ -8,6 +8,16 @@
 namespace palpate::eyes {
 namespace {
 
+/// What stands on the floor reaches into it: an ideal proxy would go into a seam.
+void root(SimulatedSolid& solid) {
+  constexpr double kRoot = 0.02;  // m
+  Eigen::Isometry3d& pose = solid.solid.T_world_solid;
+  const bool upright = std::abs(pose.linear()(2, 2)) > 0.999;
+  if (!upright || std::abs(pose.translation().z() - solid.solid.size.z()) > 1e-6) return;
+  pose.translation().z() -= kRoot / 2;
+  solid.solid.size.z() += kRoot / 2;
+}
+
 void floor(View& view) {
   view.scene.solids.emplace_back();
 }
@@ -20,8 +30,7 @@ void stairs(View& view) {
   const Vector3d along(std::cos(turn), std::sin(turn), 0);
   for (int k = 0; k < 4; ++k) {
     const double height = rise * (k + 1);
-    view.block((0.02 + tread * k) * along + 0.5 * height * kUp + 0.5 * tread * along,
-               {tread / 2, 0.1, height / 2}, turn);
+    view.block((0.02 + tread * k + 0.1) * along + 0.5 * height * kUp, {0.1, 0.1, height / 2}, turn);
   }
 }
 
@@ -167,10 +176,11 @@ void View::block(const Vector3d& center, const Vector3d& half, double turn, doub
   solid.solid.T_world_solid.linear() =
       (Eigen::AngleAxisd(turn, kUp) * Eigen::AngleAxisd(tilt, Vector3d::UnitY()))
           .toRotationMatrix();
+  root(solid);
 }
 
 void View::rod(const Vector3d& center, const Vector3d& axis, double radius, double length) {
-  add(SolidKind::cylinder, center, {radius, radius, length / 2}, axis);
+  root(add(SolidKind::cylinder, center, {radius, radius, length / 2}, axis));
 }
 
 void View::ball(const Vector3d& center, double radius) {

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kHeld = 0.5;         // N
 constexpr int kHeldTicks = 50;        // 50 ms
+constexpr int kFading = 100;          // 100 ms: springs end softly in five times 20 ms
 constexpr double kOutside = 0.01;     // m, of the hand from all solids and all that is seen
 constexpr int kPixels = 8;            // around the hand
 constexpr double kThrown = 5;         // N
@@ -16,6 +17,17 @@ constexpr double kStep = 1;           // N in a tick
 constexpr double kAsked = 1;          // N of the ideal
 constexpr double kLost = 0.2;         // of it
 constexpr double kSameDepth = 0.004;  // m: the camera sees the ideal proxy
+
+/// Is the straight way from the proxy to the hand in one free space?
+bool is_way_free(const View& view, const Vector3d& proxy, const Vector3d& hip) {
+  constexpr int kPlaces = 200;
+  constexpr double kGrazes = 3e-4;  // m: at the very edge either face may hold
+  for (int k = 10; k <= kPlaces; ++k) {
+    const Vector3d x = proxy + k * 1.0 / kPlaces * (hip - proxy);
+    if (distance_and_normal(view.scene, x, 0).value < kGrazes) return false;
+  }
+  return true;
+}
 
 /// Is the hand in free air, in front of all that the camera sees around it?
 bool is_before_all(const View& view, const Picture& picture, const Vector3d& hip) {
@@ -48,14 +60,17 @@ Score score(const View& view, const Picture& picture, const Hand& hand, const Fe
   score.microseconds = felt.microseconds;
   score.hidden = hand.hidden ? 1 : 0;
   int run = 0;
-  bool shadowed = false;  // the contact has been where the camera sees nothing
-  bool astray = false;    // contact began where the camera sees nothing
+  int free_for = kFading;  // ticks since the ideal let go
+  bool shadowed = false;   // the contact has been where the camera sees nothing
+  bool astray = false;     // contact began where the camera sees nothing
   for (std::size_t i = 1; i < hand.hip.size(); ++i) {
     const double now = felt.force[i].norm();
     const double ideal = felt.ideal[i].norm();
+    free_for = ideal < kHeld ? free_for + 1 : 0;
     const bool forbidden =
-        hand.hidden || (ideal < kHeld && is_before_all(view, picture, hand.hip[i]));
-    run = forbidden && now > kHeld ? run + 1 : 0;
+        hand.hidden || (free_for > kFading && is_before_all(view, picture, hand.hip[i]));
+    const bool held = forbidden && now > kHeld;
+    run = held && (hand.hidden || is_way_free(view, felt.proxy[i], hand.hip[i])) ? run + 1 : 0;
     if (run >= kHeldTicks) {
       (hand.hidden ? score.caught : score.held) = 1;
       score.most = std::max(score.most, now);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace palpate {
 
@@ -154,17 +155,20 @@ class Pending {
 
 class Sweeper {
  public:
-  Sweeper(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept
+  Sweeper(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+          bool within) noexcept
       : probe_(probe),
         from_(from),
         way_(to - from),
         length_(way_.norm()),
         leaf_(probe.traits().resolution > 0 ? probe.traits().resolution
                                             : kBracket * probe.radius()),
-        spent_before_(probe.work()) {}
+        spent_before_(probe.work()),
+        within_(within) {}
 
   [[nodiscard]] Sweep run() noexcept {
-    const Sweep result = search();
+    Sweep result = search();
+    result.within = within_;
     probe_.swept += probe_.work() - spent_before_;
     return result;
   }
@@ -187,13 +191,14 @@ class Sweeper {
       if (spent()) return {Sweep::End::truncated, at(free_until)};
       const Interval interval = pending.pop();
       const bool certain = !known_busy && ball_is_free(interval);
+      if (certain) within_ = behind_ = false;
       known_busy = false;
       if (!certain && half_length(interval) >= leaf_ && !pending.full()) {
         pending.push_halves(interval);
         continue;
       }
       const double solid = certain ? -1 : solid_end(interval);
-      if (solid >= 0) return {Sweep::End::hit, at(last_free(free_until, solid))};
+      if (solid >= 0) return hit(free_until, solid);
       free_until = interval.end;
     }
     return {Sweep::End::clear, at(1)};
@@ -205,18 +210,26 @@ class Sweeper {
 
   // Where in the leaf it is solid; -1 where it is free.
   [[nodiscard]] double solid_end(const Interval& leaf) noexcept {
-    if (probe_.inside(at(leaf.middle()))) return leaf.middle();
-    if (probe_.inside(at(leaf.end))) return leaf.end;
+    if (stops(at(leaf.middle()))) return leaf.middle();
+    if (stops(at(leaf.end))) return leaf.end;
     return -1;
   }
 
-  [[nodiscard]] double last_free(double free, double solid) noexcept {
+  [[nodiscard]] bool stops(const Eigen::Vector3d& place) noexcept {
+    const Sample here = probe_.sample(place);
+    const bool from_behind = std::exchange(behind_, here.behind);
+    const bool solid = !(here.value > 0);
+    within_ = solid && (within_ || (from_behind && here.gradient.dot(way_) > 0));
+    return solid && !within_;
+  }
+
+  [[nodiscard]] Sweep hit(double free, double solid) noexcept {
     for (int i = 0; i < kBisections; ++i) {
       if ((solid - free) * length_ <= kBracket * probe_.radius()) break;
       const double middle = 0.5 * (free + solid);
       (probe_.inside(at(middle)) ? solid : free) = middle;
     }
-    return free;
+    return {Sweep::End::hit, at(free), at(solid)};
   }
 
   Probe& probe_;
@@ -225,9 +238,16 @@ class Sweeper {
   double length_;
   double leaf_;
   int spent_before_;
+  bool within_;          // in a surface that was entered from behind
+  bool behind_ = false;  // was the last place behind a surface?
 };
 
 }  // namespace
+
+std::optional<SurfacePoint> land(Probe& probe, const Sweep& hit) noexcept {
+  const std::optional<SurfacePoint> found = project(probe, hit.position);
+  return found ? found : project(probe, hit.solid);
+}
 
 bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
   const int before = probe.work();
@@ -236,8 +256,9 @@ bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3
   return free;
 }
 
-Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-  return Sweeper{probe, from, to}.run();
+Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+            bool within) noexcept {
+  return Sweeper{probe, from, to, within}.run();
 }
 
 Sweep first_contact(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {

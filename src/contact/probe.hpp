@@ -111,7 +111,13 @@ struct Sweep {
   };
   End end = End::clear;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d solid = Eigen::Vector3d::Zero();     ///< the solid place of a hit, m
+  bool within = false;  ///< did it end in a surface that it entered from behind?
 };
+
+/// Brings the end of a hit onto the surface: from its free place or, where that is behind a surface
+/// that holds towards the other side alone and has no gradient, from the solid one.
+[[nodiscard]] std::optional<SurfacePoint> land(Probe& probe, const Sweep& hit) noexcept;
 
 /// One ball around the whole way: true if it is certainly free.
 [[nodiscard]] bool way_is_free(Probe& probe, const Eigen::Vector3d& from,
@@ -120,8 +126,11 @@ struct Sweep {
 /// First contact on the way (docs/method.md 3.1): bisection into balls that are free for certain
 /// and leaves shorter than the field's resolution, whose ends are sampled. No solid chord longer
 /// than the resolution is missed. `from` is taken to be free.
-[[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from,
-                          const Eigen::Vector3d& to) noexcept;
+///
+/// What holds towards its eye alone stops nobody who comes out of it from behind: a way that enters
+/// it where the field rises passes, until it is free again. `within`: it begins in such a surface.
+[[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                          bool within = false) noexcept;
 
 /// way_is_free(), and sweep() if it is not.
 [[nodiscard]] Sweep first_contact(Probe& probe, const Eigen::Vector3d& from,

@@ -106,11 +106,11 @@ void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& h
 // Free space: to the hand, or to the first contact on the way.
 void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
-  if (probe.inside(position_)) return touch(probe, position_, hip);
-  const Sweep way = sweep(probe, position_, hip);
+  if (!within_ && probe.inside(position_)) return touch(probe, position_, hip);
+  const Sweep way = sweep(probe, position_, hip, within_);
   if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
-  release(way.position);
+  release(way.position, way.within);
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
@@ -131,8 +131,9 @@ void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
   spring_.begin(initial_stiffness(place, hip));
 }
 
-void Proxy::Inside::release(const Eigen::Vector3d& place) noexcept {
+void Proxy::Inside::release(const Eigen::Vector3d& place, bool within) noexcept {
   position_ = place;
+  within_ = within;
   touch_.normal.setZero();
   spring_.rest();
   touch_.touching = false;
@@ -198,9 +199,9 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   search_.cut_short = false;
   if (at || !(here.value > 0)) return at;
   const Sweep way = first_contact(probe, position_, hip);
-  if (way.end == Sweep::End::hit) return project(probe, way.position);
+  if (way.end == Sweep::End::hit) return land(probe, way);
   if (way.end == Sweep::End::clear) {
-    release(hip);
+    release(hip, way.within);
   } else {
     cut_short(contact);
     position_ = way.position;
@@ -214,7 +215,7 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
     cut_short(contact);
   }
   if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
-    release(motion.at.position);
+    release(motion.at.position, motion.within);
     return false;
   }
   if (motion.end == Slide::End::unfinished) {

@@ -48,7 +48,7 @@ class Proxy::Inside {
 
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
-  void release(const Eigen::Vector3d& place) noexcept;
+  void release(const Eigen::Vector3d& place, bool within = false) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
@@ -76,6 +76,7 @@ class Proxy::Inside {
   double radius_ = 0;              // R where it was last known, m
   Search search_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
+  bool within_ = false;                    // free, in a surface that it entered from behind
   bool started_ = false;
   bool fault_ = false;
 };

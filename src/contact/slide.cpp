@@ -74,7 +74,7 @@ class Slider {
     const Sweep way = first_contact(probe_, from, hip_);
     if (way.end != Sweep::End::hit) return leave(way, swept);
     if ((way.position - from).norm() < kStay * radius) return Turn::stop;
-    const std::optional<SurfacePoint> next = project(probe_, way.position);
+    const std::optional<SurfacePoint> next = land(probe_, way);
     if (!next) return Turn::stop;
     result_.at = *next;
     return Turn::go_on;
@@ -91,6 +91,7 @@ class Slider {
     }
     result_.end = clear ? Slide::End::released : Slide::End::interrupted;
     result_.at.position = clear ? hip_ : way.position;
+    result_.within = way.within;
     return Turn::stop;
   }
 
@@ -144,7 +145,7 @@ class Slider {
     const int swept = probe_.swept;
     const Sweep way = first_contact(probe_, over, hip_);
     if (way.end != Sweep::End::hit) return leave(way, swept);
-    const std::optional<SurfacePoint> next = project(probe_, way.position);
+    const std::optional<SurfacePoint> next = land(probe_, way);
     if (!next || (hip_ - next->position).squaredNorm() >
                      (hip_ - at.position).squaredNorm() - kArmijo * step.squaredNorm()) {
       return Turn::stop;
@@ -241,7 +242,7 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
   const Sweep way = first_contact(probe, top, position);
   cut = way.end == Sweep::End::truncated;
   if (way.end != Sweep::End::hit) return std::nullopt;
-  const std::optional<SurfacePoint> found = project(probe, way.position);
+  const std::optional<SurfacePoint> found = land(probe, way);
   return found && found->normal.dot(normal) > kSameWay ? found : std::nullopt;
 }
 

@@ -28,6 +28,7 @@ struct Slide {
   End end = End::resting;
   SurfacePoint at;
   bool sliding = false;
+  bool within = false;  ///< Sweep::within of where it left the surface to
   int iterations = 0;
   double dissipated = 0;  ///< by friction, J
 };

@@ -114,10 +114,15 @@ Vector3d printed_gradient(const ImplicitSurface& surface, const simd::Columns& c
   return total;
 }
 
+/// The value of a place without a surface, m: with no gradient, so that nobody looks for one.
+double free_value(double radius) noexcept {
+  return 0.35 * radius;
+}
+
 Sample nothing_here(const Patch& patch) noexcept {
   Sample sample;
   sample.radius = patch.columns().mean_radius;
-  sample.value = 0.35 * sample.radius;
+  sample.value = free_value(sample.radius);
   return sample;
 }
 
@@ -193,6 +198,12 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
     if (options.gradient == FieldOptions::Gradient::printed) {
       value.grad = printed_gradient(surface, columns, local);
     }
+  }
+  const std::span weights(sums.w, static_cast<std::size_t>(columns.sources));
+  if (!(value.f > 0) && !patch.eyes().hold(local, value.grad, weights)) {
+    sample.value = free_value(sample.radius);
+    sample.behind = true;
+    return sample;
   }
   sample.value = value.f;
   sample.gradient = value.grad;

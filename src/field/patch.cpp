@@ -81,12 +81,16 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   points_.labels.assign(count, kInFront);
   if (points_.options.stance && whole) turn(*points_.options.stance);
   points_.options.stance = nullptr;
+  eyes_.begin(center());
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    eyes_.add(layers[k], points_.selection.places(points_.selection.runs()[k]));
+  }
   columns_.write(points_);
 }
 
 bool Patch::turn(const Stance& stance) noexcept {
   GatheredPoints& p = points_;
-  const auto one_sided = [](const ActiveLayer& layer) { return layer.points->one_sided; };
+  const auto one_sided = [](const ActiveLayer& layer) { return layer.points->one_sided(); };
   const bool sided = p.options.normals || std::ranges::any_of(p.layers, one_sided);
   if (!sided && !p.layers.empty()) return false;
   return facing_.face({p.layers, &p.selection, p.signs, p.labels, p.options.rise}, stance);

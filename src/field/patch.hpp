@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "field/eyes.hpp"
 #include "field/facing.hpp"
 #include "field/point_columns.hpp"
 #include "field/selection.hpp"
@@ -62,6 +63,7 @@ class Patch {
   /// What was chosen: 1 of how many points (stride()), and the work of that (visits()).
   [[nodiscard]] const Selection& selection() const noexcept { return points_.selection; }
   [[nodiscard]] bool thinned() const noexcept { return selection().stride() > 1; }
+  [[nodiscard]] const Eyes& eyes() const noexcept { return eyes_; }
   [[nodiscard]] const PatchColumns& columns() const noexcept { return columns_.columns(); }
 
  private:
@@ -70,6 +72,7 @@ class Patch {
 
   GatheredPoints points_;
   PointColumns columns_;
+  Eyes eyes_;
   Facing facing_;
   bool outdated_ = false;
 };

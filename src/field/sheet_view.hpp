@@ -110,7 +110,7 @@ struct SheetTable {
   }
   /// The key of the one sheet and part that points without sheets of their own belong to.
   [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept {
-    return points.one_sided ? kOneSided : Key{};
+    return points.one_sided() ? kOneSided : Key{};
   }
 
   std::vector<Part> parts;

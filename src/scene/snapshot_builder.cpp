@@ -49,16 +49,6 @@ void check(const SourceOptions& source) {
   }
 }
 
-/// Did a camera at the cloud's viewpoint see each point in its pixel? That of a cloud which
-/// somebody took to another frame did not.
-bool is_view(const PointCloud& cloud) {
-  if (!cloud.viewpoint) return false;
-  const std::optional<DepthFrame> image = depth_frame_of(cloud).frame;
-  if (!image) return false;
-  const Eigen::Isometry3d stand = image->T_world_sensor.value_or(Eigen::Isometry3d::Identity());
-  return stand.translation() == *cloud.viewpoint;
-}
-
 /// The points of a cloud that preparation would take, by whether a tool can come to them before the
 /// next clouds.
 struct Split {
@@ -152,7 +142,8 @@ std::shared_ptr<Snapshot> SnapshotBuilder::last_of(const Snapshot& newest,
   const FrameTiming moment{last_.stamp, last_.end, std::max(kLastMove, last_.end - last_.start)};
   if (!notes.whole.empty()) {
     Prepared prepared = prepare(notes.whole, options_.prepare, notes.T_world_sensor);
-    std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), notes.whole);
+    std::shared_ptr<SurfacePoints> points =
+        filled(std::move(prepared), notes.whole, notes.T_world_sensor);
     std::shared_ptr<Snapshot> snapshot = next_snapshot(moment, policies_.clouds);
     for (const Snapshot::Layer& layer : newest.layers) {
       if (layer.weight_end > 0) snapshot->layers.push_back({layer.points, layer.weight_end, 0});
@@ -188,7 +179,8 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
     prepared = prepare(wanted, options_.prepare, arrival.T_world_sensor);
   }
   notes.report = prepared.report;
-  std::shared_ptr<SurfacePoints> points = filled(std::move(prepared), cloud);
+  std::shared_ptr<SurfacePoints> points =
+      filled(std::move(prepared), cloud, arrival.T_world_sensor);
   const FrameTiming moment = next_timing(stamp, arrival.start);
   if (clouds_.late < kEnoughLate)
     clouds_.late = moment.start - stamp > kLateCloud ? clouds_.late + 1 : 0;
@@ -198,26 +190,12 @@ std::shared_ptr<Snapshot> SnapshotBuilder::take(const PointCloud& cloud, double 
 }
 
 /// The points of a cloud that was prepared, or a part of it was.
-std::shared_ptr<SurfacePoints> SnapshotBuilder::filled(Prepared prepared, const PointCloud& cloud) {
+std::shared_ptr<SurfacePoints> SnapshotBuilder::filled(Prepared prepared, const PointCloud& cloud,
+                                                       const Eigen::Isometry3d& T_world_sensor) {
   std::shared_ptr<SurfacePoints> points = points_.take();
   *points = std::move(prepared.points);
-  points->one_sided = is_one_view(cloud);
+  points->eye = clouds_.view.eye_of(cloud, options_.prepare, T_world_sensor);
   return points;
-}
-
-/// Do normals get their signs from where the sensor is?
-bool SnapshotBuilder::knows_sides() const {
-  using Orientation = PrepareOptions::Orientation;
-  const Orientation by = options_.prepare.orientation;
-  return by == Orientation::automatic || by == Orientation::viewpoint;
-}
-
-/// Was all of it seen from one place, and from the sides that its normals will point to? Where no
-/// viewpoint is given, one cloud that proves it counts for all after it; few pixels prove nothing.
-bool SnapshotBuilder::is_one_view(const PointCloud& cloud) {
-  if (options_.prepare.viewpoint) return knows_sides();
-  clouds_.view = clouds_.view || is_view(cloud);
-  return clouds_.view && cloud.normals.empty() && knows_sides();
 }
 
 FrameTiming SnapshotBuilder::next_timing(double stamp, const Source::StartTime& start) {

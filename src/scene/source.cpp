@@ -140,6 +140,7 @@ void Source::set(const PointCloud& cloud) {
     }
   }
   Prepared prepared = named(inside_->name, [&] { return prepare(cloud, wanted.prepare, pose()); });
+  prepared.points.eye = OneView{}.eye_of(cloud, wanted.prepare, pose());
   {
     const std::lock_guard lock(inside_->mutex);
     inside_->report = prepared.report;

@@ -16,6 +16,7 @@
 #include "palpate/scene/source.hpp"
 #include "scene/frame_timing.hpp"
 #include "scene/handoff.hpp"
+#include "scene/one_view.hpp"
 #include "scene/policies/layer_history.hpp"
 #include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
@@ -118,8 +119,8 @@ class SnapshotBuilder {
   };
   /// What the clouds so far told.
   struct Clouds {
-    bool view = false;  // has one proved to be seen from its viewpoint?
-    int late = 0;       // in a row, whose surfaces came late; from kEnoughLate on it stays
+    OneView view;
+    int late = 0;  // in a row, whose surfaces came late; from kEnoughLate on it stays
   };
   struct Empty {
     void operator()(Snapshot& snapshot) const noexcept { snapshot.layers.clear(); }
@@ -132,9 +133,8 @@ class SnapshotBuilder {
   [[nodiscard]] double presence_at(double time) const;
   void forget();
   void note_noise(const FilteredDepth& depth);
-  [[nodiscard]] bool knows_sides() const;
-  [[nodiscard]] std::shared_ptr<SurfacePoints> filled(Prepared prepared, const PointCloud& cloud);
-  [[nodiscard]] bool is_one_view(const PointCloud& cloud);
+  [[nodiscard]] std::shared_ptr<SurfacePoints> filled(Prepared prepared, const PointCloud& cloud,
+                                                      const Eigen::Isometry3d& T_world_sensor);
 
   SourceOptions options_;
   Policies policies_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "palpate/scene/scene_field.hpp"
@@ -13,10 +14,10 @@ namespace palpate::test {
 class PointField {
  public:
   explicit PointField(const std::vector<TestPoint>& points, const FieldOptions& options = {},
-                      bool sharp_edges = false, bool one_sided = false) {
+                      bool sharp_edges = false, std::optional<Eigen::Vector3d> eye = {}) {
     SurfacePoints made = make_points(points, options.kernel);
     if (sharp_edges) tell_edges(made);
-    made.one_sided = one_sided;
+    if (eye) made.eye.emplace(SurfacePoints::Eye{*eye, {}});
     points_ = std::make_shared<SurfacePoints>(std::move(made));
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({points_});

@@ -14,6 +14,9 @@ struct Sample {
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< d value / d x; points outward
   double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
+  /// Is it free though a surface's points lie in front of it, since that holds towards its eye
+  /// alone? Then the gradient is zero.
+  bool behind = false;
 };
 
 /// Properties of the surface near a position on it.

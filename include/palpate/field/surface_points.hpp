@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "palpate/field/field_options.hpp"
@@ -50,6 +51,14 @@ struct SurfacePoints {
     [[nodiscard]] bool empty() const { return sheet.empty(); }
   };
 
+  /// Where points were seen from.
+  struct Eye {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world frame, m
+    /// Unit directions, world frame, from the last points of the index to where each was seen from:
+    /// what a camera remembers while it moves on. All others are seen from `place`.
+    std::vector<Eigen::Vector3f> remembered = {};
+  };
+
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
   CellGrid grid;
@@ -72,9 +81,9 @@ struct SurfacePoints {
   /// Edges and creases that stay sharp (FieldOptions::sharp_edges); of organised depth.
   Edges edges;
 
-  /// Was all of it seen from the side that its normals point to, and from nowhere else? Then it
-  /// holds no tool that comes from behind. Of sheets, those of known parts.
-  bool one_sided = false;
+  /// What saw all of it, from the side that its normals point to: it holds towards that eye alone.
+  /// Of sheets, those of known parts. None: it holds from every side.
+  std::optional<Eye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
@@ -84,6 +93,7 @@ struct SurfacePoints {
   double smallest_radius = 0;     ///< smallest R_i, m
 
   [[nodiscard]] std::size_t size() const { return grid.size(); }
+  [[nodiscard]] bool one_sided() const { return eye.has_value(); }
 
   /// Around the points and where they are going, m, world frame; empty where there are none.
   [[nodiscard]] Box bounds() const;

@@ -74,7 +74,9 @@ void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoi
   matches_.begin(moved, input.pinhole, moment.duration);
   points.origin = origin_;
   points.kernel = options_.kernel;
-  points.one_sided = true;
+  if (!points.eye) points.eye.emplace();
+  points.eye->place = camera;
+  points.eye->remembered.clear();
   const std::size_t old = shown_.entries().size();
   const std::size_t blocks = blocks_.order().size();
   unseen_.begin(blocks);

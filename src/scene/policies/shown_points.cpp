@@ -53,6 +53,14 @@ void ShownPoints::replace(std::shared_ptr<const SurfacePoints> points, const Fra
   std::swap(entries_, entries);
 }
 
+Eigen::Vector3f ShownPoints::to_eye(std::uint32_t i) const {
+  const auto& remembered = points_->eye->remembered;
+  const std::size_t first = points_->size() - remembered.size();
+  if (i >= first) return remembered[i - first];
+  const Eigen::Vector3d place = points_->origin + points_->grid.points()[i].cast<double>();
+  return (points_->eye->place - place).normalized().cast<float>();
+}
+
 void ShownPoints::forget() {
   points_.reset();
   entries_.clear();

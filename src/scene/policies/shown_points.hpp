@@ -41,6 +41,9 @@ class ShownPoints {
   /// The same of where they are at the end.
   [[nodiscard]] PointStates end_of_four(std::uint32_t i) const;
 
+  /// Unit, from a point to where it was seen from.
+  [[nodiscard]] Eigen::Vector3f to_eye(std::uint32_t i) const;
+
   /// Where a point's weight goes.
   [[nodiscard]] float end_weight(std::uint32_t i) const { return points_->end_density_weights[i]; }
 
