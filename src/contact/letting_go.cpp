@@ -25,7 +25,7 @@ void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eige
   if (touch_.surface.presence > kFaded && probe.sample(place).support > 0) return;
   release(hip + depth * normal);
   touch_.touching = touch_.waiting = true;
-  touch_.normal = normal;
+  touch_.normal = touch_.side = normal;
   touch_.pressed = pressed;
   spring_.wait(place - hip);
 }

@@ -110,9 +110,10 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
     const double radius = probe.radius();
     const Eigen::Vector3d normal = here.gradient.normalized();
     const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
-    if (std::abs(*distance) < tolerance) return SurfacePoint{place, normal, radius};
-    if (step == kSteps) return std::nullopt;
-    if (std::abs(*distance) < kLastStep * radius) {
+    const bool arrived = std::abs(*distance) < tolerance;
+    if (arrived && !here.averted) return SurfacePoint{place, normal, radius};
+    if (arrived || step == kSteps) return std::nullopt;
+    if (!here.averted && std::abs(*distance) < kLastStep * radius) {
       return SurfacePoint{place - *distance * normal, normal, radius};
     }
     place -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;

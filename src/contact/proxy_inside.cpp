@@ -1,6 +1,7 @@
 // One step of the proxy: through free space, or along the surface, and what its spring does.
 #include "contact/proxy_inside.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -135,6 +136,7 @@ void Proxy::Inside::release(const Eigen::Vector3d& place, bool within) noexcept 
   position_ = place;
   within_ = within;
   touch_.normal.setZero();
+  touch_.side.setZero();
   spring_.rest();
   touch_.touching = false;
   touch_.sliding = false;
@@ -165,10 +167,14 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
                              .longest_step = options_.texture.amplitude > 0
                                                  ? kTextureStep * options_.texture.wavelength
                                                  : 0,
-                             .friction = law};
+                             .friction = law,
+                             .moved = probe.traits().revision != revision_};
   const Slide motion = slide(probe, *at, hip, touch_.sliding, options);
   contact.iterations = motion.iterations;
   if (!settle(motion, contact)) return;
+  // What goes farther than the hand explains was moved by a surface that folds.
+  const double most = 2 * (hip - hand_).norm() + kLeastFall * radius_;
+  if (motion.leapt || (position_ - at->position).norm() <= most) touch_.carry_side(at->normal);
   touch_.surface = probe.field().surface(position_);
   pull(hip, motion.dissipated, dt, contact);
 }
@@ -181,11 +187,13 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   const bool moved = !search_.cut_short && surface_moved(probe, here, touch_.normal, changed);
   const double radius = probe.radius();  // at the proxy: Newton may end where it is another
   std::optional<SurfacePoint> at = project(probe, position_, here);
-  if (moved) {
-    const bool same = at && is_same_place(*at, position_, touch_.normal);
+  const bool turned = changed && at && is_turned(*at, touch_.side);
+  if (moved || turned) {
+    const bool same = at && is_same_place(*at, position_, touch_.side);
     bool cut = false;
-    const auto found = same ? at : reanchor(probe, position_, touch_.normal, radius, cut);
-    if (cut) at.reset();  // else it may be the underside of something nearer, not yet swept
+    const auto found = same ? at : reanchor(probe, position_, touch_.side, radius, cut);
+    // Else it may be the underside of something nearer, not yet swept, or a fold of the surface.
+    if (cut || turned) at.reset();
     if (found) {
       at = found;
       contact.notes |= ContactNote::reanchored;
@@ -193,11 +201,11 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   }
   if (at) {
     search_.looked = 0;
-  } else {
+  } else if (!turned) {
     at = recover(probe, position_, touch_.normal, search_.looked);
   }
   search_.cut_short = false;
-  if (at || !(here.value > 0)) return at;
+  if (at || turned || !(here.value > 0) || here.behind) return at;
   const Sweep way = first_contact(probe, position_, hip);
   if (way.end == Sweep::End::hit) return land(probe, way);
   if (way.end == Sweep::End::clear) {
@@ -234,6 +242,14 @@ void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double d
   spring_.pull(touch_.softened(options_.stiffness), position_ - hip, dissipated, dt, contact);
   contact.drift = touch_.surface.velocity;
   contact.source = touch_.surface.source;
+}
+
+void Proxy::Inside::Touch::carry_side(const Eigen::Vector3d& from) noexcept {
+  if (side.isZero(0)) {
+    side = normal;
+  } else if (normal != from) {
+    side = (Eigen::Quaterniond::FromTwoVectors(from, normal) * side).normalized();
+  }
 }
 
 double Proxy::Inside::Touch::softened(double stiffness) const noexcept {

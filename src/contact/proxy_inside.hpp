@@ -28,14 +28,19 @@ class Proxy::Inside {
  private:
   /// The contact. It holds the hand unless it waits for a surface that vanished.
   struct Touch {
-    Surface surface;                                    // at the proxy
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();   // as the last step left it; zero: none
+    Surface surface;                                   // at the proxy
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // as the last step left it; zero: none
+    // Of the surface where contact began, as slides have turned it since: the side that the contact
+    // came from. A surface that turns by itself does not take it along.
+    Eigen::Vector3d side = Eigen::Vector3d::Zero();
     Eigen::Vector3d pressed = Eigen::Vector3d::Zero();  // the hand when the surface vanished, m
     bool touching = false;
     bool sliding = false;
     bool waiting = false;  // for a surface that has vanished
 
     [[nodiscard]] bool is_held() const noexcept { return touching && !waiting; }
+    // Has it been led along the surface from a place with this normal to where it is now?
+    void carry_side(const Eigen::Vector3d& from) noexcept;
     // What the surface leaves of a stiffness.
     [[nodiscard]] double softened(double stiffness) const noexcept;
   };

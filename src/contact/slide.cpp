@@ -85,7 +85,9 @@ class Slider {
   // that had most of the budget goes on from where it ended. `swept`: what was spent before it.
   [[nodiscard]] Turn leave(const Sweep& way, int swept) noexcept {
     const bool clear = way.end == Sweep::End::clear;
-    if (!clear && swept >= kSweepWork / 2) {
+    // A fold of what moves is no rim.
+    const bool behind = options_.moved && probe_.sample(clear ? hip_ : way.position).behind;
+    if (behind || (!clear && swept >= kSweepWork / 2)) {
       result_.end = Slide::End::postponed;
       return Turn::stop;
     }
@@ -151,6 +153,7 @@ class Slider {
       return Turn::stop;
     }
     result_.at = *next;
+    result_.leapt = true;
     return Turn::go_on;
   }
 
@@ -208,7 +211,7 @@ Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
 namespace {
 
 constexpr double kLeastNormal = 0.5;    // a unit normal is there; zero says that none is
-constexpr double kSameWay = 0.3;        // cosine between the old and the new normal
+constexpr double kSameWay = 0.5;        // cosine between the old and the new normal: 60 degrees
 constexpr double kLifted = 0.02;        // of R: the surface left the proxy
 constexpr double kSunk = 1e-3;          // of R: beyond Newton's rounding, the surface rose over it
 constexpr double kLeastReach = 0.5;     // of R
@@ -227,6 +230,10 @@ bool surface_moved(const Probe& probe, const Sample& here, const Eigen::Vector3d
   return changed && *distance > kSunk * radius;
 }
 
+bool is_turned(const SurfacePoint& found, const Eigen::Vector3d& side) noexcept {
+  return side.norm() > kLeastNormal && !(found.normal.dot(side) > kSameWay);
+}
+
 bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
                    const Eigen::Vector3d& normal) noexcept {
   return found.normal.dot(normal) > kSameWay &&
@@ -238,7 +245,8 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
                                      bool& cut) noexcept {
   const double reach = std::max(probe.traits().reanchor_reach, kLeastReach * radius);
   const Eigen::Vector3d top = position + reach * normal;
-  if (probe.inside(top)) return std::nullopt;
+  const Sample above = probe.sample(top);
+  if (!(above.value > 0) || above.behind) return std::nullopt;
   const Sweep way = first_contact(probe, top, position);
   cut = way.end == Sweep::End::truncated;
   if (way.end != Sweep::End::hit) return std::nullopt;
@@ -260,7 +268,7 @@ std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& positio
     const int before = probe.work();
     const Sample here = probe.sample(place);
     probe.swept += probe.work() - before;
-    if (here.value > 0) return project(probe, place, here);
+    if (here.value > 0 && !here.behind) return project(probe, place, here);
   }
   return std::nullopt;
 }

@@ -14,6 +14,7 @@ struct SlideOptions {
   double tangent_tolerance = 1e-3;  ///< of R
   double longest_step = 0;          ///< m; 0: no limit but that of R
   FrictionLaw friction;
+  bool moved = false;  ///< the surface has moved since the last step
 };
 
 /// Where the constrained motion ended.
@@ -23,11 +24,13 @@ struct Slide {
     unfinished,   ///< on the surface; iterations or evaluations ran out
     released,     ///< in free space, at the hand
     interrupted,  ///< in free space, on the way to the hand: the sweep was truncated
-    postponed,    ///< on the surface; sweeps before had left too little to see whether it is free
+    postponed,    ///< on the surface; sweeps before had left too little to see whether it is free,
+                  ///< or the way leads behind a surface that has just moved
   };
   End end = End::resting;
   SurfacePoint at;
   bool sliding = false;
+  bool leapt = false;   ///< it went from one face to another through free space
   bool within = false;  ///< Sweep::within of where it left the surface to
   int iterations = 0;
   double dissipated = 0;  ///< by friction, J
@@ -45,6 +48,10 @@ struct Slide {
 /// revision is another than in the last step.
 [[nodiscard]] bool surface_moved(const Probe& probe, const Sample& here,
                                  const Eigen::Vector3d& normal, bool changed) noexcept;
+
+/// Does a surface that was found face another way than the one that was touched, by 60 degrees and
+/// more? `side`: of that; zero: nothing was touched.
+[[nodiscard]] bool is_turned(const SurfacePoint& found, const Eigen::Vector3d& side) noexcept;
 
 /// Is a place that Newton found the one that the proxy touched, on a surface that has moved a
 /// little (R / 4), or does it need a look from above?

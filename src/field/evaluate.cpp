@@ -200,7 +200,8 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
     }
   }
   const std::span weights(sums.w, static_cast<std::size_t>(columns.sources));
-  if (!(value.f > 0) && !patch.eyes().hold(local, value.grad, weights)) {
+  sample.averted = !patch.eyes().hold(local, value.grad, weights);
+  if (sample.averted && !(value.f > 0)) {
     sample.value = free_value(sample.radius);
     sample.behind = true;
     return sample;

@@ -17,6 +17,8 @@ struct Sample {
   /// Is it free though a surface's points lie in front of it, since that holds towards its eye
   /// alone? Then the gradient is zero.
   bool behind = false;
+  /// Does the gradient face no eye that saw this surface? Then nothing rests on it.
+  bool averted = false;
 };
 
 /// Properties of the surface near a position on it.
