@@ -96,7 +96,17 @@ SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout
   noise.seed = options.layouts > 0 ? seed + 1000003 * layout : seed;
   noise.rounding = options.rounding;
   noise.silhouettes = options.silhouettes;
+  noise.correlation = options.correlation;
+  // As of the layouts, which are some 0.7 m away.
+  noise.disparity_step = std::min(options.terraces * 525 * 0.075 / (0.7 * 0.7), 8.0);
+  if (options.sigma > 0) noise.model.coefficients = {options.sigma, 0, 0};
   return noise;
+}
+
+TruthCamera camera_of(const BenchOptions& options) {
+  TruthCamera camera;
+  if (options.fine) camera.model = {1280, 720, {900, 900, 639.5, 359.5}, {}};
+  return camera;
 }
 
 BenchResults run_bench(const BenchOptions& options, const std::vector<Contender>& contenders) {

@@ -20,6 +20,11 @@ struct BenchOptions {
   NoiseKind noise = NoiseKind::independent;
   double rounding = 1e-3;  ///< of depths, m; 0: none
   bool silhouettes = false;
+  double correlation = 0;  ///< of the noise, pixels; 0: as its kind says
+  double sigma = 0;        ///< deviation of the noise at all depths, m; 0: as a Kinect's
+  double terraces = 0;  ///< steps of depth at a plane's distance, of layouts at 0.7 m, m; 0: none
+  double uneven = 1;    ///< times the error where a flat thing is touched
+  bool fine = false;    ///< 1280 x 720 pixels, 900 to a unit of the ray; single things alone
   std::vector<std::string> rows;  ///< only rows whose names hold one of these; empty: all
 };
 
@@ -47,6 +52,9 @@ struct BenchResults {
 
 /// The noise that benches call by a letter: a independent, b blurred, c quantised, else none.
 [[nodiscard]] NoiseKind noise_kind(const std::string& letter);
+
+/// The camera that sees single things.
+[[nodiscard]] TruthCamera camera_of(const BenchOptions& options);
 
 /// The noise added to the exact depths of a frame. Each drawn layout has noise of its own.
 [[nodiscard]] SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout,

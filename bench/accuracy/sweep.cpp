@@ -54,28 +54,40 @@ std::string bin_name(const Bin& bin) {
                      kIncidences[bin.incidence], kIncidences[bin.incidence + 1]);
 }
 
+// A place that a view looks at, with the surface there.
+struct Seen {
+  Vector3d place, normal, axis;  // m; unit vectors
+};
+
+Seen seen_in(const PlaneView& view) {
+  Seen seen;
+  seen.place = view.distance * Vector3d(view.x, view.y, 1);
+  const Vector3d back = -seen.place.normalized();
+  const Vector3d right = back.cross(Vector3d::UnitX()).normalized();
+  seen.axis = std::cos(view.about) * right + std::sin(view.about) * back.cross(right);
+  seen.normal = Eigen::AngleAxisd(view.incidence, seen.axis) * back;
+  return seen;
+}
+
 SweepCase draw_case(const Bin& bin, Random& random) {
-  const double z = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
-  const double incidence =
+  PlaneView view;
+  view.distance = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
+  view.incidence =
       between(random, kIncidences[bin.incidence], kIncidences[bin.incidence + 1]) * kDegree;
-  const double u = between(random, -0.08, 0.08);
-  const Vector3d place = z * Vector3d(u, between(random, -0.08, 0.08), 1);
-  const double about = between(random, 0, 2 * std::numbers::pi);
-  const double turn = between(random, 0, 2 * std::numbers::pi);
-  const Vector3d view = -place.normalized();
-  const Vector3d right = view.cross(Vector3d::UnitX()).normalized();
-  const Vector3d axis = std::cos(about) * right + std::sin(about) * view.cross(right);
-  const Vector3d normal = Eigen::AngleAxisd(incidence, axis) * view;
+  view.x = between(random, -0.08, 0.08);
+  view.y = between(random, -0.08, 0.08);
+  view.about = between(random, 0, 2 * std::numbers::pi);
+  view.turn = between(random, 0, 2 * std::numbers::pi);
   SweepCase drawn{make_empty_scene(), {}};
-  Solid& solid = drawn.truth.solids[0];
-  if (bin.sphere) {
-    solid.size = Vector3d::Constant(kBallRadius);
-    solid.T_world_solid.translation() = place - kBallRadius * normal;
-    drawn.path = sphere_arc(solid, {normal, axis, kHalfArc});
+  if (!bin.sphere) {
+    drawn.path = put_plane(view, drawn.truth);
     return drawn;
   }
-  solid = half_space(place, normal, axis);
-  drawn.path = slide_over(solid, turn, kSweepLength, kSlideDepth);
+  const Seen seen = seen_in(view);
+  Solid& solid = drawn.truth.solids[0];
+  solid.size = Vector3d::Constant(kBallRadius);
+  solid.T_world_solid.translation() = seen.place - kBallRadius * seen.normal;
+  drawn.path = sphere_arc(solid, {seen.normal, seen.axis, kHalfArc});
   return drawn;
 }
 
@@ -101,6 +113,12 @@ std::string bin_cell(const BenchResults& results, const std::string& contender, 
 
 }  // namespace
 
+Path put_plane(const PlaneView& view, TruthScene& scene) {
+  const Seen seen = seen_in(view);
+  scene.solids[0] = half_space(seen.place, seen.normal, seen.axis);
+  return slide_over(scene.solids[0], view.turn, kSweepLength, kSlideDepth);
+}
+
 BenchResults run_sweep(const BenchOptions& options, const std::vector<Contender>& contenders) {
   BenchResults out;
   const std::vector<Bin> bins = all_bins();
@@ -109,7 +127,8 @@ BenchResults run_sweep(const BenchOptions& options, const std::vector<Contender>
     for (int i = 0; i < options.seeds; ++i) {
       const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
       Random random(seed * 1000 + b);
-      const SweepCase drawn = draw_case(bins[b], random);
+      SweepCase drawn = draw_case(bins[b], random);
+      drawn.truth.camera = camera_of(options);
       const Trace ideal = ideal_trace(drawn.truth, drawn.path);
       const DepthFrame frame =
           noisy_frame(exact_frame(drawn.truth), noise_of(options, 0, random.bits()));
