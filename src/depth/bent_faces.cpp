@@ -8,15 +8,13 @@
 namespace palpate::depth {
 namespace {
 
-// Variance of a quadric's slopes over that of the window's, at most: few rows of blocks, or blocks
-// far away, tell little, but at bends windows are farther off than their variance says (judgement).
-constexpr double kVaguer = 16;
-
-// Are a quadric's slopes not much vaguer than those that the block's window tells?
+// Are a quadric's slopes about as sure as those that the block's window tells? Where no plane
+// serves windows are farther off than their variance says: there a quadric that tells more than a
+// plane need not be.
 bool knows_enough(const Quadric::Sight& sight, const BlockFits& fits, std::size_t i) {
   const double step = std::min(std::abs(fits.grid.step_x), std::abs(fits.grid.step_y));
-  return fits.confidences[i] == 0 ||
-         sight.slope_variance <= kVaguer * fits.slope_variance[i] * step * step;
+  return fits.confidences[i] == 0 || is_bent(fits, i) ||
+         sight.slope_variance <= kLessSure * fits.slope_variance[i] * step * step;
 }
 
 // Gives a block the first of some quadrics that explains what is around it.
@@ -59,8 +57,9 @@ void BentFaces::find(const simd::FitInput& input, const NoiseModel& noise, const
 }
 
 // Blocks of each tile with bent ones take the quadric that explains them and most around, the first
-// of equals. The surer one would be a bad choice: a strip of another surface makes it so. In noise
-// a plane serves for some of a ball's blocks, so flat blocks take them, too.
+// of equals. The surer one would be a bad choice: a strip of another surface makes it so. In small
+// windows a plane serves for some of a ball's blocks, so these take them, too. Straight blocks,
+// whose largest window is a plane, take none.
 void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                       int tile_row, BlockFits& fits) const {
   const SameSurface same(noise, fits.grid);
@@ -82,8 +81,11 @@ void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, cons
       return a->support > b->support || (a->support == b->support && a < b);
     });
     tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {
-      const bool fitted = fits.states[fits.grid.index(column, row)] == FilteredDepth::State::fitted;
-      if (fitted && !kept.at(column, row)) give({near, count}, input, same, column, row, fits);
+      const std::size_t i = fits.grid.index(column, row);
+      const bool fitted = fits.states[i] == FilteredDepth::State::fitted;
+      const bool straight = fits.flat[i] == simd::kStraight;
+      if (fitted && !straight && !kept.at(column, row))
+        give({near, count}, input, same, column, row, fits);
     });
   }
 }

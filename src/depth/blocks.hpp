@@ -175,7 +175,7 @@ struct BlockFits {
   std::vector<float> confidences;     ///< of the slopes, 0-1; 0: they are unknown and 0
 
   // Fitted blocks only:
-  std::vector<std::uint8_t> flat;     ///< is it a plane over its window?
+  std::vector<std::uint8_t> flat;     ///< simd::Flatness of its window
   std::vector<std::uint8_t> reach_u;  ///< blocks to the side of the largest window; 0: no edge near
   std::vector<std::uint8_t> reach_v;  ///< and to its top
 

@@ -71,12 +71,12 @@ struct QuadricLine {
 
 /// Was a block fitted, and not by a plane? Paraboloids serve, or no window does.
 [[nodiscard]] inline bool is_bent(const BlockFits& fits, std::size_t i) {
-  return fits.states[i] == FilteredDepth::State::fitted && fits.flat[i] == 0;
+  return fits.states[i] == FilteredDepth::State::fitted && fits.flat[i] == simd::kBentWindow;
 }
 
 /// The quadric around a bent block that explains all bent blocks which lie on it (docs/method.md
-/// 6.4). nullopt if they are few or not nearly all, or noise does not explain what it leaves of
-/// them.
+/// 6.4). nullopt if they are few or not nearly all, noise does not explain what it leaves of them,
+/// or it explains no more of them than noise lets it beyond their best plane.
 [[nodiscard]] std::optional<Quadric> fit_quadric(const simd::FitInput& input,
                                                  const NoiseModel& noise, const BlockFits& fits,
                                                  int column, int row);

@@ -24,6 +24,7 @@ constexpr double kFewestSamples = 30;  // of the first pass, too: three for each
 // With 0.9 normals of 18 kinds of shapes are 5 % worse (measured).
 constexpr double kShare = 0.98;
 constexpr int kFree = 9;        // terms, but for a factor
+constexpr int kOfPlane = 3;     // terms that a plane has of them (derived)
 constexpr int kPowers = 5;      // 0 to 4, of products of two terms
 constexpr double kTiny = 1e-9;  // keeps matrices regular where blocks are in two rows (judgement)
 
@@ -49,6 +50,13 @@ struct Moments {
     const auto& s = kTerms[i];
     const auto& t = kTerms[j];
     return of[s[0] + t[0]][s[1] + t[1]][s[2] + t[2]];
+  }
+  // Sum of squares that the best plane leaves.
+  [[nodiscard]] double left_by_plane() const {
+    Products all = products();
+    all.diagonal().array() += kTiny * count();
+    const Eigen::Vector3d with_r = all.block<3, 1>(0, 6);
+    return product(6, 6) - with_r.dot(all.topLeftCorner<3, 3>().ldlt().solve(with_r));
   }
   [[nodiscard]] Products products() const {
     Products all;
@@ -76,6 +84,22 @@ struct Samples {
   int seen = 0;  // bent blocks whose depths may be of the block's surface
 };
 
+// Variance of a block that a quadric shows: the noise's, or what it leaves where that is more;
+// nullopt where it is no better than the best plane, which leaves `plane`. What errs together,
+// `shared` blocks, is one sample, and each term takes the power of one: of both sums of squares
+// only n / shared are told, and the terms beyond the plane's take so many times `shared` of the
+// noise alone. That is an F test, whose limit does not grow with what noise is said to be.
+std::optional<double> told_variance(double n, double plane, double quadric, double variance,
+                                    double shared) {
+  const double free = n - kFree * shared;
+  if (!(free > 0)) return {};
+  const double seen = std::max(variance, quadric / free);
+  const double term = shared * seen;
+  constexpr int kMore = kFree - kOfPlane;
+  if (!exceeds_noise(plane - quadric - kMore * term, kMore, term, 1)) return {};
+  return seen;
+}
+
 struct Fitting {
   const simd::FitInput& in;
   const BlockFits& fits;
@@ -87,6 +111,7 @@ struct Fitting {
   void add_line(const Samples& s, int v, Moments& moments, Samples& held) const;
   Moments gather(const Samples& s, Samples& held) const;
   std::optional<double> solve(const Moments& moments);
+  bool know(double n, double variance);
   bool run(double variance, double correlation);
 };
 
@@ -152,12 +177,24 @@ std::optional<double> Fitting::solve(const Moments& moments) {
   return std::max(0.0, solver.eigenvalues()[0]);
 }
 
+// Sets what is known of the quadric, from so many blocks of this variance, what they share
+// included.
+bool Fitting::know(double n, double variance) {
+  products += n * q.a * q.a.transpose();  // regular along a, too
+  const Eigen::LLT<Products> root(products);
+  if (root.info() != Eigen::Success) return false;
+  q.spread = root.matrixL().solve(Products::Identity());
+  q.spread *= std::sqrt(variance);
+  return q.holds(0, 0, q.rho, square * q.unit * q.unit);
+}
+
 bool Fitting::run(double variance, double correlation) {
   const int coarse = std::max(1, 2 * q.reach / kStepsAcross);
   const int edge = -q.reach / coarse * coarse;
   Samples next{edge, edge, q.reach, q.reach, coarse};
   Samples held{};
   double n = 0;
+  double plane = 0;
   std::optional<double> left;
   for (int pass = 0; pass < kPasses; ++pass) {
     const Moments moments = gather(next, held);
@@ -165,6 +202,7 @@ bool Fitting::run(double variance, double correlation) {
     if (n < kFewestSamples || n < kShare * held.seen) return false;
     left = solve(moments);
     if (!left) return false;
+    plane = moments.left_by_plane();
     const int step = held.step;
     q.support = n * step * step;
     next = {std::max(held.left - step, -q.reach), std::max(held.top - step, -q.reach),
@@ -174,12 +212,8 @@ bool Fitting::run(double variance, double correlation) {
   const double apart = correlation / held.step;  // blocks in between do not count
   const double excess = n * *left - (n - kFree) * variance;
   if (exceeds_noise(excess, n - kFree, variance, shared_error(apart))) return false;
-  products += n * q.a * q.a.transpose();  // regular along a, too
-  const Eigen::LLT<Products> root(products);
-  if (root.info() != Eigen::Success) return false;
-  q.spread = root.matrixL().solve(Products::Identity());
-  q.spread *= std::sqrt(variance * shared_error(apart, 1, n));
-  return q.holds(0, 0, q.rho, square * q.unit * q.unit);
+  const auto told = told_variance(n, plane, n * *left, variance, shared_error(apart));
+  return told && know(n, *told * shared_error(apart, 1, n));
 }
 
 }  // namespace

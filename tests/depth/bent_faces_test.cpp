@@ -98,7 +98,7 @@ TEST(Quadric, IsNotFoundWhereNoiseIsSaidToBeTooSmall) {
 
 TEST(Quadric, IsNotFoundWhereFewBlocksAreBent) {
   BentFrame frame(exact_frame({kBall}), kinect_like_noise());
-  std::fill(frame.fits.flat.begin(), frame.fits.flat.end(), 1);
+  std::fill(frame.fits.flat.begin(), frame.fits.flat.end(), simd::kStraight);
   for (int column = 38; column < 43; ++column)
     frame.fits.flat[frame.fits.grid.index(column, 30)] = 0;
   EXPECT_FALSE(frame.quadric(kColumn, kRow));
@@ -184,7 +184,7 @@ TEST(BentFaces, KnowNormalsOfCylinders) {
 TEST(BentFaces, AreTakenWhereAPlaneServesByChance) {
   BentFrame frame(noisy_frame({kBall}, {.seed = 6}), kinect_like_noise());
   const std::size_t i = frame.fits.grid.index(kColumn + 6, kRow + 3);
-  frame.fits.flat[i] = 1;
+  frame.fits.flat[i] = simd::kPlaneNearBy;
   frame.fits.slope_x[i] = 0;
   depth::BentFaces().refit(frame.input(), frame.noise,
                            {.columns = frame.fits.grid.columns, .flags = {}}, frame.fits);
@@ -192,6 +192,31 @@ TEST(BentFaces, AreTakenWhereAPlaneServesByChance) {
   errors.add(kBall, position_of(frame.fits, kColumn + 6, kRow + 3),
              normal_of(frame.fits, kColumn + 6, kRow + 3));
   EXPECT_LT(errors.rms_angle(), 1 * kDegree);
+}
+
+// A block whose largest window is a plane is no ball's.
+TEST(BentFaces, LeaveStraightBlocksAlone) {
+  BentFrame frame(noisy_frame({kBall}, {.seed = 6}), kinect_like_noise());
+  const std::size_t i = frame.fits.grid.index(kColumn + 6, kRow + 3);
+  frame.fits.flat[i] = simd::kStraight;
+  frame.fits.slope_x[i] = 0;
+  depth::BentFaces().refit(frame.input(), frame.noise,
+                           {.columns = frame.fits.grid.columns, .flags = {}}, frame.fits);
+  EXPECT_EQ(frame.fits.slope_x[i], 0);
+}
+
+// Waves that hang together over much of what is looked at may be taken for anything bent.
+TEST(Quadric, IsNotFoundInWavesOnAPlane) {
+  const Solid wall = plane({0, 0, 0.8}, {0.3, 0, -1});
+  NoiseModel noise = kinect_like_noise();
+  for (const double correlation : {8., 12., 18.}) {
+    noise.correlation = correlation;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      BentFrame frame(noisy_frame({wall}, {.seed = seed, .correlation = correlation}), noise);
+      std::fill(frame.fits.flat.begin(), frame.fits.flat.end(), simd::kBentWindow);
+      EXPECT_FALSE(frame.quadric(kColumn, kRow)) << correlation << " " << seed;
+    }
+  }
 }
 
 TEST(BentFaces, LeavePlanesAndKeptBlocksAlone) {

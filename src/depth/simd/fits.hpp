@@ -8,6 +8,10 @@
 
 namespace palpate::simd {
 
+// What a block's window is: bent; a plane as large as windows become; a plane in a smaller window
+// alone, since the largest one is refused.
+enum Flatness : std::uint8_t { kBentWindow, kStraight, kPlaneNearBy };
+
 // A row of the columns of BlockFits.
 struct FitRow {
   std::uint8_t* states;

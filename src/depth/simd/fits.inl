@@ -97,7 +97,7 @@ inline void write(const FitInput& in, const Chunk& c, int i, const Surface& s, i
   out.slope_y[column] = static_cast<float>(s.slope_v[lane] * per_y);
   out.slope_variance[column] = static_cast<float>(var_x > var_y ? var_x : var_y);
   out.confidences[column] = 1;
-  if (away) out.flat[column] = 0;
+  if (away) out.flat[column] = kBentWindow;
 }
 
 // Calls take(four, filled) for the listed blocks, four at a time; the last ones repeat.
@@ -157,7 +157,7 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
     start(in, row, out, c);
     widen_slopes(in, row, c);
     size_windows(in, row, c);
-    for (int i = 0; i < c.count; ++i) out.flat[c.columns[i]] = 1;
+    for (int i = 0; i < c.count; ++i) out.flat[c.columns[i]] = kStraight;
     int rest[kChunk];
     const int more = fit_planes(in, row, c, out, rest);
     by_fours(rest, more, [&](const int* four, int) { grow_four(in, row, four, c); });
@@ -165,7 +165,7 @@ void fit_blocks(const FitInput& in, int row, const std::int32_t* columns, int co
     for (int k = 0; k < more; ++k) {
       const int i = rest[k];
       if (c.edge[i]) try_aside(in, row, c, i);
-      out.flat[c.columns[i]] = c.kind[i] == kAffine;
+      out.flat[c.columns[i]] = c.kind[i] == kAffine ? kPlaneNearBy : kBentWindow;
       if (c.kind[i] != kNone) rest[fitted++] = i;
     }
     finish(in, row, c, rest, fitted, out);
