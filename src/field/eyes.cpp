@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 // turns right normals. With 0 to 0.5 as many hands are held, none (measured, docs/method.md 2.10).
 constexpr double kFaces = -0.1;
 // Share of the weight at a place: a source with less has no surface there (judgement).
-constexpr double kFaint = 0.1;
+constexpr double kFaintSource = 0.1;
 // Cosine between directions to one eye. An error of 18 degrees is far below what kFaces leaves
 // between the sides of a surface (derived).
 constexpr double kSameEye = 0.95;
@@ -55,7 +55,7 @@ bool Eyes::hold(const Vector3d& x, const Vector3d& gradient,
                 std::span<const double> weights) const noexcept {
   double all = 0;
   for (const double w : weights) all += w;
-  const auto counts = [&](std::size_t source) { return weights[source] >= kFaint * all; };
+  const auto counts = [&](std::size_t source) { return weights[source] >= kFaintSource * all; };
   for (std::size_t s = 0; unseen_ != 0 && s < weights.size(); ++s) {
     if ((unseen_ >> s & 1u) != 0 && counts(s)) return true;
   }

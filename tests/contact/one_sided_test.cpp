@@ -30,7 +30,7 @@ std::vector<TestPoint> bulge() {
 class BulgeHand {
  public:
   BulgeHand(const std::vector<TestPoint>& points, const Vector3d& start)
-      : points_(points, {}, false, true), hip_(start) {
+      : points_(points, {}, false, Vector3d(0, 0, 1)), hip_(start) {
     proxy_.reset(start);
   }
 

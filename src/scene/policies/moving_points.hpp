@@ -54,9 +54,9 @@ struct Way {
   PointState to;
   EdgeWay edge;
   Entry entry;
+  std::uint32_t code = 0;  ///< of its place in the index, never falling from point to point
   /// Unit, to where it was seen from; of a point that no block shows.
   Eigen::Vector3f to_eye = Eigen::Vector3f::Zero();
-  std::uint32_t code = 0;  ///< of its place in the index, never falling from point to point
 };
 
 /// Four points that their blocks show again, at both ends of their paths.

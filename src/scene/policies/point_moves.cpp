@@ -171,13 +171,17 @@ Way PointMoves::keep(std::uint32_t i, const PointState& from, float presence, En
   SurfacePoints::EdgePlane edge = was;
   // What a crease meets may not be there any more.
   if (kind != EntryKind::live && edge.share < 0) edge.share = 0;
-  return {from, to, EdgeWay{was, edge}, Entry{confirmed, shown_.entries()[i].variance, 0, kind},
+  return {from,
+          to,
+          EdgeWay{was, edge},
+          Entry{confirmed, shown_.entries()[i].variance, 0, kind},
+          0,
           shown_.to_eye(i)};
 }
 
 Way PointMoves::leave(std::uint32_t i) const {
   const PointState from = shown_.at(i);
-  Way way{from, from, {shown_.edge_of(i), {}}, shown_.entries()[i], shown_.to_eye(i)};
+  Way way{from, from, {shown_.edge_of(i), {}}, shown_.entries()[i], 0, shown_.to_eye(i)};
   leave(way);
   return way;
 }
