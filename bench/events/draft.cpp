@@ -30,6 +30,13 @@ void Event::look_from(double tilt, double distance) {
   look_from(distance * Vector3d(-std::sin(tilt), 0, std::cos(tilt)));
 }
 
+void Event::seen_by(const std::string& family) {
+  SimulatedSetup setup;
+  setup.camera.noise.seed = camera.noise.seed;
+  set_simulated(setup, "noise=" + family);
+  camera.noise = setup.camera.noise;
+}
+
 Vector3d Event::to_camera(const Vector3d& x) const {
   return (camera.T_world_camera.translation() - x).normalized();
 }

@@ -28,6 +28,8 @@ struct Event : bench::Stage {
   void look_from(const Eigen::Vector3d& eye);
   /// The same at a distance (m), so far from above (rad) on the side of negative x.
   void look_from(double tilt, double distance);
+  /// Gives the camera the noise of a family of sensors: structured, stereo, tof.
+  void seen_by(const std::string& family);
   /// Unit, from x to the camera.
   [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x) const;
 
@@ -65,6 +67,8 @@ using Row = bench::Row<Event>;
 [[nodiscard]] std::vector<Row> plain_rows();
 /// Thin, slanted and rimmed things, as families of sensors see them.
 [[nodiscard]] std::vector<Row> sensor_rows();
+/// A letter hides some of the table that it stands on; rims behind which nothing is.
+[[nodiscard]] std::vector<Row> hidden_rows();
 /// Things touch, hide and pass close by; other sensors, rates and views.
 [[nodiscard]] std::vector<Row> hostile_rows();
 /// A sensor is at fault where a hand presses.

@@ -190,7 +190,8 @@ std::vector<Row> plain_rows() {
 
 std::vector<Row> all_rows() {
   std::vector<Row> rows;
-  for (const auto& some : {plain_rows(), sensor_rows(), hostile_rows(), fault_rows()}) {
+  for (const auto& some :
+       {plain_rows(), sensor_rows(), hidden_rows(), hostile_rows(), fault_rows()}) {
     rows.insert(rows.end(), some.begin(), some.end());
   }
   return rows;

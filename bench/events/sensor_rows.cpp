@@ -2,20 +2,11 @@
 #include <numbers>
 
 #include "events/event.hpp"
-#include "sim/simulated_camera.hpp"
 
 namespace palpate::events {
 namespace {
 
 using Eigen::Vector3d;
-
-// Gives the camera the noise of a family of sensors: structured, stereo, tof.
-void seen_by(Event& event, const std::string& family) {
-  SimulatedSetup setup;
-  setup.camera.noise.seed = event.camera.noise.seed;
-  set_simulated(setup, "noise=" + family);
-  event.camera.noise = setup.camera.noise;
-}
 
 // Presses all over a table that is seen at a slant; each has to hold.
 void slant(Event& event, const std::string& family) {
@@ -23,7 +14,7 @@ void slant(Event& event, const std::string& family) {
   const double far = event.between(0.7, 1.1);
   event.look_from(tilt, far);
   event.clear();
-  seen_by(event, family);
+  event.seen_by(family);
   event.start(event.place + 0.02 * kUp);
   event.hold(0.6);
   for (int i = 0; i < 8; ++i) {
@@ -46,7 +37,7 @@ void pole(Event& event, const std::string& family) {
     const double sigma = event.one_of({0.001, 0.003, 0.006, 0.015});
     event.camera.noise.model.coefficients = {sigma, 0, 0};
   } else {
-    seen_by(event, family);
+    event.seen_by(family);
   }
   const Vector3d middle = event.place + event.between(0.08, 0.15) * kUp;
   event.cylinder(middle, kUp, radius, 0.3);
@@ -59,7 +50,7 @@ void pole(Event& event, const std::string& family) {
 
 // Over the rim of a plate, 3 mm deep and beyond.
 void over_rim(Event& event, const std::string& family) {
-  if (!family.empty()) seen_by(event, family);
+  if (!family.empty()) event.seen_by(family);
   const Vector3d middle = event.place + event.between(0.1, 0.16) * kUp;
   const Vector3d out = event.to_camera(middle);
   event.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
@@ -72,7 +63,7 @@ void over_rim(Event& event, const std::string& family) {
 
 // Along the rim of a plate, 2 mm inside of it and 3 mm deep: what shakes the force is a washboard.
 void along_rim(Event& event, const std::string& family) {
-  if (!family.empty()) seen_by(event, family);
+  if (!family.empty()) event.seen_by(family);
   const Vector3d middle = event.place + event.between(0.1, 0.16) * kUp;
   const Vector3d out = event.to_camera(middle);
   const SimulatedSolid& plate = event.block(middle - 0.02 * out, out, Vector3d(0.04, 0.04, 0.02));
