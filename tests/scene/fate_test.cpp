@@ -67,6 +67,18 @@ TEST(Fate, WhatLeftTheImageIsHeldWhateverTheBlockShows) {
   }
 }
 
+// A plane that is hidden by about R is supposed to go on in some frames and not in others.
+TEST(Fate, WhatNobodySawIsHeldBehindWhatIsSeen) {
+  const EntryKind kind = EntryKind::supposed;
+  for (const float beyond : {0.6f * kShownRadius, kShownRadius, 0.1f}) {
+    EXPECT_EQ(fate(with_kind(kind, facts_at(beyond))), Fate::hold);
+  }
+  EXPECT_EQ(fate(with_kind(kind, facts_at(0.4f * kShownRadius))), Fate::leave);
+  EXPECT_EQ(fate(with_kind(kind, facts_at(-0.1f))), Fate::go);
+  EXPECT_EQ(fate(with_kind(kind)), Fate::hold);
+  EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::follow);
+}
+
 TEST(Fate, WhatLeavesIsGoneForGood) {
   EXPECT_EQ(fate(with_kind(EntryKind::leaving)), Fate::leave);
   for (const float beyond : {-0.1f, 0.0f, 0.1f}) {

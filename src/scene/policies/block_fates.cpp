@@ -20,8 +20,9 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
   to.shown.clear();
   to.unseen.clear();
   for (std::size_t place = begin; place < end; place += kLanes) {
-    const std::uint32_t first =
-        place + kLanes <= end ? matches_.four_at(place) : BlockEntries::kNone;
+    const std::uint32_t first = place + kLanes <= end && !blocks_.hide(place)
+                                    ? matches_.four_at(place)
+                                    : BlockEntries::kNone;
     FourWays& ways = to.going_on.emplace_back();
     ways.place = static_cast<std::uint32_t>(place);
     const bool live = first != BlockEntries::kNone && are_live(first, ways);
@@ -81,14 +82,16 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
   if (partner) {
     const auto& [i, before] = *partner;
     const bool vouched = !is_doubtful(seen, before);
-    const Fate own = fate({.shown = true, .same = true, .vouched = vouched});
-    if (own == Fate::stay) at = blocks_.depth_of(before.position);
-    add(own == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
+    const Fate next = fate({.shown = true, .same = true, .vouched = vouched});
+    if (next == Fate::stay) at = blocks_.depth_of(before.position);
+    add(next == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
   }
   const std::span<const std::uint32_t> old = matches_.at(seen.place);
+  const std::optional<std::uint32_t> own = partner ? std::optional(partner->i) : std::nullopt;
+  const std::optional<std::uint32_t> behind = settle_behind(seen.place, own, to);
   bool held = false;
   for (const std::uint32_t i : old) {
-    if (partner && i == partner->i) continue;
+    if (i == own || i == behind) continue;
     FateFacts facts{.kind = shown_.entries()[i].kind, .shown = shown};
     if (shown) {
       facts.beyond = blocks_.depth_of(shown_.at(i).position) - at;
@@ -99,6 +102,28 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
     }
     add(moves_.unseen(fate(facts), i), seen, to);
   }
+}
+
+/// Lets a plane go on behind what the block shows, which is the old point `shown`, unless the block
+/// remembers what was seen there, or what it shows comes from there.
+/// @return the old point of that plane.
+std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t place,
+                                                       std::optional<std::uint32_t> shown,
+                                                       SettledPlaces& to) const {
+  const SeenPoint behind = blocks_.behind(place);
+  if (!(behind.state.radius > 0)) return {};
+  std::optional<std::uint32_t> old;
+  for (const std::uint32_t i : matches_.at(place)) {
+    const EntryKind kind = shown_.entries()[i].kind;
+    const float way = (shown_.at(i).position - behind.state.position).norm();
+    const bool same = way <= behind.state.radius;
+    if (kind == EntryKind::hidden || (kind == EntryKind::live && same)) return {};
+    if (kind == EntryKind::supposed && same && i != shown) old = i;
+  }
+  Way way = old ? moves_.follow(behind, *old, shown_.at(*old)) : moves_.appear(behind);
+  way.entry.kind = EntryKind::supposed;
+  add(way, behind, to);
+  return old;
 }
 
 /// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal

@@ -42,6 +42,9 @@ class BlockFates {
   [[nodiscard]] bool keep_going(std::uint32_t first, FourWays& ways) const;
   [[nodiscard]] bool go_on(const SeenFour& seen, FourWays& ways) const;
   void settle(const SeenPoint& seen, SettledPlaces& to) const;
+  [[nodiscard]] std::optional<std::uint32_t> settle_behind(std::uint32_t place,
+                                                           std::optional<std::uint32_t> shown,
+                                                           SettledPlaces& to) const;
   [[nodiscard]] bool is_sure(const SeenPoint& seen,
                              const std::optional<BlockMatches::Partner>& partner) const;
   [[nodiscard]] bool is_doubtful(const SeenPoint& seen, const PointState& before) const;

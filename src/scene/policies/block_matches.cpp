@@ -54,6 +54,7 @@ void BlockMatches::follow_camera(const Pinhole& pinhole) {
     } else {
       const bool stays = entry.kind == EntryKind::live || entry.kind == EntryKind::hidden;
       if (stays) entry.kind = EntryKind::outside;
+      if (entry.kind == EntryKind::supposed) entry.kind = EntryKind::going;
       entry.place = std::min<std::uint32_t>(entry.place, last);
     }
   }

@@ -71,8 +71,8 @@ bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half
 }
 
 void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
-                     const PaddedBlocks& padded, std::span<const Ball> balls, Exact exact,
-                     bool whole) {
+                     const PaddedBlocks& padded, const HiddenPlanes& hidden,
+                     std::span<const Ball> balls, Exact exact, bool whole) {
   largest_half_ = 0;
   if (exact == Exact::nowhere) return;
   mark(depth, radii, padded);
@@ -91,7 +91,7 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
         b += kLanes - 1;
         continue;
       }
-      if (radii[b] == 0) continue;
+      if (radii[b] == 0 || hidden.joins(b)) continue;
       const auto inside = [&](const Ball& ball) {
         return (depth.positions[b].cast<double>() - ball.center).squaredNorm() <=
                ball.radius * ball.radius;

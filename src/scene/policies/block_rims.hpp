@@ -9,6 +9,7 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/shapes.hpp"
+#include "scene/policies/hidden_planes.hpp"
 #include "scene/policies/lanes.hpp"
 #include "scene/policies/padded_blocks.hpp"
 
@@ -26,10 +27,10 @@ class BlockRims {
       : kernel_(kernel), minimum_radius_(minimum_radius) {}
 
   /// Finds the blocks beside rims, inside the balls (sensor frame) or everywhere, of those that are
-  /// not kept, or of the `whole` image. `radii`: of all blocks, and room for kLanes more; `padded`:
-  /// where they are.
+  /// not kept, or of the `whole` image; where a surface goes on `hidden` there is no rim. `radii`:
+  /// of all blocks, and room for kLanes more; `padded`: where they are.
   void find(const FilteredDepth& depth, std::span<const float> radii, const PaddedBlocks& padded,
-            std::span<const Ball> balls, Exact exact, bool whole);
+            const HiddenPlanes& hidden, std::span<const Ball> balls, Exact exact, bool whole);
 
   /// The largest distance to a neighbour that counts, blocks; 0: there is no rim.
   [[nodiscard]] int largest_half() const { return largest_half_; }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "scene/policies/lanes.hpp"
 
@@ -18,13 +17,6 @@ constexpr float kSlope = 0.5f;     // of R over distance
 // Deviation of a place that is sure, in R: at three of it, 0.47 R, a point still weighs more than
 // half by Wyvill's kernel (judgement; docs/method.md 6.7).
 constexpr float kSure = 0.157f;
-
-// Density-normalised weights of a surface that goes on on all sides sum to this times R^2 over the
-// area of a point (docs/method.md 6.7).
-float whole_sum(Kernel kernel) {
-  constexpr double kTurn = 2 * std::numbers::pi;  // rad
-  return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);
-}
 
 // Is there a point to build on? A filter that is fed garbage may put one behind the camera.
 bool present(const FilteredDepth& depth, std::size_t block) {
@@ -61,7 +53,8 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
     start(depth, v, first, count);
   });
   limit_growth(depth);
-  rims_.find(depth, radii_, padded_, balls, exact, whole);
+  hidden_.find({depth, radii_}, padded_);
+  rims_.find(depth, radii_, padded_, hidden_, balls, exact, whole);
   if (rims_.largest_half() > padded_.margin) {
     whole = padded_.make_room(depth, rims_.largest_half());
     each_row(depth, [&](std::size_t v) {

@@ -9,7 +9,9 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
+#include "scene/policies/block_faces.hpp"
 #include "scene/policies/block_rims.hpp"
+#include "scene/policies/hidden_planes.hpp"
 #include "scene/policies/padded_blocks.hpp"
 
 namespace palpate {
@@ -26,7 +28,8 @@ class BlockSurface {
   explicit BlockSurface(Kernel kernel, double minimum_radius = 0)
       : kernel_(kernel),
         minimum_radius_(static_cast<float>(minimum_radius)),
-        rims_(kernel_, minimum_radius_) {}
+        rims_(kernel_, minimum_radius_),
+        hidden_(kernel_) {}
 
   /// Radii and areas of all blocks. Beside rims and holes a weight is exact inside the balls
   /// (sensor frame), elsewhere that of a whole surface. Allocates when the size of frames changes.
@@ -45,6 +48,9 @@ class BlockSurface {
   /// Trust in a fitted point, 0-1: its precision over that of the blocks around it which may
   /// show the same surface, as in a mean of measurements that are not equally good.
   [[nodiscard]] float trust(std::size_t block) const { return trusts_[block]; }
+
+  /// The planes that go on behind what hides them.
+  [[nodiscard]] const HiddenPlanes& hidden() const { return hidden_; }
 
   // The same of all blocks.
   [[nodiscard]] const std::vector<float>& radii() const { return radii_; }
@@ -69,6 +75,7 @@ class BlockSurface {
   std::size_t fours_ = 0;            // in a row
   PaddedBlocks padded_;
   BlockRims rims_;
+  HiddenPlanes hidden_;
 };
 
 /// Finds where the faces of a fitted depth image meet, and tells each block beside an edge or a
@@ -90,7 +97,6 @@ class EdgeFinder {
   }
 
  private:
-  struct Faces;
   /// Two blocks of a row or column whose faces meet between them.
   struct Meeting {
     std::size_t a, b;
@@ -105,13 +111,13 @@ class EdgeFinder {
     float away;  // squared, of the block from where its faces meet, m^2
   };
 
-  void look_at(const Faces& faces, int v);
-  [[nodiscard]] static bool meets(const Faces& faces, std::size_t a, int x, int y);
-  void tell_some(const Faces& faces, std::size_t u, std::size_t v, int x, int y);
-  void tell(const Faces& faces, std::size_t block, std::size_t apart, int x, int y);
-  [[nodiscard]] static Meeting meeting_of(const Faces& faces, std::size_t a, int x, int y);
-  void spread(const Faces& faces, const Meeting& meeting, int x, int y);
-  void tell_one(const Faces& faces, const Meeting& meeting, int x, int y);
+  void look_at(const BlockFaces& faces, int v);
+  [[nodiscard]] static bool meets(const BlockFaces& faces, std::size_t a, int x, int y);
+  void tell_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y);
+  void tell(const BlockFaces& faces, std::size_t block, std::size_t apart, int x, int y);
+  [[nodiscard]] static Meeting meeting_of(const BlockFaces& faces, std::size_t a, int x, int y);
+  void spread(const BlockFaces& faces, const Meeting& meeting, int x, int y);
+  void tell_one(const BlockFaces& faces, const Meeting& meeting, int x, int y);
 
   std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it;
                                          // behind them some that are read and not told

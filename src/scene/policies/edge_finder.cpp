@@ -16,71 +16,32 @@ using Eigen::Vector3f;
 constexpr int kApart = 4;
 
 // Limits of edges and creases (docs/method.md 6.5; judgement).
-constexpr float kTurned = 0.866f;      // cosine of the least angle between two faces: 30 degrees
-constexpr float kSame = 0.94f;         // and of the largest one within a face: 20 degrees
-constexpr float kCertainly = 3;        // deviations
-constexpr float kOfSupport = 0.1f;     // of R, that a face may be bent
+constexpr float kTurned = 0.866f;  // cosine of the least angle between two faces: 30 degrees
+constexpr float kCertainly = BlockFaces::kCertainly;
 constexpr int kMostAway = 8;           // blocks
 constexpr std::size_t kTogether = 8;   // blocks, of which each has a byte of one word (derived)
 constexpr std::uint8_t kInRow = 1;     // a bit
 constexpr std::uint8_t kInColumn = 2;  // a bit
 
+/// Does the face of a block go on for R, or as far as is looked?
+bool goes_on(const BlockFaces& faces, std::size_t block, int x, int y) {
+  const float reach = faces.radii[block];
+  for (int k = 1; k <= kMostAway; ++k) {
+    const std::size_t next = faces.beside(block, k * x, k * y);
+    if (!faces.shares_face(next, block)) return false;
+    const Vector3f way = faces.depth.positions[next] - faces.depth.positions[block];
+    if (way.squaredNorm() >= reach * reach) return true;
+  }
+  return true;
+}
+
 }  // namespace
-
-/// Answers questions about the faces to which the blocks of a frame belong.
-struct EdgeFinder::Faces {
-  const FilteredDepth& depth;
-  const BlockSurface& surface;
-
-  [[nodiscard]] bool fitted(std::size_t block) const {
-    return depth.states[block] == FilteredDepth::State::fitted && depth.confidences[block] > 0 &&
-           surface.radius(block) > 0;
-  }
-
-  /// The block (x, y) away from one; the image's size where there is none.
-  [[nodiscard]] std::size_t beside(std::size_t block, int x, int y) const {
-    const int u = static_cast<int>(block) % depth.columns + x;
-    const int v = static_cast<int>(block) / depth.columns + y;
-    const bool inside = u >= 0 && v >= 0 && u < depth.columns && v < depth.rows;
-    return inside ? static_cast<std::size_t>(v * depth.columns + u) : depth.size();
-  }
-
-  /// How high `block` lies above the plane of another, m.
-  [[nodiscard]] float height(std::size_t block, std::size_t above) const {
-    return depth.normals[above].dot(depth.positions[block] - depth.positions[above]);
-  }
-
-  /// The largest distance of `block` from a face that it lies on, m.
-  [[nodiscard]] float room(std::size_t block, std::size_t of) const {
-    const float variance = depth.deviations[of] * depth.deviations[of] +
-                           depth.deviations[block] * depth.deviations[block];
-    return kOfSupport * surface.radius(of) + kCertainly * std::sqrt(variance);
-  }
-
-  [[nodiscard]] bool shares_face(std::size_t block, std::size_t of) const {
-    return block < depth.size() && fitted(block) &&
-           depth.normals[block].dot(depth.normals[of]) >= kSame &&
-           std::abs(height(block, of)) <= room(block, of);
-  }
-
-  /// Does the face of a block go on for R, or as far as is looked?
-  [[nodiscard]] bool goes_on(std::size_t block, int x, int y) const {
-    const float reach = surface.radius(block);
-    for (int k = 1; k <= kMostAway; ++k) {
-      const std::size_t next = beside(block, k * x, k * y);
-      if (!shares_face(next, block)) return false;
-      const Vector3f way = depth.positions[next] - depth.positions[block];
-      if (way.squaredNorm() >= reach * reach) return true;
-    }
-    return true;
-  }
-};
 
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
   meets_.resize(depth.size() + kTogether);
   of_block_.resize(depth.size());
   told_.resize(depth.size());
-  const Faces faces{depth, surface};
+  const BlockFaces faces{depth, surface.radii()};
   const auto columns = static_cast<std::size_t>(depth.columns);
   const auto rows = static_cast<std::size_t>(depth.rows);
   each_row(depth, [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
@@ -93,7 +54,7 @@ void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
 }
 
 /// Which blocks of a row belong to faces that meet others?
-void EdgeFinder::look_at(const Faces& faces, int v) {
+void EdgeFinder::look_at(const BlockFaces& faces, int v) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.columns);
   const auto row = depth.states.begin() + static_cast<std::ptrdiff_t>(first);
@@ -121,7 +82,7 @@ void EdgeFinder::look_at(const Faces& faces, int v) {
 
 /// Do the planes of a block and one to its right or below it meet between the two, and explain what
 /// lies there, and do both faces go on?
-bool EdgeFinder::meets(const Faces& faces, std::size_t a, int x, int y) {
+bool EdgeFinder::meets(const BlockFaces& faces, std::size_t a, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
   if (!faces.fitted(a) || !faces.fitted(b)) return false;
@@ -139,12 +100,12 @@ bool EdgeFinder::meets(const Faces& faces, std::size_t a, int x, int y) {
     const float off = std::max(share * faces.height(between, a), share * faces.height(between, b));
     if (std::abs(off) > faces.room(between, a)) return false;
   }
-  return faces.goes_on(a, -x, -y) && faces.goes_on(b, x, y);
+  return goes_on(faces, a, -x, -y) && goes_on(faces, b, x, y);
 }
 
 /// Tells rows (1, 0) or columns (0, 1) what lies beyond the edges at a few blocks of a row. No
 /// other lines are told, so that threads may share them.
-void EdgeFinder::tell_some(const Faces& faces, std::size_t u, std::size_t v, int x, int y) {
+void EdgeFinder::tell_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y) {
   const auto columns = static_cast<std::size_t>(faces.depth.columns);
   const std::size_t apart = kApart * (x != 0 ? columns : 1);
   const std::size_t first = v * columns + u;
@@ -155,7 +116,7 @@ void EdgeFinder::tell_some(const Faces& faces, std::size_t u, std::size_t v, int
   for (std::size_t block = first; block < end; ++block) tell(faces, block, apart, x, y);
 }
 
-void EdgeFinder::tell(const Faces& faces, std::size_t block, std::size_t apart, int x, int y) {
+void EdgeFinder::tell(const BlockFaces& faces, std::size_t block, std::size_t apart, int x, int y) {
   const std::uint8_t along = x != 0 ? kInRow : kInColumn;
   const std::uint8_t across = kInRow + kInColumn - along;
   if ((meets_[block] & along) != 0) {
@@ -169,7 +130,7 @@ void EdgeFinder::tell(const Faces& faces, std::size_t block, std::size_t apart, 
   }
 }
 
-EdgeFinder::Meeting EdgeFinder::meeting_of(const Faces& faces, std::size_t a, int x, int y) {
+EdgeFinder::Meeting EdgeFinder::meeting_of(const BlockFaces& faces, std::size_t a, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t b = a + static_cast<std::size_t>(kApart * (y * depth.columns + x));
   const float a_over_b = faces.height(a, b);
@@ -180,8 +141,8 @@ EdgeFinder::Meeting EdgeFinder::meeting_of(const Faces& faces, std::size_t a, in
 }
 
 /// Tells the blocks of a's face within R of the edge, in its row or column, what lies beyond.
-void EdgeFinder::spread(const Faces& faces, const Meeting& meeting, int x, int y) {
-  const float reach = faces.surface.radius(meeting.a);
+void EdgeFinder::spread(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
+  const float reach = faces.radii[meeting.a];
   const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
   const int half = static_cast<int>(std::min(float{kMostAway}, std::ceil(reach / side)));
   for (int k = -half; k <= half; ++k) tell_one(faces, meeting, k * x, k * y);
@@ -189,11 +150,11 @@ void EdgeFinder::spread(const Faces& faces, const Meeting& meeting, int x, int y
 
 /// Tells it to the block (x, y) from a, unless it knows of an edge that is as near: of two in its
 /// row and in its column, that in its row counts.
-void EdgeFinder::tell_one(const Faces& faces, const Meeting& meeting, int x, int y) {
+void EdgeFinder::tell_one(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t block = faces.beside(meeting.a, x, y);
   if (block == depth.size()) return;
-  const float reach = faces.surface.radius(meeting.a);
+  const float reach = faces.radii[meeting.a];
   const float away = (depth.positions[block] - meeting.edge).squaredNorm();
   const bool nearer = of_block_[block] != kNone && told_[block].away <= away;
   if (nearer || away > reach * reach || !faces.shares_face(block, meeting.a)) return;

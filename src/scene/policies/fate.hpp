@@ -29,6 +29,10 @@ struct FateFacts {
   bool second = false;    ///< the block holds another live point already
 };
 
+/// Of R: a supposed point that lies farther behind what its block shows is not that (judgement:
+/// half of what makes one).
+inline constexpr float kSurelyBehind = 0.5f;
+
 /// Total: every combination of facts has a fate.
 [[nodiscard]] constexpr Fate fate(const FateFacts& facts) {
   const EntryKind kind = facts.kind;
@@ -38,6 +42,8 @@ struct FateFacts {
   }
   if (facts.same) return facts.vouched ? Fate::follow : Fate::stay;
   if (kind == EntryKind::outside) return Fate::hold;
+  // A plane that is hidden by about R goes on in some frames and not in others.
+  if (kind == EntryKind::supposed && facts.beyond > kSurelyBehind * facts.radius) return Fate::hold;
   const bool within = -facts.radius <= facts.beyond && facts.beyond <= facts.radius;
   if (kind == EntryKind::leaving || within) return Fate::leave;
   const bool hidden = kind != EntryKind::going && facts.beyond > 0 && facts.may_hide;

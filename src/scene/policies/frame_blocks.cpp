@@ -67,6 +67,7 @@ void FrameBlocks::look(const FilteredDepth& depth, std::span<const Ball> reach, 
     }
     surface_.measure(depth, local_reach_);
   }
+  note_hidden();
   edges_.look(depth, surface_);
 }
 
@@ -90,6 +91,29 @@ void FrameBlocks::note_kept(const KeptTiles& kept) {
       kept_[curve_code(column, row) / kInTile] = kept.at(column, row) ? 1 : 0;
     }
   }
+}
+
+void FrameBlocks::note_hidden() {
+  hide_.assign(order_.size() / kLanes + 1, 0);
+  for (const std::uint32_t block : surface_.hidden().blocks()) {
+    hide_[order_.places[block] / kLanes] = 1;
+  }
+}
+
+SeenPoint FrameBlocks::behind(std::uint32_t place) const {
+  const HiddenPlanes::Point& point = surface_.hidden().at(order_.blocks[place]);
+  SeenPoint seen;
+  seen.place = place;
+  if (!(point.radius > 0)) return seen;
+  seen.state = {.position = turn_ * point.position + shift_,
+                .normal = turn_ * point.normal,
+                .radius = point.radius,
+                .confidence = point.confidence};
+  seen.area = point.area;
+  // Whatever is seen is surer.
+  seen.variance = point.radius * point.radius;
+  seen.state.weight = seen.weight(point.radius);
+  return seen;
 }
 
 SeenFour FrameBlocks::four_at(std::size_t place) const {

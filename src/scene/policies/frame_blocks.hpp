@@ -86,6 +86,12 @@ class FrameBlocks {
   /// What four places show that follow one another; the last place stands for those beyond it.
   [[nodiscard]] SeenFour four_at(std::size_t place) const;
 
+  /// Does a plane go on behind one of four places?
+  [[nodiscard]] bool hide(std::size_t place) const { return hide_[place / kLanes] != 0; }
+
+  /// The point of a plane that goes on behind what the block of a place shows; R = 0: none does.
+  [[nodiscard]] SeenPoint behind(std::uint32_t place) const;
+
   /// The share of blocks around one that show the same surface: what flies between two has few.
   [[nodiscard]] float vouching(std::size_t place) const;
 
@@ -105,6 +111,7 @@ class FrameBlocks {
   static constexpr std::uint32_t kInTile = KeptTiles::kSide * KeptTiles::kSide;  // blocks
 
   void note_kept(const KeptTiles& kept);
+  void note_hidden();
 
   BlockOrder order_;
   BlockSurface surface_;
@@ -115,6 +122,7 @@ class FrameBlocks {
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
   std::vector<std::uint8_t> kept_;  // of tiles along the curve
+  std::vector<std::uint8_t> hide_;  // of four places each
   bool streams_ = false;
   bool resized_ = false;  // the image, since the frame before was put
 };

@@ -11,11 +11,12 @@ namespace palpate {
 
 /// The state of a point of a morphing surface.
 enum class EntryKind : std::uint8_t {
-  live,     ///< the surface that a block shows, or showed last
-  hidden,   ///< by what the block shows
-  going,    ///< has been seen through, and is trusted less and less
-  leaving,  ///< nobody feels it any more: its weight goes over one frame
-  outside,  ///< of the image, since a moving camera looks elsewhere now
+  live,      ///< the surface that a block shows, or showed last
+  hidden,    ///< by what the block shows
+  going,     ///< has been seen through, and is trusted less and less
+  leaving,   ///< nobody feels it any more: its weight goes over one frame
+  outside,   ///< of the image, since a moving camera looks elsewhere now
+  supposed,  ///< of a plane that goes on behind what its block shows: nobody saw it
 };
 
 /// Remembers of a point what the field does not need.
