@@ -56,7 +56,7 @@ struct Way {
   EdgeWay edge;
   Entry entry;
   std::uint32_t code = 0;  ///< of its place in the index, never falling from point to point
-  /// Unit, to where it was seen from; of a point that no block shows.
+  /// Unit, to where it was seen from; of an old point that no block shows. Zero: from here.
   Eigen::Vector3f to_eye = Eigen::Vector3f::Zero();
 };
 

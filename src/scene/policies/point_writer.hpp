@@ -46,8 +46,9 @@ class PointWriter {
   /// Puts a written point beside an edge. One thread, in rising order of points.
   void add_edge(std::size_t at, const EdgeWay& edge);
 
-  /// Says where the next of the last points was seen from, as a direction.
-  void add_eye(const Eigen::Vector3f& to_eye) { points_->eye->remembered.push_back(to_eye); }
+  /// Writes where the next of the last points was seen from: a point that is new, from the eye of
+  /// all others.
+  void add_eye(const Way& way);
 
   /// Indexes the points and finishes them as palpate::finish() does.
   void end(const Extremes& extremes);

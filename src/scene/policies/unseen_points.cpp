@@ -60,7 +60,7 @@ void UnseenPoints::write(PointWriter& writer, PointWriter::Extremes& extremes,
     way.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kPlaceBits);
     writer.write(at, way, extremes);
     writer.add_edge(at, way.edge);
-    writer.add_eye(way.to_eye);
+    writer.add_eye(way);
     entries[at++] = way.entry;
   }
 }
