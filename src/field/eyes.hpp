@@ -11,7 +11,7 @@
 namespace palpate {
 
 /// The eyes that saw a patch's points. A surface holds towards its eye alone: where the gradient of
-/// the field faces no eye, nothing is solid (docs/method.md 2.10). Real-time.
+/// the field faces no eye, nothing is solid (docs/method.md 2.11). Real-time.
 class Eyes {
  public:
   /// Forgets all eyes; places are relative to `center` from now on (m, world).

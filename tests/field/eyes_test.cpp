@@ -1,4 +1,4 @@
-// What an eye saw holds towards that eye alone (docs/method.md 2.10).
+// What an eye saw holds towards that eye alone (docs/method.md 2.11).
 #include "field/eyes.hpp"
 
 #include <gtest/gtest.h>

@@ -20,16 +20,17 @@ using Eigen::Vector3d;
 using test::DepthOf;
 using test::kFrame;
 
-constexpr double kWall = 0.5;    // m
-constexpr double kBar = 0.45;    // m
-constexpr double kHalf = 0.03;   // of the bar, for 1 m of depth
-constexpr double kNoise = 5e-4;  // m
+constexpr double kWall = 0.5;         // m
+constexpr double kBar = 0.45;         // m
+constexpr double kHalf = 0.03;        // of the bar, for 1 m of depth
+constexpr double kPlaneNoise = 5e-4;  // m
 
 double wall_behind_bar(double, double y) {
   return std::abs(y) < kHalf ? kBar : kWall;
 }
 
-FilteredDepth filtered(const DepthOf& depth_of, double noise = kNoise, unsigned seed = 1) {
+FilteredDepth filtered_frame(const DepthOf& depth_of, double noise = kPlaneNoise,
+                             unsigned seed = 1) {
   DepthFilter filter({.memory = 1});
   return filter.filter(test::frame_of(test::small_camera(), 0, depth_of, noise, seed),
                        test::looking_down());
@@ -62,7 +63,7 @@ struct Measured {
 };
 
 TEST(HiddenPlanes, AWallGoesOnBehindABar) {
-  const Measured measured(filtered(wall_behind_bar));
+  const Measured measured(filtered_frame(wall_behind_bar));
   // 22 of 120 rows of pixels are the bar's.
   EXPECT_GT(measured.hidden(), 9u * 70u);
   for (const std::uint32_t block : measured.surface.hidden().blocks()) {
@@ -75,7 +76,7 @@ TEST(HiddenPlanes, AWallGoesOnBehindABar) {
 }
 
 TEST(HiddenPlanes, TheSurfaceIsWholeAcrossTheJoin) {
-  const Measured measured(filtered(wall_behind_bar));
+  const Measured measured(filtered_frame(wall_behind_bar));
   for (double y = -0.03; y <= 0.03; y += 1e-3) {
     EXPECT_NEAR(measured.weight(Vector3d(0.01, y, kWall).cast<float>()), 1, 0.3) << y;
   }
@@ -94,10 +95,10 @@ TEST(HiddenPlanes, ASurfaceThatEndsDoesNotGoOn) {
     return std::abs(y) < kHalf ? kBar : std::abs(y) < 2 * kHalf ? kWall + 0.1 : kWall;
   };
   for (const DepthOf& depth_of : {DepthOf(edge), DepthOf(step), DepthOf(turned)}) {
-    EXPECT_EQ(Measured(filtered(depth_of)).hidden(), 0u);
+    EXPECT_EQ(Measured(filtered_frame(depth_of)).hidden(), 0u);
   }
   // Only what lies behind goes on.
-  const Measured deeper(filtered(through));
+  const Measured deeper(filtered_frame(through));
   for (const std::uint32_t block : deeper.surface.hidden().blocks()) {
     EXPECT_NEAR(deeper.surface.hidden().at(block).position.z(), kWall + 0.1, 3e-3);
   }
@@ -105,14 +106,14 @@ TEST(HiddenPlanes, ASurfaceThatEndsDoesNotGoOn) {
 
 TEST(HiddenPlanes, NothingGoesOnOverMoreThanItsReach) {
   const auto wide = [](double, double y) { return std::abs(y) < 0.11 ? kBar : kWall; };
-  EXPECT_EQ(Measured(filtered(wide)).hidden(), 0u);
+  EXPECT_EQ(Measured(filtered_frame(wide)).hidden(), 0u);
 }
 
 TEST(HiddenPlanes, ToleratesAnyFrame) {
   for (const DepthOf& depth_of :
        {DepthOf([](double, double) { return 0.0; }),
         DepthOf([](double x, double y) { return std::fmod(1e3 * (x + y), 2.0); })}) {
-    EXPECT_NO_THROW((void)Measured(filtered(depth_of)).hidden());
+    EXPECT_NO_THROW((void)Measured(filtered_frame(depth_of)).hidden());
   }
   EXPECT_EQ(Measured(FilteredDepth{}).hidden(), 0u);
 }
@@ -120,7 +121,7 @@ TEST(HiddenPlanes, ToleratesAnyFrame) {
 class HiddenPlanesOfAStream : public testing::Test {
  protected:
   void show(const DepthOf& depth_of) {
-    const FilteredDepth depth = filtered(depth_of, kNoise, ++shown_);
+    const FilteredDepth depth = filtered_frame(depth_of, kPlaneNoise, ++shown_);
     points_ = std::make_shared<SurfacePoints>();
     const double stamp = kFrame * shown_;
     morph_.look({depth, pinhole_});

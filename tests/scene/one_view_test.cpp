@@ -1,4 +1,4 @@
-// Which clouds have an eye (docs/method.md 2.10).
+// Which clouds have an eye (docs/method.md 2.11).
 #include "scene/one_view.hpp"
 
 #include <gtest/gtest.h>

@@ -29,10 +29,10 @@ constexpr int kMostEmpty = 3;
 // Blocks over which a plane goes on at most: 64 pixels, 60 mm at 0.5 m; a hand's width at 0.7 m.
 constexpr int kReach = 32;  // judgement
 
-constexpr std::uint8_t kLeft = 1;     // a bit: a jump to the block on the left
-constexpr std::uint8_t kAbove = 2;    // a bit
-constexpr std::uint8_t kPoint = 4;    // a bit: a plane goes on behind the block
-constexpr std::size_t kTogether = 8;  // blocks, of which each has a byte of one word (derived)
+constexpr std::uint8_t kLeft = 1;         // a bit: a jump to the block on the left
+constexpr std::uint8_t kAbove = 2;        // a bit
+constexpr std::uint8_t kPoint = 4;        // a bit: a plane goes on behind the block
+constexpr std::size_t kRowsTogether = 8;  // blocks, of which each has a byte of one word (derived)
 constexpr std::uint64_t kEach = 0x0101010101010101;  // a bit of each of these (derived)
 
 /// How far the plane of `of` lies behind the block, along the camera's axis, m.
@@ -58,9 +58,9 @@ void HiddenPlanes::find(const BlockFaces& faces, const PaddedBlocks& padded) {
     each_noted(v * columns, columns, kLeft,
                [&](std::size_t u) { look_at(row, static_cast<int>(u)); });
   });
-  detail::parallel_each((columns + kTogether - 1) / kTogether, 1, [&](std::size_t strip) {
-    const std::size_t first = strip * kTogether;
-    const std::size_t count = std::min(kTogether, columns - first);
+  detail::parallel_each((columns + kRowsTogether - 1) / kRowsTogether, 1, [&](std::size_t strip) {
+    const std::size_t first = strip * kRowsTogether;
+    const std::size_t count = std::min(kRowsTogether, columns - first);
     for (int v = 1; v < depth.rows; ++v) {
       each_noted(v * columns + first, count, kAbove, [&](std::size_t u) {
         look_at({faces, first + u, depth.columns, depth.rows}, v);
@@ -76,10 +76,10 @@ void HiddenPlanes::find(const BlockFaces& faces, const PaddedBlocks& padded) {
 template <class Visit>
 void HiddenPlanes::each_noted(std::size_t first, std::size_t count, std::uint8_t what,
                               const Visit& visit) const {
-  for (std::size_t from = 0; from < count; from += kTogether) {
-    const std::size_t end = std::min(count, from + kTogether);
+  for (std::size_t from = 0; from < count; from += kRowsTogether) {
+    const std::size_t end = std::min(count, from + kRowsTogether);
     std::uint64_t notes = ~std::uint64_t{0};  // what stands behind the last ones may be written to
-    if (end == from + kTogether) std::memcpy(&notes, &notes_[first + from], sizeof notes);
+    if (end == from + kRowsTogether) std::memcpy(&notes, &notes_[first + from], sizeof notes);
     if ((notes & what * kEach) == 0) continue;
     for (std::size_t k = from; k < end; ++k) {
       if ((notes_[first + k] & what) != 0) visit(k);
