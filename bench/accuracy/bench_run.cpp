@@ -97,7 +97,7 @@ SimulatedNoiseOptions noise_of(const BenchOptions& options, std::uint64_t layout
   noise.rounding = options.rounding;
   noise.silhouettes = options.silhouettes;
   noise.correlation = options.correlation;
-  // As of the layouts, which are some 0.7 m away.
+  // The layouts are some 0.7 m away.
   noise.disparity_step = std::min(options.terraces * 525 * 0.075 / (0.7 * 0.7), 8.0);
   if (options.sigma > 0) noise.model.coefficients = {options.sigma, 0, 0};
   return noise;

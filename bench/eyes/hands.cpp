@@ -90,7 +90,7 @@ void leave(View& view, const Place& place, Path& path, const Vector3d& from) {
   path.to(from + 0.05 * place.to_eye + 0.03 * across(view, place.to_eye), 0.15).wait(0.15);
 }
 
-/// As far from `begin` along `way` as the hand is not deep in a solid.
+/// The place on the way from `begin` where the hand is deep in a solid, or its end.
 Vector3d shallow_end(const View& view, const Vector3d& begin, const Vector3d& way) {
   constexpr int kPlaces = 100;
   for (int k = 1; k <= kPlaces; ++k) {

@@ -30,8 +30,8 @@ class Proxy::Inside {
   struct Touch {
     Surface surface;                                   // at the proxy
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // as the last step left it; zero: none
-    // Of the surface where contact began, as slides have turned it since: the side that the contact
-    // came from. A surface that turns by itself does not take it along.
+    // The side that the contact came from: the normal where it began, as slides have turned it
+    // since. A surface that turns by itself does not take it along.
     Eigen::Vector3d side = Eigen::Vector3d::Zero();
     Eigen::Vector3d pressed = Eigen::Vector3d::Zero();  // the hand when the surface vanished, m
     bool touching = false;

@@ -95,7 +95,7 @@ std::optional<double> told_variance(double n, double plane, double quadric, doub
   if (!(free > 0)) return {};
   const double seen = std::max(variance, quadric / free);
   const double term = shared * seen;
-  constexpr int kMore = kFree - kOfPlane;
+  constexpr int kMore = kFree - kOfPlane;  // derived
   if (!exceeds_noise(plane - quadric - kMore * term, kMore, term, 1)) return {};
   return seen;
 }

@@ -142,6 +142,14 @@ Value capped(const ImplicitSurface& surface, const Support& support, const Value
           trust.f * cap.grad + (1 - trust.f) * blob.grad + (cap.f - blob.f) * trust.grad};
 }
 
+/// Writes the value into the sample: what faces no eye (`averted`) is free (docs/method.md 2.11).
+void seen(const Value& value, bool averted, Sample& sample) noexcept {
+  sample.averted = averted;
+  sample.behind = averted && !(value.f > 0);
+  sample.value = sample.behind ? free_value(sample.radius) : value.f;
+  if (!sample.behind) sample.gradient = value.grad;
+}
+
 }  // namespace
 
 ImplicitSurface::ImplicitSurface(const FieldOptions& given) : sums(&simd::best_sums()) {
@@ -190,24 +198,13 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   if (v.f > kFaintNormals * support.plain) {
     height = joined_height(options, place, kFaintLabel * v.f);
   }
-  Value value;
-  if (height) {
-    value = capped(surface, support, *height, v);
-  } else {
-    value = as_length(options, support, level_of(surface, support));
-    if (options.gradient == FieldOptions::Gradient::printed) {
-      value.grad = printed_gradient(surface, columns, local);
-    }
+  Value value = height ? capped(surface, support, *height, v)
+                       : as_length(options, support, level_of(surface, support));
+  if (!height && options.gradient == FieldOptions::Gradient::printed) {
+    value.grad = printed_gradient(surface, columns, local);
   }
   const std::span weights(sums.w, static_cast<std::size_t>(columns.sources));
-  sample.averted = !patch.eyes().hold(local, value.grad, weights);
-  if (sample.averted && !(value.f > 0)) {
-    sample.value = free_value(sample.radius);
-    sample.behind = true;
-    return sample;
-  }
-  sample.value = value.f;
-  sample.gradient = value.grad;
+  seen(value, !patch.eyes().hold(local, value.grad, weights), sample);
   return sample;
 }
 

@@ -17,8 +17,8 @@ constexpr int kApart = 4;
 
 // Limits of edges and creases (docs/method.md 6.5; judgement).
 constexpr float kTurned = 0.866f;  // cosine of the least angle between two faces: 30 degrees
-constexpr float kCertainly = BlockFaces::kCertainly;
-constexpr int kMostAway = 8;           // blocks
+constexpr float kCertainly = BlockFaces::kCertainly;  // derived
+constexpr int kMostAway = 8;                          // blocks
 constexpr std::size_t kTogether = 8;   // blocks, of which each has a byte of one word (derived)
 constexpr std::uint8_t kInRow = 1;     // a bit
 constexpr std::uint8_t kInColumn = 2;  // a bit

@@ -29,8 +29,8 @@ struct FateFacts {
   bool second = false;    ///< the block holds another live point already
 };
 
-/// Of R: a supposed point that lies farther behind what its block shows is not that (judgement:
-/// half of what makes one).
+/// Share of R: a supposed point that lies farther behind what its block shows is not that
+/// (judgement: half of what makes one).
 inline constexpr float kSurelyBehind = 0.5f;
 
 /// Total: every combination of facts has a fate.

@@ -13,8 +13,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Of R, between blocks of one line, beyond which a jump may be. Rows of one surface are R / 2.2
-// apart at most (docs/method.md 6.7), and where a pixel flies a jump of R is two of half of it.
+// Share of R, between blocks of one line, beyond which a jump may be. Rows of one surface are R
+// / 2.2 apart at most (docs/method.md 6.7), and where a pixel flies a jump of R is two of half of
+// it.
 constexpr float kMayJump = 0.5f;  // derived
 
 // Blocks from a jump to the one whose plane goes on: the two next to it may mix both sides.

@@ -73,7 +73,7 @@ class HiddenPlanes {
   [[nodiscard]] static bool is_hidden(const Line& line, const Gap& gap, int i, const Point& point);
 
   Kernel kernel_;
-  // Of blocks: is there a jump to the one on the left, or above, a point behind it, or
+  // For each block: is there a jump to the one on the left, or above, a point behind it, or
   // one that its surface joins?
   std::vector<std::uint8_t> notes_;
   std::vector<Point> points_;  // of blocks
