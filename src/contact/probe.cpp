@@ -157,7 +157,7 @@ class Pending {
 class Sweeper {
  public:
   Sweeper(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-          bool within) noexcept
+          Standing standing) noexcept
       : probe_(probe),
         from_(from),
         way_(to - from),
@@ -165,11 +165,11 @@ class Sweeper {
         leaf_(probe.traits().resolution > 0 ? probe.traits().resolution
                                             : kBracket * probe.radius()),
         spent_before_(probe.work()),
-        within_(within) {}
+        standing_(standing) {}
 
   [[nodiscard]] Sweep run() noexcept {
     Sweep result = search();
-    result.within = within_;
+    result.standing = standing_;
     probe_.swept += probe_.work() - spent_before_;
     return result;
   }
@@ -192,7 +192,7 @@ class Sweeper {
       if (spent()) return {Sweep::End::truncated, at(free_until)};
       const Interval interval = pending.pop();
       const bool certain = !known_busy && ball_is_free(interval);
-      if (certain) within_ = behind_ = false;
+      if (certain) standing_ = Standing::front;
       known_busy = false;
       if (!certain && half_length(interval) >= leaf_ && !pending.full()) {
         pending.push_halves(interval);
@@ -218,10 +218,12 @@ class Sweeper {
 
   [[nodiscard]] bool stops(const Eigen::Vector3d& place) noexcept {
     const Sample here = probe_.sample(place);
-    const bool from_behind = std::exchange(behind_, here.behind);
-    const bool solid = !(here.value > 0);
-    within_ = solid && (within_ || (from_behind && here.gradient.dot(way_) > 0));
-    return solid && !within_;
+    if (here.value > 0) {
+      standing_ = here.behind ? Standing::behind : Standing::front;
+      return false;
+    }
+    if (standing_ == Standing::behind && here.gradient.dot(way_) > 0) standing_ = Standing::within;
+    return standing_ != Standing::within;
   }
 
   [[nodiscard]] Sweep hit(double free, double solid) noexcept {
@@ -239,8 +241,7 @@ class Sweeper {
   double length_;
   double leaf_;
   int spent_before_;
-  bool within_;          // in a surface that was entered from behind
-  bool behind_ = false;  // was the last place behind a surface?
+  Standing standing_;  // of the last place
 };
 
 }  // namespace
@@ -258,8 +259,8 @@ bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3
 }
 
 Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-            bool within) noexcept {
-  return Sweeper{probe, from, to, within}.run();
+            Standing standing) noexcept {
+  return Sweeper{probe, from, to, standing}.run();
 }
 
 Sweep first_contact(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {

@@ -102,6 +102,13 @@ struct SurfacePoint {
 /// The most that all sweeps of one step spend, in Probe::work() (docs/method.md 3.6).
 inline constexpr int kSweepWork = 1000 * kEvaluationWork;
 
+/// How a free place lies to a surface near it that holds towards its eye alone.
+enum class Standing {
+  front,   ///< not behind it
+  behind,  ///< behind it, where it is solid for its eye
+  within,  ///< in its solid front half, which was entered from behind
+};
+
 /// Where the way from one place to another ends.
 struct Sweep {
   enum class End {
@@ -112,7 +119,7 @@ struct Sweep {
   End end = End::clear;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d solid = Eigen::Vector3d::Zero();     ///< the solid place of a hit, m
-  bool within = false;  ///< did it end in a surface that it entered from behind?
+  Standing standing = Standing::front;                 ///< of its end
 };
 
 /// Brings the end of a hit onto the surface: from its free place or, where that is behind a surface
@@ -128,9 +135,9 @@ struct Sweep {
 /// than the resolution is missed. `from` is taken to be free.
 ///
 /// What holds towards its eye alone stops nobody who comes out of it from behind: a way that enters
-/// it where the field rises passes, until it is free again. `within`: it begins in such a surface.
+/// it where the field rises passes, until it is free again. `standing`: of where it begins.
 [[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                          bool within = false) noexcept;
+                          Standing standing = Standing::front) noexcept;
 
 /// way_is_free(), and sweep() if it is not.
 [[nodiscard]] Sweep first_contact(Probe& probe, const Eigen::Vector3d& from,

@@ -107,11 +107,11 @@ void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& h
 // Free space: to the hand, or to the first contact on the way.
 void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
   if (way_is_free(probe, position_, hip)) return release(hip);
-  if (!within_ && probe.inside(position_)) return touch(probe, position_, hip);
-  const Sweep way = sweep(probe, position_, hip, within_);
+  if (standing_ == Standing::front && probe.inside(position_)) return touch(probe, position_, hip);
+  const Sweep way = sweep(probe, position_, hip, standing_);
   if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
   if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
-  release(way.position, way.within);
+  release(way.position, way.standing);
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
@@ -132,9 +132,9 @@ void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
   spring_.begin(initial_stiffness(place, hip));
 }
 
-void Proxy::Inside::release(const Eigen::Vector3d& place, bool within) noexcept {
+void Proxy::Inside::release(const Eigen::Vector3d& place, Standing standing) noexcept {
   position_ = place;
-  within_ = within;
+  standing_ = standing;
   touch_.normal.setZero();
   touch_.side.setZero();
   spring_.rest();
@@ -205,11 +205,14 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
     at = recover(probe, position_, touch_.normal, search_.looked);
   }
   search_.cut_short = false;
-  if (at || turned || !(here.value > 0) || here.behind) return at;
+  if (at || !(here.value > 0) || here.averted) return at;
   const Sweep way = first_contact(probe, position_, hip);
-  if (way.end == Sweep::End::hit) return land(probe, way);
+  if (way.end == Sweep::End::hit) {
+    touch_.side.setZero();  // another contact
+    return land(probe, way);
+  }
   if (way.end == Sweep::End::clear) {
-    release(hip, way.within);
+    release(hip, way.standing);
   } else {
     cut_short(contact);
     position_ = way.position;
@@ -223,7 +226,7 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
     cut_short(contact);
   }
   if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
-    release(motion.at.position, motion.within);
+    release(motion.at.position, motion.standing);
     return false;
   }
   if (motion.end == Slide::End::unfinished) {

@@ -53,7 +53,7 @@ class Proxy::Inside {
 
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
   void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
-  void release(const Eigen::Vector3d& place, bool within = false) noexcept;
+  void release(const Eigen::Vector3d& place, Standing standing = Standing::front) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
@@ -81,7 +81,7 @@ class Proxy::Inside {
   double radius_ = 0;              // R where it was last known, m
   Search search_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
-  bool within_ = false;                    // free, in a surface that it entered from behind
+  Standing standing_ = Standing::front;    // of a free proxy
   bool started_ = false;
   bool fault_ = false;
 };

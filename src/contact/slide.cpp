@@ -93,7 +93,7 @@ class Slider {
     }
     result_.end = clear ? Slide::End::released : Slide::End::interrupted;
     result_.at.position = clear ? hip_ : way.position;
-    result_.within = way.within;
+    result_.standing = way.standing;
     return Turn::stop;
   }
 

@@ -30,8 +30,8 @@ struct Slide {
   End end = End::resting;
   SurfacePoint at;
   bool sliding = false;
-  bool leapt = false;   ///< it went from one face to another through free space
-  bool within = false;  ///< Sweep::within of where it left the surface to
+  bool leapt = false;                   ///< it went from one face to another through free space
+  Standing standing = Standing::front;  ///< of where it left the surface to
   int iterations = 0;
   double dissipated = 0;  ///< by friction, J
 };

@@ -34,9 +34,9 @@ double deviation(const std::string& keys) {
 
 TEST(SimulatedKeys, ChangeWhatIsSeen) {
   const std::string plain = "approach,width=160,seed=2";
-  for (const char* key : {"sigma=0.004", "terraces=0.125", "curl=0.004", "mixed=0.5",
-                          "pattern=0.002", "holes=0.05", "correlation=8", "smoothing=2",
-                          "hops=0.01", "noise=tof", "noise=stereo", "noise=structured"}) {
+  for (const char* key :
+       {"sigma=0.004", "terraces=0.125", "curl=0.004", "mixed=0.5", "pattern=0.002", "holes=0.05",
+        "correlation=8", "smoothing=2", "noise=tof", "noise=stereo", "noise=structured"}) {
     EXPECT_NE(frame_of(plain), frame_of(plain + "," + key)) << key;
   }
   EXPECT_EQ(frame_of(plain), frame_of(plain + ",terraces=0,curl=0,mixed=0,pattern=0,holes=0"));
