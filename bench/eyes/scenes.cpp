@@ -188,12 +188,12 @@ void View::ball(const Vector3d& center, double radius) {
 }
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all = {
+  static const std::vector<Kind> kAll = {
       {"stairs", stairs}, {"grooves", grooves}, {"letters", letters}, {"plates", plates},
       {"fins", fins},     {"corner", corner},   {"cup", cup},         {"gaps", gaps},
       {"rods", rods},     {"hand", hand},       {"table", table},     {"things", things},
       {"slopes", slopes}};
-  return all;
+  return kAll;
 }
 
 void set_noise(const std::string& name, View& view) {
