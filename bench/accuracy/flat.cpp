@@ -42,15 +42,8 @@ std::string bin_name(const FlatBin& bin) {
 }
 
 PlaneView draw_view(const FlatBin& bin, Random& random) {
-  PlaneView view;
-  view.distance = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
-  view.incidence =
-      between(random, kIncidences[bin.incidence], kIncidences[bin.incidence + 1]) * kDegree;
-  view.x = between(random, -0.08, 0.08);
-  view.y = between(random, -0.08, 0.08);
-  view.about = between(random, 0, 2 * std::numbers::pi);
-  view.turn = between(random, 0, 2 * std::numbers::pi);
-  return view;
+  return draw_plane_view(random, kDistances[bin.distance], kDistances[bin.distance + 1],
+                         kIncidences[bin.incidence], kIncidences[bin.incidence + 1]);
 }
 
 // Terraces are as high as the options say at the plane's own distance.

@@ -70,14 +70,9 @@ Seen seen_in(const PlaneView& view) {
 }
 
 SweepCase draw_case(const Bin& bin, Random& random) {
-  PlaneView view;
-  view.distance = between(random, kDistances[bin.distance], kDistances[bin.distance + 1]);
-  view.incidence =
-      between(random, kIncidences[bin.incidence], kIncidences[bin.incidence + 1]) * kDegree;
-  view.x = between(random, -0.08, 0.08);
-  view.y = between(random, -0.08, 0.08);
-  view.about = between(random, 0, 2 * std::numbers::pi);
-  view.turn = between(random, 0, 2 * std::numbers::pi);
+  const PlaneView view =
+      draw_plane_view(random, kDistances[bin.distance], kDistances[bin.distance + 1],
+                      kIncidences[bin.incidence], kIncidences[bin.incidence + 1]);
   SweepCase drawn{make_empty_scene(), {}};
   if (!bin.sphere) {
     drawn.path = put_plane(view, drawn.truth);
@@ -112,6 +107,18 @@ std::string bin_cell(const BenchResults& results, const std::string& contender, 
 }
 
 }  // namespace
+
+PlaneView draw_plane_view(Random& random, double nearest, double farthest, double least,
+                          double most) {
+  PlaneView view;
+  view.distance = between(random, nearest, farthest);
+  view.incidence = between(random, least, most) * kDegree;
+  view.x = between(random, -0.08, 0.08);
+  view.y = between(random, -0.08, 0.08);
+  view.about = between(random, 0, 2 * std::numbers::pi);
+  view.turn = between(random, 0, 2 * std::numbers::pi);
+  return view;
+}
 
 Path put_plane(const PlaneView& view, TruthScene& scene) {
   const Seen seen = seen_in(view);

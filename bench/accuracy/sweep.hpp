@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "accuracy/table.hpp"
+#include "base/numbers.hpp"
 
 namespace palpate::accuracy {
 
@@ -15,6 +16,11 @@ struct PlaneView {
   double about = 0;      ///< direction in which it leans, rad
   double turn = 0;       ///< the slide's direction in the plane, rad
 };
+
+/// Draws a view between two distances (m) and the `least` and `most` incidence (degrees), within 5
+/// degrees of the optical axis.
+[[nodiscard]] PlaneView draw_plane_view(Random& random, double nearest, double farthest,
+                                        double least, double most);
 
 /// Makes the plane the scene's first solid. @return a slide over its place, 10 cm long, 3 mm deep
 [[nodiscard]] Path put_plane(const PlaneView& view, TruthScene& scene);

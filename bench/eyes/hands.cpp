@@ -13,29 +13,6 @@ constexpr double kBefore = 0.03;    // m; judgement: a hand that is free of all 
 constexpr double kDeepest = 0.012;  // m; judgement: what runs deeper into walls tells nothing
 constexpr int kTries = 200;         // judgement
 
-class Path {
- public:
-  explicit Path(const Vector3d& start) : hip_{start} {}
-
-  Path& to(const Vector3d& goal, double speed) {
-    const Vector3d from = hip_.back();
-    const auto ticks = std::max(std::lround((goal - from).norm() / (speed * kTick)), 1L);
-    for (long i = 1; i <= ticks; ++i) {
-      hip_.emplace_back(from + static_cast<double>(i) / static_cast<double>(ticks) * (goal - from));
-    }
-    return *this;
-  }
-  Path& wait(double seconds) {
-    const Vector3d here = hip_.back();
-    hip_.insert(hip_.end(), static_cast<std::size_t>(seconds / kTick), here);
-    return *this;
-  }
-  [[nodiscard]] std::vector<Vector3d> take() { return std::move(hip_); }
-
- private:
-  std::vector<Vector3d> hip_;
-};
-
 /// A seen place, what is its normal, and the direction to the camera.
 struct Place {
   Vector3d at = Vector3d::Zero();
@@ -85,9 +62,11 @@ Vector3d across(View& view, const Vector3d& normal) {
 }
 
 /// Back to free air before the camera, and to and fro there.
-void leave(View& view, const Place& place, Path& path, const Vector3d& from) {
-  path.to(from + 0.05 * place.to_eye, 0.15).wait(0.1);
-  path.to(from + 0.05 * place.to_eye + 0.03 * across(view, place.to_eye), 0.15).wait(0.15);
+void leave(View& view, const Place& place, const Vector3d& from) {
+  view.go(from + 0.05 * place.to_eye, 0.15);
+  view.hold(0.1);
+  view.go(from + 0.05 * place.to_eye + 0.03 * across(view, place.to_eye), 0.15);
+  view.hold(0.15);
 }
 
 /// The place on the way from `begin` where the hand is deep in a solid, or its end.
@@ -104,22 +83,25 @@ std::vector<Vector3d> slide(View& view, const Place& place) {
   const Vector3d along = across(view, place.normal);
   const double length = view.between(0.05, 0.1);
   const Vector3d begin = place.at - kPress * place.normal;
-  Path path(place.at + 0.015 * place.normal);
-  path.to(begin, 0.05).wait(0.1);
+  view.hip = {place.at + 0.015 * place.normal};
+  view.go(begin, 0.05);
+  view.hold(0.1);
   const Vector3d end = shallow_end(view, begin, length * along);
-  path.to(end, view.between(0.04, 0.12)).wait(0.05);
-  leave(view, place, path, end);
-  return path.take();
+  view.go(end, view.between(0.04, 0.12));
+  view.hold(0.05);
+  leave(view, place, end);
+  return std::move(view.hip);
 }
 
 std::vector<Vector3d> poke(View& view, const Place& place) {
   const Vector3d way =
       Eigen::AngleAxisd(view.between(0, 45) * kDegree, across(view, place.normal)) * place.normal;
   const double deep = view.between(0.003, 0.008);
-  Path path(place.at + 0.03 * way);
-  path.to(place.at - deep * way, view.between(0.04, 0.15)).wait(0.1);
-  leave(view, place, path, place.at);
-  return path.take();
+  view.hip = {place.at + 0.03 * way};
+  view.go(place.at - deep * way, view.between(0.04, 0.15));
+  view.hold(0.1);
+  leave(view, place, place.at);
+  return std::move(view.hip);
 }
 
 std::vector<Vector3d> aside(View& view, const Place& place) {
@@ -127,11 +109,12 @@ std::vector<Vector3d> aside(View& view, const Place& place) {
   const Vector3d middle = place.at - view.between(0, 0.006) * place.to_eye;
   const Vector3d from = middle - 0.06 * way;
   if (clearance(view, from) < 0.004) return {};
-  Path path(from);
+  view.hip = {from};
   const Vector3d end = shallow_end(view, from, 0.12 * way);
-  path.to(end, view.between(0.05, 0.2)).wait(0.05);
-  leave(view, place, path, end);
-  return path.take();
+  view.go(end, view.between(0.05, 0.2));
+  view.hold(0.05);
+  leave(view, place, end);
+  return std::move(view.hip);
 }
 
 /// Goes around a thing into its shadow, presses it towards the camera from there, and comes back.
@@ -149,10 +132,15 @@ std::vector<Vector3d> behind(View& view, const Picture& picture, const Place& pl
     const double seen = picture.depth_at(beside, 8);
     if (!(seen > picture.depth_of(beside) + 0.01)) continue;
     if (!is_clear(view, beside, goal, 0.006)) return {};
-    Path path(beside);
-    path.wait(0.05).to(goal, 0.15).to(back + deep * place.to_eye, 0.06).wait(0.15);
-    path.to(goal, 0.1).to(beside, 0.15).wait(0.1);
-    return path.take();
+    view.hip = {beside};
+    view.hold(0.05);
+    view.go(goal, 0.15);
+    view.go(back + deep * place.to_eye, 0.06);
+    view.hold(0.15);
+    view.go(goal, 0.1);
+    view.go(beside, 0.15);
+    view.hold(0.1);
+    return std::move(view.hip);
   }
   return {};
 }

@@ -12,22 +12,10 @@ constexpr std::uint64_t kKinds = 1000;  // seeds of kinds are apart
 
 struct Options {
   bench::SeedOptions seeds;
-  std::string noise = "a,b,c,waves";
-  std::string feeds = "still";
+  std::vector<std::string> noises = {"a", "b", "c", "waves"};
+  std::vector<std::string> feeds = {"still"};
   int hands = 14;  // of a scene; a scene has 16 readers
 };
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char letter : text) {
-    if (letter == ',') {
-      parts.emplace_back();
-    } else {
-      parts.back() += letter;
-    }
-  }
-  return parts;
-}
 
 Feed feed_of(const std::string& name) {
   const std::array<std::string, 4> names = {"still", "moving", "single", "points"};
@@ -81,10 +69,10 @@ void run(const Options& options) {
       "| scenes | hands | held | most N | caught behind | thrown | steps | lost | in shadow | us "
       "|\n"
       "|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const std::string& feed : split(options.feeds)) {
+  for (const std::string& feed : options.feeds) {
     Score total;
     for (const std::string& noise :
-         feed == "points" ? std::vector<std::string>{"none"} : split(options.noise)) {
+         feed == "points" ? std::vector<std::string>{"none"} : options.noises) {
       Score of_noise;
       for (const Kind& kind : kinds()) {
         if (!bench::is_wanted(kind.name, options.seeds.names)) continue;
@@ -113,9 +101,9 @@ int main(int argc, char** argv) {
   eyes::Options options;
   options.seeds.seeds = 2;
   bench::add_options(app, options.seeds);
-  app.add_option("--noise", options.noise,
-                 "Names with commas: a, b, c, waves, structured, stereo, tof");
-  app.add_option("--feeds", options.feeds, "Names with commas: still, moving, single, points");
+  app.add_option("--noise", options.noises, "a, b, c, waves, structured, stereo, tof")
+      ->delimiter(',');
+  app.add_option("--feeds", options.feeds, "still, moving, single, points")->delimiter(',');
   app.add_option("--hands", options.hands, "Hands a scene")->check(CLI::Range(1, 15));
   return bench::run_main(app, argc, argv, [&] {
     eyes::run(options);

@@ -158,6 +158,7 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
     return;
   }
   touch_.waiting = false;
+  if (touch_.side.isZero(0)) touch_.side = at->normal;
   spring_.find();
   const FrictionLaw law = friction_law(options_.friction, factor(touch_.surface.friction_factor),
                                        spring_.stiffness(), dt);
@@ -248,9 +249,7 @@ void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double d
 }
 
 void Proxy::Inside::Touch::carry_side(const Eigen::Vector3d& from) noexcept {
-  if (side.isZero(0)) {
-    side = normal;
-  } else if (normal != from) {
+  if (normal != from) {
     side = (Eigen::Quaterniond::FromTwoVectors(from, normal) * side).normalized();
   }
 }

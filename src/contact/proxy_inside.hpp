@@ -39,7 +39,7 @@ class Proxy::Inside {
     bool waiting = false;  // for a surface that has vanished
 
     [[nodiscard]] bool is_held() const noexcept { return touching && !waiting; }
-    // Has it been led along the surface from a place with this normal to where it is now?
+    // Turns the side as a slide from a place with this normal to here turned the normal.
     void carry_side(const Eigen::Vector3d& from) noexcept;
     // What the surface leaves of a stiffness.
     [[nodiscard]] double softened(double stiffness) const noexcept;

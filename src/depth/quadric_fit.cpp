@@ -51,13 +51,6 @@ struct Moments {
     const auto& t = kTerms[j];
     return of[s[0] + t[0]][s[1] + t[1]][s[2] + t[2]];
   }
-  // Sum of squares that the best plane leaves.
-  [[nodiscard]] double left_by_plane() const {
-    Products all = products();
-    all.diagonal().array() += kTiny * count();
-    const Eigen::Vector3d with_r = all.block<3, 1>(0, 6);
-    return product(6, 6) - with_r.dot(all.topLeftCorner<3, 3>().ldlt().solve(with_r));
-  }
   [[nodiscard]] Products products() const {
     Products all;
     for (int i = 0; i < 10; ++i) {
@@ -111,6 +104,7 @@ struct Fitting {
   void add_line(const Samples& s, int v, Moments& moments, Samples& held) const;
   Moments gather(const Samples& s, Samples& held) const;
   std::optional<double> solve(const Moments& moments);
+  [[nodiscard]] double left_by_plane(const Moments& moments) const;
   bool know(double n, double variance);
   bool run(double variance, double correlation);
 };
@@ -177,6 +171,12 @@ std::optional<double> Fitting::solve(const Moments& moments) {
   return std::max(0.0, solver.eigenvalues()[0]);
 }
 
+// The sum of squares that the best plane leaves, after solve() for the same moments.
+double Fitting::left_by_plane(const Moments& moments) const {
+  const Eigen::Vector3d with_r = products.block<3, 1>(0, 6);
+  return moments.product(6, 6) - with_r.dot(products.topLeftCorner<3, 3>().ldlt().solve(with_r));
+}
+
 // Sets what is known of the quadric, from so many blocks of this variance, what they share
 // included.
 bool Fitting::know(double n, double variance) {
@@ -202,7 +202,7 @@ bool Fitting::run(double variance, double correlation) {
     if (n < kFewestSamples || n < kShare * held.seen) return false;
     left = solve(moments);
     if (!left) return false;
-    plane = moments.left_by_plane();
+    if (pass + 1 == kPasses) plane = left_by_plane(moments);
     const int step = held.step;
     q.support = n * step * step;
     next = {std::max(held.left - step, -q.reach), std::max(held.top - step, -q.reach),

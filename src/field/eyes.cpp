@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Cosine between a gradient and the way to an eye, the least that holds: beyond 90 degrees noise
-// turns right normals. With 0 to 0.5 as many hands are held, none (measured, docs/method.md 2.11).
+// turns right normals. From 0 to -0.7 as many hands are held (measured, docs/method.md 2.11).
 constexpr double kFaces = -0.1;
 // Share of the weight at a place: a source with less has no surface there (judgement).
 constexpr double kFaintSource = 0.1;

@@ -181,13 +181,19 @@ TEST(BentFaces, KnowNormalsOfCylinders) {
   }
 }
 
-TEST(BentFaces, AreTakenWhereAPlaneServesByChance) {
+// A ball after a refit before which one block was level and its window as told.
+BentFrame refitted_with(simd::Flatness flatness) {
   BentFrame frame(noisy_frame({kBall}, {.seed = 6}), kinect_like_noise());
   const std::size_t i = frame.fits.grid.index(kColumn + 6, kRow + 3);
-  frame.fits.flat[i] = simd::kPlaneNearBy;
+  frame.fits.flat[i] = flatness;
   frame.fits.slope_x[i] = 0;
   depth::BentFaces().refit(frame.input(), frame.noise,
                            {.columns = frame.fits.grid.columns, .flags = {}}, frame.fits);
+  return frame;
+}
+
+TEST(BentFaces, AreTakenWhereAPlaneServesByChance) {
+  const BentFrame frame = refitted_with(simd::kPlaneNearBy);
   Errors errors;
   errors.add(kBall, position_of(frame.fits, kColumn + 6, kRow + 3),
              normal_of(frame.fits, kColumn + 6, kRow + 3));
@@ -196,13 +202,8 @@ TEST(BentFaces, AreTakenWhereAPlaneServesByChance) {
 
 // A block whose largest window is a plane is no ball's.
 TEST(BentFaces, LeaveStraightBlocksAlone) {
-  BentFrame frame(noisy_frame({kBall}, {.seed = 6}), kinect_like_noise());
-  const std::size_t i = frame.fits.grid.index(kColumn + 6, kRow + 3);
-  frame.fits.flat[i] = simd::kStraight;
-  frame.fits.slope_x[i] = 0;
-  depth::BentFaces().refit(frame.input(), frame.noise,
-                           {.columns = frame.fits.grid.columns, .flags = {}}, frame.fits);
-  EXPECT_EQ(frame.fits.slope_x[i], 0);
+  const BentFrame frame = refitted_with(simd::kStraight);
+  EXPECT_EQ(frame.fits.slope_x[frame.fits.grid.index(kColumn + 6, kRow + 3)], 0);
 }
 
 // Waves that hang together over much of what is looked at may be taken for anything bent.
