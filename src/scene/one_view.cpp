@@ -38,16 +38,16 @@ bool knows_sides(const PrepareOptions& options) {
 
 }  // namespace
 
-std::optional<SurfacePoints::Eye> OneView::eye_of(const PointCloud& cloud,
+std::optional<SurfaceEye> OneView::eye_of(const PointCloud& cloud,
                                                   const PrepareOptions& options,
                                                   const Eigen::Isometry3d& T_world_sensor) {
   if (!knows_sides(options)) return {};
-  if (options.viewpoint) return SurfacePoints::Eye{T_world_sensor * *options.viewpoint, {}};
+  if (options.viewpoint) return SurfaceEye{T_world_sensor * *options.viewpoint, {}};
   const bool given = !cloud.normals.empty();
   if (!given) proved_ = proved_ || is_view(cloud);
   if (!(given ? normals_face_viewpoint(cloud) : proved_)) return {};
   const Eigen::Vector3d own = cloud.viewpoint.value_or(Eigen::Vector3d::Zero());
-  return SurfacePoints::Eye{T_world_sensor * own, {}};
+  return SurfaceEye{T_world_sensor * own, {}};
 }
 
 }  // namespace palpate

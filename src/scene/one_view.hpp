@@ -16,7 +16,7 @@ class OneView {
   /// point to. A cloud with normals proves its viewpoint where they face it; one without where a
   /// camera there sees each point in its pixel, and then it proves that of all that follow it,
   /// since few pixels prove nothing. `T_world_sensor`: of the cloud's frame.
-  [[nodiscard]] std::optional<SurfacePoints::Eye> eye_of(const PointCloud& cloud,
+  [[nodiscard]] std::optional<SurfaceEye> eye_of(const PointCloud& cloud,
                                                          const PrepareOptions& options,
                                                          const Eigen::Isometry3d& T_world_sensor);
 

@@ -23,7 +23,7 @@ SurfacePoints level_sheet(double height, const std::optional<Vector3d>& eye) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation().z() = height;
   SurfacePoints points = make_points(sheet(kDense, {-0.02, -0.02}, {0.02, 0.02}, T));
-  if (eye) points.eye.emplace(SurfacePoints::Eye{*eye, {}});
+  if (eye) points.eye.emplace(SurfaceEye{*eye, {}});
   return points;
 }
 

@@ -55,7 +55,7 @@ TEST(Facing, ASurfaceThatRisesFromCloudToCloudKeepsItsSide) {
 
 TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
   std::unique_ptr<SurfacePoints> seen = sheet_at(0, 1);
-  seen->eye.emplace(SurfacePoints::Eye{{0, 0, 1}, {}});
+  seen->eye.emplace(SurfaceEye{{0, 0, 1}, {}});
   seen->sheets.part = {0, 1};
   seen->sheets.known = {1, 0};
   for (std::size_t i = 0; i < seen->size(); ++i) {

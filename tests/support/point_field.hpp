@@ -17,7 +17,7 @@ class PointField {
                       bool sharp_edges = false, std::optional<Eigen::Vector3d> eye = {}) {
     SurfacePoints made = make_points(points, options.kernel);
     if (sharp_edges) tell_edges(made);
-    if (eye) made.eye.emplace(SurfacePoints::Eye{*eye, {}});
+    if (eye) made.eye.emplace(SurfaceEye{*eye, {}});
     points_ = std::make_shared<SurfacePoints>(std::move(made));
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({points_});

@@ -13,6 +13,14 @@
 
 namespace palpate {
 
+/// Where surface points were seen from.
+struct SurfaceEye {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world frame, m
+  /// Unit directions, world frame, from the last points of the index to where each was seen from:
+  /// what a camera remembers while it moves on. All others are seen from `place`.
+  std::vector<Eigen::Vector3f> remembered = {};
+};
+
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
 /// grid's sorted order and either as long as the grid or, where it says so, empty.
 ///
@@ -51,14 +59,6 @@ struct SurfacePoints {
     [[nodiscard]] bool empty() const { return sheet.empty(); }
   };
 
-  /// Where points were seen from.
-  struct Eye {
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world frame, m
-    /// Unit directions, world frame, from the last points of the index to where each was seen from:
-    /// what a camera remembers while it moves on. All others are seen from `place`.
-    std::vector<Eigen::Vector3f> remembered = {};
-  };
-
   Eigen::Vector3d origin =
       Eigen::Vector3d::Zero();  ///< world frame; grid points are relative to it, m
   CellGrid grid;
@@ -83,7 +83,7 @@ struct SurfacePoints {
 
   /// What saw all of it, from the side that its normals point to: it holds towards that eye alone.
   /// Of sheets, those of known parts. None: it holds from every side.
-  std::optional<Eye> eye;
+  std::optional<SurfaceEye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 

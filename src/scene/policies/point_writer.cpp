@@ -52,7 +52,7 @@ void PointWriter::make_room(std::size_t room) {
 }
 
 void PointWriter::add_eye(const Way& way) {
-  SurfacePoints::Eye& eye = *points_->eye;
+  SurfaceEye& eye = *points_->eye;
   const Eigen::Vector3d place = points_->origin + way.from.position.cast<double>();
   const bool is_new = way.to_eye.isZero(0);
   eye.remembered.push_back(is_new ? (eye.place - place).normalized().cast<float>().eval()
