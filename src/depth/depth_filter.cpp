@@ -174,21 +174,39 @@ struct DepthFilter::State {
 
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
     resize(frame.camera);
-    const bool same_view =
-        seen && region == last_region && T_world_sensor.matrix() == out.T_world_sensor.matrix();
+    const bool same_pose = seen && T_world_sensor.matrix() == out.T_world_sensor.matrix();
     out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
-    if (out.duplicate && same_view) return out;
-    out.noise = noise(frame);
-    return points(frame);
+    if (out.duplicate && same_pose && region == last_region) return out;
+    const bool again = out.duplicate && same_pose;
+    if (!again) out.noise = noise(frame);
+    return points(frame, again);
+  }
+
+  // Keeps the tiles that hold no plain block: their frame is not averaged twice.
+  void keep_fitted() {
+    const int side = KeptTiles::kSide;
+    for (int row = 0; row < out.rows; row += side) {
+      for (int column = 0; column < out.columns; column += side) {
+        bool plain = false;
+        for (int r = row; r < std::min(row + side, out.rows); ++r) {
+          const auto* const states = &out.states[fits.grid.index(column, r)];
+          const auto* const end = states + std::min(side, out.columns - column);
+          plain = plain || std::find(states, end, FilteredDepth::State::plain) != end;
+        }
+        out.kept.flags[out.kept.index(column, row)] = plain ? 0 : 1;
+      }
+    }
   }
 
   // Fits what does not stand still in its own view and averages it with what is remembered.
-  const FilteredDepth& points(const DepthFrame& frame) {
+  // `again`: the last frame, now for another region.
+  const FilteredDepth& points(const DepthFrame& frame, bool again) {
     average(frame);
     if (!temporal.begin(fits.grid, out.T_world_sensor)) tiles.forget(fits.grid);
     tiles.find(blocks, out.noise, region.change_from(last_region), options.memory > 1, out.kept);
+    if (again) keep_fitted();
     last_region = region;
     const depth::BlockRange fitted =
         window_fits.fit(blocks, out.noise, options.normal_error, region, out.kept, fits);
@@ -238,7 +256,7 @@ const FilteredDepth* DepthFilter::fit_all() {
   if (!state.seen) return nullptr;
   state.region.set(depth::block_grid(state.last.camera));
   if (state.last_region == state.region) return &state.out;
-  return &state.points(state.last);
+  return &state.points(state.last, true);
 }
 
 void DepthFilter::reset() {

@@ -153,35 +153,6 @@ TEST(DepthFilter, FitsInTheBallsOnly) {
   EXPECT_LT(fitted, 600);
 }
 
-TEST(DepthFilter, KnowsAFrameThatRepeatsTheLast) {
-  const Solid table = plane({0, 0, 0.7}, Vector3d(0, -0.5, -0.8).normalized());
-  DepthFilter filter(with_noise(8));
-  DepthFrame frame = noisy_frame({table}, {});
-  EXPECT_FALSE(filter.filter(frame, Isometry3d::Identity()).duplicate);
-  const std::vector<Vector3f> before = filter.filter(frame, Isometry3d::Identity()).positions;
-  frame.stamp = 5;
-  const FilteredDepth& out = filter.filter(frame, Isometry3d::Identity());
-  EXPECT_TRUE(out.duplicate);
-  EXPECT_EQ(out.stamp, 5);
-  EXPECT_EQ(out.positions, before);
-  frame.depth[100] += 1e-6F;
-  EXPECT_FALSE(filter.filter(frame, Isometry3d::Identity()).duplicate);
-  filter.reset();
-  EXPECT_FALSE(filter.filter(frame, Isometry3d::Identity()).duplicate);
-}
-
-TEST(DepthFilter, FitsNewBallsInARepeatedFrame) {
-  const Solid table = plane({0, 0, 0.7}, Vector3d(0, -0.5, -0.8).normalized());
-  DepthFilter filter(with_noise(8));
-  const DepthFrame frame = noisy_frame({table}, {});
-  filter.filter(frame, Isometry3d::Identity(), {});
-  const std::vector<Ball> balls = {{{0, 0, 0.7}, 0.03}};
-  const FilteredDepth& out = filter.filter(frame, Isometry3d::Identity(), balls);
-  EXPECT_TRUE(out.duplicate);
-  EXPECT_EQ(out.states[static_cast<std::size_t>(30 * out.columns + 40)],
-            FilteredDepth::State::fitted);
-}
-
 TEST(DepthFilter, SeesThroughDistortion) {
   CameraModel camera{320, 240, {262, 262, 159.5, 119.5}, {-0.2, 0.05, 0.001, -0.001, 0}};
   const Vector3d normal = Vector3d(0.2, -0.6, -0.8).normalized();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -94,6 +95,26 @@ TEST(BlockSurface, RadiiFollowTheSpacingOfRows) {
   surface.measure(slope);
   const double rows = pitch * 0.5 / std::cos(tilt);
   EXPECT_NEAR(surface.radius(middle) / (2.2 * rows), 1, 0.1);
+}
+
+// One frame under waves of noise: R holds its layer, or half a wave. Averaged, it needs neither.
+TEST(BlockSurface, SupportHoldsALayerOfNoiseOrHalfAWave) {
+  const double pitch = 2 / 375.0;
+  const double correlation = 10;
+  const double rows = pitch * 0.5;
+  FilteredDepth wall = depth_of(test::wall(0.5));
+  wall.noise.correlation = correlation;
+  BlockSurface surface(Kernel::wyvill);
+  const auto middle = static_cast<std::size_t>(wall.columns * 30 + 40);
+  const auto radius_at = [&](float deviation) {
+    std::fill(wall.deviations.begin(), wall.deviations.end(), deviation);
+    surface.measure(wall);
+    return surface.radius(middle);
+  };
+  EXPECT_NEAR(radius_at(8e-3f), correlation * std::sqrt(2 * std::numbers::pi) / 4 * rows, 1e-4);
+  const float between = 2.5e-3f;
+  EXPECT_NEAR(radius_at(between), 4 * between, 1e-4);
+  EXPECT_NEAR(radius_at(2e-4f), 2.5 * rows, 1e-4);
 }
 
 TEST(BlockSurface, NoRadiusIsBelowTheMinimum) {

@@ -18,6 +18,14 @@ constexpr float kSlope = 0.5f;     // of R over distance
 // half by Wyvill's kernel (judgement; docs/method.md 6.7).
 constexpr float kSure = 0.157f;
 
+// Deviations of a place within R, so that R shows a layer of noise as a layer: as many as in clouds
+// (docs/method.md 5.3).
+constexpr float kLayer = 4;
+
+// Half a wave of noise of correlation c, in c blocks: white noise after a blur of s pixels crosses
+// its mean every sqrt(2) pi s, and c is 2 sqrt(pi) s (derived; Rice 1944).
+constexpr float kHalfWave = 0.627f;
+
 // Is there a point to build on? A filter that is fed garbage may put one behind the camera.
 bool present(const FilteredDepth& depth, std::size_t block) {
   if (depth.states[block] == FilteredDepth::State::empty || !(depth.positions[block].z() > 0))
@@ -71,6 +79,7 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
 void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count) {
   const auto pitch = static_cast<float>(depth.pitch);
   const float whole = whole_sum(kernel_);
+  const float half_wave = kHalfWave * static_cast<float>(depth.noise.correlation);
   const std::size_t begin = static_cast<std::size_t>(v) * depth.columns + first;
   for (std::size_t b = begin; b < begin + static_cast<std::size_t>(count); ++b) {
     if (!present(depth, b)) {
@@ -80,7 +89,8 @@ void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count
     const float side = pitch * depth.positions[b].z();
     const float rows = std::max(side, depth.spacings[b]);
     const float area = side * rows;
-    radii_[b] = std::max({kSpacings * std::sqrt(area), kRows * rows, minimum_radius_});
+    const float layer = std::min(kLayer * depth.deviations[b], half_wave * rows);
+    radii_[b] = std::max({kSpacings * std::sqrt(area), kRows * rows, layer, minimum_radius_});
     areas_[b] = area / whole;
   }
 }

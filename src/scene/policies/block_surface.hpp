@@ -37,9 +37,9 @@ class BlockSurface {
   /// The same, exact everywhere.
   void measure(const FilteredDepth& depth);
 
-  /// R_i, m: max(2.5 s, 2.2 times the largest spacing of rows) and no less than the minimum,
-  /// limited so that it grows by half the distance at most from block to block; 0 where there is no
-  /// point.
+  /// R_i, m: the largest of 2.5 s, 2.2 times the largest spacing of rows, the minimum, and four
+  /// deviations of the place or half a wave of the noise, whichever is less; limited so that it
+  /// grows by half the distance at most from block to block; 0 where there is no point.
   [[nodiscard]] float radius(std::size_t block) const { return radii_[block]; }
 
   /// a_i R_i^2, m^2: the density weight of a point with radius R is this over R^2.
