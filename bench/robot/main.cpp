@@ -8,6 +8,7 @@ using palpate::robot::Score;
 constexpr palpate::bench::Column<Score> kColumns[] = {{"told", &Score::told},
                                                       {"waits %", &Score::waits, 1, 100},
                                                       {"in sight %", &Score::needless, 1, 100},
+                                                      {"again s", &Score::again, 2},
                                                       {"deepest mm", &Score::deepest},
                                                       {"unexcused", &Score::unexcused},
                                                       {"beyond", &Score::beyond},

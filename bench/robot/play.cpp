@@ -67,24 +67,17 @@ class Judge {
       needless_ += kTicksALook * kTick;
     }
     if (!answer.reason.empty()) waits_[std::string(answer.reason)] += kTicksALook * kTick;
-    if (answer.retreats) went_back(*answer.target, now);
+    note_patience(answer, state, now);
+    if (answer.target) told(*answer.target, now);
+    if (answer.retreats) {
+      went_back(*answer.target, now);
+    } else {
+      back_.reset();
+    }
     if (!answer.target || answer.retreats) {
       last_.reset();
-      if (!answer.retreats) back_.reset();
       return;
     }
-    back_.reset();
-    ++score_.told;
-    const double depth = depth_at(*answer.target, now);
-    const double shown = std::min(depth, depth_at(*answer.target, newest(now)));
-    score_.deepest = std::max(score_.deepest, depth);
-    if (shown > score_.unexcused) {
-      score_.unexcused = shown;
-      score_.sigma = 1e3 * sigma_at(*answer.target);
-    }
-    note_beyond(*answer.target, depth, now);
-    score_.late =
-        std::max(score_.late, std::min(shown, depth_at(*answer.target, newest(now - kLate))));
     if (last_)
       score_.hand_moves = std::max(
           score_.hand_moves, 1e3 * ((*answer.target - *last_).norm() - (state.hip - hip_).norm()));
@@ -113,6 +106,30 @@ class Judge {
     double stamp = 0;
     for (const Arrivals& of : arrivals) stamp = std::max(stamp, of.newest(by));
     return stamp;
+  }
+  // How long does the robot wait while hand and tool are in plain sight, and free?
+  void note_patience(const ros::RobotGuide::Answer& answer, const ServoState& state, double now) {
+    const auto in_sight = [&](const Vector3d& x) {
+      return depth_at(x, now) == 0 && is_seen(x, now);
+    };
+    const bool waits = !answer.reason.empty() && newest(now) > 0;
+    const bool needless = waits && in_sight(state.contact.proxy) && in_sight(state.hip);
+    sighted_ = needless ? sighted_ + kTicksALook * kTick : 0;
+    score_.again = std::max(score_.again, sighted_);
+  }
+  // Every target counts, whatever the state.
+  void told(const Vector3d& target, double now) {
+    ++score_.told;
+    const double depth = depth_at(target, now);
+    const double shown = std::min(depth, depth_at(target, newest(now)));
+    score_.deepest = std::max(score_.deepest, depth);
+    if (shown > score_.unexcused) {
+      score_.unexcused = shown;
+      score_.sigma = 1e3 * sigma_at(target);
+    }
+    note_beyond(target, depth, now);
+    const double late = std::min(shown, depth_at(target, newest(now - kLate)));
+    score_.late = std::max(score_.late, late);
   }
   void note_beyond(const Vector3d& x, double depth, double now) {
     const Allowance allowed = allowance(trial_, x, now);
@@ -149,6 +166,7 @@ class Judge {
   long looks_ = 0;
   bool excused_ = false;  // the wait that goes on began out of sight
   double needless_ = 0;   // s
+  double sighted_ = 0;    // s of the present wait in which all was free and in sight
   std::map<std::string, double> waits_;
   std::optional<Vector3d> last_;
   std::optional<Vector3d> back_;

@@ -144,6 +144,13 @@ void rests_under_two(Trial& trial) {
   trial.cameras.push_back(other.cameras.front());
 }
 
+// The hand stays in front of it, and frames are lost.
+void rests_with_losses(Trial& trial, double lost) {
+  rests(trial);
+  trial.cameras.front().options.dropped = lost;
+  for (Eigen::Vector3d& place : trial.hip) place = {0, 0, 0.05};
+}
+
 void rests_with_size(Trial& trial) {
   rests(trial);
   trial.tool_radius = 0.004;
@@ -169,7 +176,10 @@ std::vector<Row> all_rows() {
           {"tool with size", with_size},
           {"at rest", rests},
           {"at rest, two cameras", rests_under_two},
-          {"at rest, tool with size", rests_with_size}};
+          {"at rest, tool with size", rests_with_size},
+          {"at rest, none lost", [](Trial& trial) { rests_with_losses(trial, 0); }},
+          {"at rest, a tenth lost", [](Trial& trial) { rests_with_losses(trial, 0.1); }},
+          {"at rest, a third lost", [](Trial& trial) { rests_with_losses(trial, 1. / 3); }}};
 }
 
 }  // namespace palpate::robot

@@ -58,6 +58,7 @@ struct Score {
   double told = 0;       ///< targets
   double waits = 0;      ///< share of the time
   double needless = 0;   ///< share of it in waits that began with the tool in plain sight
+  double again = 0;      ///< s; longest part of a wait in which hand and tool were free in sight
   double deepest = 0;    ///< of targets
   double unexcused = 0;  ///< and deep in the newest frame that had arrived, too: nothing excuses it
   double beyond = 0;     ///< deepest beyond noise and one frame's motion (allowance.hpp)

@@ -25,6 +25,7 @@ constexpr std::array<Reason, 5> kReasons = {
 constexpr Reason kBehind = kReasons[2];
 constexpr Reason kPassed = "the surface passed over the tool";
 constexpr Reason kCame = "something came between camera and tool";
+constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
 constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 constexpr Reason kMoved = "a surface moved over the tool";
 constexpr Reason kWay = "the way to the tool is not seen free";
@@ -44,6 +45,9 @@ constexpr double kJoin = 0.02;  // m; a hand finds a place again to that (judgem
 constexpr double kJump = 0.01;
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
+// s without news of the hand that change nothing: no hand gets anywhere in it (0.5 m/s: 10 mm, as
+// kJump)
+constexpr double kLateHand = 0.02;
 constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -122,8 +126,10 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
 bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
   if (!robot_.place) return true;
   const Vector3d way = target - *robot_.place;
+  // Balls half a radius apart leave 3 % of the radius between them.
+  const double step = std::max(kWayStep, tool_radius_ / 2);
   Memory memory = robot_.memory;
-  for (double gone = kWayStep; gone < way.norm(); gone += kWayStep) {
+  for (double gone = step; gone < way.norm(); gone += step) {
     const Place place = judge(*robot_.place + gone * way.normalized(), now, memory);
     const bool leaves = gone <= kJump && place.solid() && place.seen.behind <= kJump;
     if (!place.free() && !leaves) return false;
@@ -133,13 +139,13 @@ bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
 
 RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pressed) {
   const double dt = std::clamp(now - std::exchange(looked_, now), 0.0, kLongestStep);
-  if (options_.hand) return follow(state.hip);
+  if (options_.hand) return follow(state.hip, now);
   if (has(state.field_notes, FieldNote::tool_too_large)) {
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
   const Place proxy = judge(state.contact.proxy, now, tool_);
-  if (proxy.source == nullptr) return without_view(state, now, pressed);
+  if (proxy.source == nullptr) return without_view(state, dt, pressed);
   // What a cloud has there may hold the tool later, whatever a camera sees.
   if (has(state.field_notes, FieldNote::not_loaded)) {
     pause();
@@ -151,34 +157,50 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
-  Memory hand = tool_;
-  note(free, free && judge(state.hip, now, hand).free(), now, pressed);
+  Memory memory = tool_;
+  note(free ? judge(state.hip, now, memory) : proxy, free, dt, pressed);
   if (!follows_) return wait(proxy, now, dt);
   const Vector3d target = state.contact.proxy + proxy.seen.lift * proxy.seen.towards;
-  return pressed || may_go_to(target, now) ? follow(target, ahead) : wait(proxy, now, dt);
+  if (!pressed && !may_go_to(target, now)) return wait(proxy, now, dt);
+  return follow(target, now - proxy.seen.age, ahead);
 }
 
-// Stops following when the proxy is not free. Starts again when proxy and hand have been free for
-// kFreeFor, when the button is pressed again, or after a loss of sight shorter than kFreeFor.
-void RobotGuide::note(bool proxy_free, bool both_free, double now, bool pressed) {
-  free_since_ = both_free ? std::min(free_since_, now) : kNever;
-  const bool may =
-      follows_ || pressed || now - free_since_ >= kFreeFor || now - followed_ <= kFreeFor;
-  follows_ = proxy_free && may;
+// After a loss of sight shorter than kFreeFor it goes on at once.
+bool RobotGuide::may_start(bool pressed) const {
+  return pressed || free_for_ >= kFreeFor || looked_ - followed_ <= kFreeFor;
 }
 
-RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double ahead) {
-  robot_ = {.place = target, .memory = tool_, .seen = looked_};  // it is where the tool is
+// Stops following when the proxy is not free. Counts how long hand and proxy were seen free. A
+// shorter loss of sight than kFreeFor suspends the count; `hand`: what is seen of the hand or,
+// where the proxy is not free, of the proxy.
+void RobotGuide::note(const Place& hand, bool proxy_free, double dt, bool pressed) {
+  const bool sighted = hand.free() || hand.solid();
+  if (sighted) sighted_ = looked_;
+  if (proxy_free && hand.free()) {
+    free_for_ += dt;
+  } else if (sighted || looked_ - sighted_ > kFreeFor) {
+    free_for_ = 0;
+  }
+  follows_ = proxy_free && (follows_ || may_start(pressed));
+}
+
+RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double stamp, double ahead) {
+  // It is where the tool is.
+  robot_ = {.place = target, .memory = tool_, .clear = stamp, .seen = looked_};
   ahead_ = ahead;
   followed_ = looked_;
   return {.target = target};
 }
 
 void RobotGuide::pause() {
-  robot_.held = robot_.seen = -kNever;  // not seen meanwhile
-  free_since_ = kNever;
+  robot_.clear = robot_.seen = -kNever;  // not seen meanwhile
+  free_for_ = 0;
   followed_ = -kNever;
   ahead_ = 0;
+}
+
+void RobotGuide::miss_hand(double now) {
+  if (now - looked_ > kLateHand) pause();
 }
 
 RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
@@ -197,49 +219,67 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
     answer.why = answer.reason;
   }
   if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
-  const double step = std::min(options_.retreat * dt, held.seen.behind);
+  // In front of what was measured at once, and of what is foreseen at its speed.
+  const double step =
+      std::max(std::min(options_.retreat * dt, held.seen.behind), held.seen.measured);
+  if (held.seen.measured > 0) is_clear(now - held.seen.age);
+  robot_.gone += step - held.seen.measured;
   robot_.place = *robot_.place + step * held.seen.towards;
   answer.target = robot_.place;
   answer.retreats = true;
   return answer;
 }
 
-// Lets the robot go back only from what came steadily over its position. What came in a jump, or
-// unseen, stands between it and the camera: the way back would lead into it. A shorter loss of
-// sight than kFreeFor changes nothing.
+// Lets the robot go back only from what comes over its place no faster than it may go back: by what
+// is seen and foreseen of it since a frame that showed nothing there. What came by more than kJump
+// at once, or unseen, stands between it and the camera: the way back would lead into it. A shorter
+// loss of sight than kFreeFor changes nothing.
 void RobotGuide::note_held(const Place& held, double now) {
   if (held.free() || held.solid()) robot_.seen = now;
   if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
-  const double known = held.free() ? 0 : -kNever;
-  const double before = std::exchange(robot_.held, held.solid() ? held.seen.behind : known);
+  if (!held.free() && !held.solid()) robot_.clear = -kNever;
+  if (held.free() || (held.solid() && !(held.seen.measured > 0))) is_clear(now - held.seen.age);
   if (!held.solid()) {
     robot_.over = {};
     return;
   }
   followed_ = -kNever;
-  if (robot_.over.what.empty()) robot_.over.since = now;
+  const bool begins = robot_.over.what.empty();
+  if (begins) robot_.over.since = now;
   if (robot_.over.what == kCame) return;
-  robot_.over.what = robot_.held - before <= kJump ? kPassed : kCame;
+  const double moved = held.seen.behind + robot_.gone;
+  const bool leaps = moved > kJump;
+  const bool fast = leaps || moved > options_.retreat * (now - robot_.clear);
+  const bool came = begins && (leaps || robot_.clear == -kNever);
+  robot_.over.what = came ? kCame : fast && options_.retreat > 0 ? kFast : kPassed;
+}
+
+// A frame showed nothing over the robot's place.
+void RobotGuide::is_clear(double stamp) {
+  if (stamp <= robot_.clear) return;
+  robot_.clear = stamp;
+  robot_.gone = 0;
 }
 
 // Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
 // tool until a surface comes over it or lets it go. It follows again once nothing has held the hand
 // for kFreeFor and the tool is where the robot is.
-RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double now, bool pressed) {
+RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, bool pressed) {
   const auto waits = [](Reason reason) {
     return Answer{.reason = reason, .why = std::string(reason)};
   };
   const Reason reason = broken_way(state);
   if (!reason.empty() && !robot_.place) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
-  note(reason.empty(), reason.empty() && !state.contact.touching, now, pressed);
+  free_for_ = reason.empty() && !state.contact.touching ? free_for_ + dt : 0;
+  follows_ = reason.empty() && (follows_ || may_start(pressed));
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
   if (!pressed && robot_.place && (state.contact.proxy - *robot_.place).norm() > kJoin)
     return waits(kApart);
   // In the step in which a surface moved over it, it may still be a little inside.
   if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
     return waits(kMoved);
-  return follow(state.contact.proxy);
+  return follow(state.contact.proxy, looked_);
 }
 
 }  // namespace palpate::ros

@@ -15,8 +15,9 @@ namespace palpate::ros {
 
 /// Decides where a robot may go: to the proxy, where a camera sees that it is free, or on a surface
 /// from its front. Else it waits at its last target, and goes back towards the camera when what is
-/// seen comes steadily over it. It follows again once hand and proxy have been free for half a
-/// second, or the dead man's button is pressed again. One thread asks.
+/// seen comes over it no faster than it may go back; no target lies in what the newest frame shows.
+/// It follows again once hand and proxy have been seen free for half a second, or the dead man's
+/// button is pressed again. One thread asks.
 class RobotGuide {
  public:
   /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
@@ -36,6 +37,9 @@ class RobotGuide {
 
   /// No target is sent now, for other reasons.
   void pause();
+
+  /// Nothing is known of the hand now: for less than 20 ms that changes nothing.
+  void miss_hand(double now);
 
   /// The robot is there, whatever target was answered last.
   void is_at(const std::optional<Eigen::Vector3d>& place) { robot_.place = place; }
@@ -60,11 +64,14 @@ class RobotGuide {
   [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
   [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now) const;
-  void note(bool proxy_free, bool both_free, double now, bool pressed);
-  [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double ahead = 0);
+  [[nodiscard]] bool may_start(bool pressed) const;
+  void note(const Place& hand, bool proxy_free, double dt, bool pressed);
+  // `stamp`: of the newest frame, which shows the target free, s.
+  [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double stamp, double ahead = 0);
   [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
   void note_held(const Place& held, double now);
-  [[nodiscard]] Answer without_view(const ServoState& state, double now, bool pressed);
+  void is_clear(double stamp);
+  [[nodiscard]] Answer without_view(const ServoState& state, double dt, bool pressed);
 
   // Surface or obstacle that came over the waiting robot.
   struct Over {
@@ -75,8 +82,9 @@ class RobotGuide {
   struct Robot {
     std::optional<Eigen::Vector3d> place = {};  // where it is, m, world
     Memory memory = {};
-    double held = 0;  // how far it was behind what was seen last, m; -infinite: not seen
-    double seen = 0;  // when its place was seen last, s
+    double clear = 0;  // stamp of the last frame that showed nothing over its place, s
+    double gone = 0;   // how far it has gone back since then, m
+    double seen = 0;   // when its place was seen last, s
     Over over = {};
   };
 
@@ -86,9 +94,10 @@ class RobotGuide {
   Robot robot_;
   Memory tool_;
   bool follows_ = true;
-  double speed_ = 0;  // of the touched surface towards the camera, the highest lately, m/s
-  double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
-  double free_since_ = std::numeric_limits<double>::infinity();  // when hand and proxy came free, s
+  double speed_ = 0;     // of the touched surface towards the camera, the highest lately, m/s
+  double ahead_ = 0;     // from the proxy to the last target, towards the camera, m
+  double free_for_ = 0;  // s in which hand and proxy were seen free
+  double sighted_ = 0;   // when both were seen last, s
   double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
   double looked_ = 0;    // when it was asked last, s
 };

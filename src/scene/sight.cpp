@@ -118,6 +118,7 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
     lift = std::max(lift, depth - noise * noise / depth);
   };
   measured(-gap.metres, kSure * gap.deviation);
+  seen.measured = std::max(seen.measured, lift);
   const bool compares = before && before->whole && gap.whole;
   if (compares) {
     const double ahead = std::max(seen.age, 0.0) / span;

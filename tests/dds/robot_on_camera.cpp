@@ -97,7 +97,6 @@ Result run(Servo& servo, Scene& scene, const SimulatedCamera& camera, StepTraces
     while (targets.take(told)) {
       const message::Point& p = told.pose.position;
       ++result.targets;
-      if (!bridge.robot()->reason.empty()) continue;  // it was perhaps on its way back
       result.target = std::max(result.target, true_depth(camera, {p.x, p.y, p.z}, clock.now()));
     }
     while (const std::optional<StepTrace> step = steps.pop()) {

@@ -121,8 +121,9 @@ struct Seen {
       0;            ///< m; a solid ball that goes so far towards the camera is free, noise allowed
   double lift = 0;  ///< m; so far it is to be moved: all of the way to what is measured, but less
                     ///< where noise may have feigned most of it; no less than `behind`
-  bool came = false;                                  ///< a solid one was free some frames before
-  double age = 0;                                     ///< of the frame, s
+  double measured = 0;  ///< m; of `lift`, what the frame shows without what is foreseen
+  bool came = false;    ///< a solid one was free some frames before
+  double age = 0;       ///< of the frame, s
   Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from the ball to the camera
 };
 
