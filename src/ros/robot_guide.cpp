@@ -10,46 +10,26 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "ros/robot_limits.hpp"
 
 namespace palpate::ros {
 namespace {
 
 using Eigen::Vector3d;
-using Reason = std::string_view;
-
-// In the order of Seen::Says.
-constexpr std::array<Reason, 5> kReasons = {
-    "no camera sees where the tool is", "nothing is measured where the tool is",
-    "the tool is behind what a camera sees", "",
-    "a camera that looks where the tool is shows nothing new"};
-constexpr Reason kBehind = kReasons[2];
-constexpr Reason kPassed = "the surface passed over the tool";
-constexpr Reason kCame = "something came between camera and tool";
-constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
-constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 constexpr Reason kMoved = "a surface moved over the tool";
-constexpr Reason kWay = "the way to the tool is not seen free";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
-// s that hand and tool are free before it starts, so that a hand that passes does not start it;
-// after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:
-// 0.4 s)
-constexpr double kFreeFor = 0.5;
 // m from the robot to the first checked position of its way, and between them; a finger is thicker
 // (judgement)
 constexpr double kWayStep = 0.005;
 constexpr double kJoin = 0.02;  // m; a hand finds a place again to that (judgement)
-// m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
-constexpr double kJump = 0.01;
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
 // s without news of the hand that change nothing: no hand gets anywhere in it (0.5 m/s: 10 mm, as
 // kJump)
 constexpr double kLateHand = 0.02;
-constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.
 Reason broken_way(const ServoState& state) {
@@ -129,7 +109,7 @@ bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
   // Balls half a radius apart leave 3 % of the radius between them.
   const double step = std::max(kWayStep, tool_radius_ / 2);
   Memory memory = robot_.memory;
-  for (double gone = step; gone < way.norm(); gone += step) {
+  for (double gone = kWayStep; gone < way.norm(); gone += step) {
     const Place place = judge(*robot_.place + gone * way.normalized(), now, memory);
     const bool leaves = gone <= kJump && place.solid() && place.seen.behind <= kJump;
     if (!place.free() && !leaves) return false;
@@ -167,7 +147,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
 
 // After a loss of sight shorter than kFreeFor it goes on at once.
 bool RobotGuide::may_start(bool pressed) const {
-  return pressed || free_for_ >= kFreeFor || looked_ - followed_ <= kFreeFor;
+  return pressed || free_for_.value_or(0) >= kFreeFor || looked_ - followed_ <= kFreeFor;
 }
 
 // Stops following when the proxy is not free. Counts how long hand and proxy were seen free. A
@@ -177,9 +157,9 @@ void RobotGuide::note(const Place& hand, bool proxy_free, double dt, bool presse
   const bool sighted = hand.free() || hand.solid();
   if (sighted) sighted_ = looked_;
   if (proxy_free && hand.free()) {
-    free_for_ += dt;
+    free_for_ = free_for_ ? *free_for_ + dt : 0;
   } else if (sighted || looked_ - sighted_ > kFreeFor) {
-    free_for_ = 0;
+    free_for_.reset();
   }
   follows_ = proxy_free && (follows_ || may_start(pressed));
 }
@@ -193,72 +173,24 @@ RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double stamp, doub
 }
 
 void RobotGuide::pause() {
-  robot_.clear = robot_.seen = -kNever;  // not seen meanwhile
-  free_for_ = 0;
-  followed_ = -kNever;
-  ahead_ = 0;
+  forget();
+  follows_ = false;
 }
 
 void RobotGuide::miss_hand(double now) {
-  if (now - looked_ > kLateHand) pause();
+  if (now - looked_ > kLateHand) forget();
 }
 
-RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
-  ahead_ = 0;
-  const Place held = robot_.place ? judge(*robot_.place, now, robot_.memory) : Place{};
-  note_held(held, now);
-  Answer answer;
-  if (held.solid()) {
-    answer.reason = robot_.over.what;
-    answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
-  } else if (!proxy.free()) {
-    answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
-    answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
-  } else {
-    answer.reason = follows_ ? kWay : kNotYet;
-    answer.why = answer.reason;
-  }
-  if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
-  // In front of what was measured at once, and of what is foreseen at its speed.
-  const double step =
-      std::max(std::min(options_.retreat * dt, held.seen.behind), held.seen.measured);
-  if (held.seen.measured > 0) is_clear(now - held.seen.age);
-  robot_.gone += step - held.seen.measured;
-  robot_.place = *robot_.place + step * held.seen.towards;
-  answer.target = robot_.place;
-  answer.retreats = true;
-  return answer;
+void RobotGuide::is_at(const std::optional<Vector3d>& place) {
+  robot_ = {.place = place, .memory = robot_.memory, .clear = -kNever, .seen = -kNever};
 }
 
-// Lets the robot go back only from what comes over its place no faster than it may go back: by what
-// is seen and foreseen of it since a frame that showed nothing there. What came by more than kJump
-// at once, or unseen, stands between it and the camera: the way back would lead into it. A shorter
-// loss of sight than kFreeFor changes nothing.
-void RobotGuide::note_held(const Place& held, double now) {
-  if (held.free() || held.solid()) robot_.seen = now;
-  if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
-  if (!held.free() && !held.solid()) robot_.clear = -kNever;
-  if (held.free() || (held.solid() && !(held.seen.measured > 0))) is_clear(now - held.seen.age);
-  if (!held.solid()) {
-    robot_.over = {};
-    return;
-  }
+// Nothing was seen meanwhile.
+void RobotGuide::forget() {
+  is_at(robot_.place);
+  free_for_.reset();
   followed_ = -kNever;
-  const bool begins = robot_.over.what.empty();
-  if (begins) robot_.over.since = now;
-  if (robot_.over.what == kCame) return;
-  const double moved = held.seen.behind + robot_.gone;
-  const bool leaps = moved > kJump;
-  const bool fast = leaps || moved > options_.retreat * (now - robot_.clear);
-  const bool came = begins && (leaps || robot_.clear == -kNever);
-  robot_.over.what = came ? kCame : fast && options_.retreat > 0 ? kFast : kPassed;
-}
-
-// A frame showed nothing over the robot's place.
-void RobotGuide::is_clear(double stamp) {
-  if (stamp <= robot_.clear) return;
-  robot_.clear = stamp;
-  robot_.gone = 0;
+  ahead_ = 0;
 }
 
 // Clouds do not show what is free; only the tool's own path proves it. So the robot follows the
@@ -271,7 +203,10 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
   const Reason reason = broken_way(state);
   if (!reason.empty() && !robot_.place) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
-  free_for_ = reason.empty() && !state.contact.touching ? free_for_ + dt : 0;
+  if (!reason.empty() || state.contact.touching)
+    free_for_.reset();
+  else
+    free_for_ = free_for_ ? *free_for_ + dt : 0;
   follows_ = reason.empty() && (follows_ || may_start(pressed));
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
   if (!pressed && robot_.place && (state.contact.proxy - *robot_.place).norm() > kJoin)

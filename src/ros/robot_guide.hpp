@@ -35,14 +35,14 @@ class RobotGuide {
   /// the dead man's button was up before, and what is on the way is the user's to see.
   [[nodiscard]] Answer look(const ServoState& state, double now, bool pressed);
 
-  /// No target is sent now, for other reasons.
+  /// No target is sent now, for other reasons; then it waits for the half second, or the button.
   void pause();
 
   /// Nothing is known of the hand now: for less than 20 ms that changes nothing.
   void miss_hand(double now);
 
   /// The robot is there, whatever target was answered last.
-  void is_at(const std::optional<Eigen::Vector3d>& place) { robot_.place = place; }
+  void is_at(const std::optional<Eigen::Vector3d>& place);
 
  private:
   // What came last over the tool, or over the robot.
@@ -70,7 +70,9 @@ class RobotGuide {
   [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double stamp, double ahead = 0);
   [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
   void note_held(const Place& held, double now);
-  void is_clear(double stamp);
+  [[nodiscard]] bool is_clear(double stamp);
+  [[nodiscard]] bool goes_back(Place held, double now, double dt);
+  void forget();
   [[nodiscard]] Answer without_view(const ServoState& state, double dt, bool pressed);
 
   // Surface or obstacle that came over the waiting robot.
@@ -94,10 +96,10 @@ class RobotGuide {
   Robot robot_;
   Memory tool_;
   bool follows_ = true;
-  double speed_ = 0;     // of the touched surface towards the camera, the highest lately, m/s
-  double ahead_ = 0;     // from the proxy to the last target, towards the camera, m
-  double free_for_ = 0;  // s in which hand and proxy were seen free
-  double sighted_ = 0;   // when both were seen last, s
+  double speed_ = 0;  // of the touched surface towards the camera, the highest lately, m/s
+  double ahead_ = 0;  // from the proxy to the last target, towards the camera, m
+  std::optional<double> free_for_;  // s in which hand and proxy were seen free; unset: they are not
+  double sighted_ = 0;              // when both were seen last, s
   double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
   double looked_ = 0;    // when it was asked last, s
 };

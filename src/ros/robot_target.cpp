@@ -75,7 +75,9 @@ void RobotTarget::look(double now, const message::Time& stamp) {
 
 RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
   const bool down = options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) != 0;
-  const bool was_up = std::exchange(up_, !down);
+  // While the hand is silent nothing is known of its button.
+  const bool known = state.device == DeviceState::Status::ok;
+  const bool was_up = known ? std::exchange(up_, !down) : up_;
   const std::string_view why = objection(state, now);
   if (why.empty()) return guide_.look(state, now, down && was_up);
   if (why == kSilent) {

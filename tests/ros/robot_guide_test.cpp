@@ -72,7 +72,7 @@ TEST_F(ARobot, GoesBackSlowlyFromWhereASurfaceCameOverIt) {
     if (before) longest = std::max(longest, (*answer.target - *before).norm());
     before = answer.target;
     last = answer.target->z();
-    deepest = std::max(deepest, coming(kSlowly)(now_ - kFrame) - last);
+    deepest = std::max(deepest, coming(kSlowly)(pushed_) - last);
   };
   runs(0.6);
   EXPECT_THAT(why, HasSubstr("the surface passed over the tool 0."));
@@ -96,7 +96,7 @@ TEST_P(ARobotBeforeAFastSurface, StandsStill) {
   ASSERT_TRUE(runs(0.9).reason.empty());
   each_ = [&](const RobotGuide::Answer& answer) {
     const double told = answer.target ? answer.target->z() : 1;
-    EXPECT_LE(height(now_ - kFrame) - told, kNoise) << now_;
+    EXPECT_LE(height(pushed_) - told, kNoise) << now_;
   };
   const RobotGuide::Answer over = runs(2);
   EXPECT_FALSE(over.target);
@@ -154,6 +154,28 @@ TEST_F(ARobot, FollowsAgainThoughPosesOfTheHandAreLate) {
     }
     runs(1);
   }
+}
+
+// What came during a pause was not seen to come slowly.
+TEST_F(ARobot, DoesNotGoBackFromWhatCameDuringAPause) {
+  camera("camera", [](double t) { return t < 1.02 ? coming(kSlowly)(t) : 0.008; });
+  starts();
+  presses_at(0);
+  runs(1.01);
+  guide_->pause();
+  now_ += 0.1;
+  each_ = [](const RobotGuide::Answer& answer) { EXPECT_FALSE(answer.target); };
+  EXPECT_THAT(runs(1).why, HasSubstr("something came between"));
+}
+
+TEST_F(ARobot, WaitsForTheHalfSecondAfterAPause) {
+  camera("camera", at_rest);
+  starts();
+  tool_at({0, 0, 0.05});
+  ASSERT_TRUE(runs(1).target);
+  guide_->pause();
+  EXPECT_FALSE(runs(0.45).target);
+  EXPECT_TRUE(runs(0.1).target);
 }
 
 TEST_F(ARobot, GoesOnBackAfterAFrameWasLost) {

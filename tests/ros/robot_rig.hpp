@@ -70,9 +70,11 @@ class ARobot : public ::testing::Test {
   ServoState state_;
   std::function<void(const RobotGuide::Answer&)> each_;
   double now_ = 0;
+  double pushed_ = 0;  // stamp of the newest frame, s
 
  private:
   void push() {
+    pushed_ = now_;
     for (const Camera& camera : cameras_) {
       if (!camera.on || frames_ % camera.every != 0) continue;
       const double height = camera.height(now_);

@@ -128,8 +128,11 @@ TEST_F(ARobot, GoesNoWayThatIsNotSeenFree) {
   };
   ASSERT_TRUE(look_at({-0.05, 0, 0.05}).target);
   guide_->pause();
-  const RobotGuide::Answer answer = look_at({0.05, 0, 0.05});
-  EXPECT_FALSE(answer.target);
+  RobotGuide::Answer answer;
+  for (int k = 0; k < 20; ++k) {  // longer than half a second
+    answer = look_at({0.05, 0, 0.05});
+    EXPECT_FALSE(answer.target);
+  }
   EXPECT_EQ(answer.why, "the way to the tool is not seen free");
   EXPECT_TRUE(look_at({-0.05, 0, 0.2}).target);
   EXPECT_TRUE(look_at({0.05, 0, 0.05}).target) << "a way that was gone is not asked for";

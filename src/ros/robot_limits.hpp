@@ -1,0 +1,29 @@
+// What the parts of a robot's guide share: reasons that are told, and limits.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string_view>
+
+namespace palpate::ros {
+
+using Reason = std::string_view;
+
+// In the order of Seen::Says.
+inline constexpr std::array<Reason, 5> kReasons = {
+    "no camera sees where the tool is", "nothing is measured where the tool is",
+    "the tool is behind what a camera sees", "",
+    "a camera that looks where the tool is shows nothing new"};
+inline constexpr Reason kBehind = kReasons[2];
+inline constexpr Reason kNotYet = "hand and tool have to be free for half a second";
+
+// s that hand and tool are free before it starts, so that a hand that passes does not start it;
+// after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:
+// 0.4 s)
+inline constexpr double kFreeFor = 0.5;
+// m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
+inline constexpr double kJump = 0.01;
+inline constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+}  // namespace palpate::ros

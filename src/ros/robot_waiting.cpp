@@ -1,0 +1,96 @@
+// Says why a robot waits, and leads it back from what comes over it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ros/robot_guide.hpp"
+#include "ros/robot_limits.hpp"
+
+namespace palpate::ros {
+namespace {
+
+constexpr Reason kPassed = "the surface passed over the tool";
+constexpr Reason kCame = "something came between camera and tool";
+constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
+constexpr Reason kWay = "the way to the tool is not seen free";
+constexpr int kTries =
+    3;  // steps back for one frame: each leaves r^2 / 2 D of a ball's rim (judgement)
+
+}  // namespace
+
+RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
+  ahead_ = 0;
+  const Place held = robot_.place ? judge(*robot_.place, now, robot_.memory) : Place{};
+  note_held(held, now);
+  Answer answer;
+  if (held.solid()) {
+    answer.reason = robot_.over.what;
+    answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
+  } else if (!proxy.free()) {
+    answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
+    answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
+  } else {
+    answer.reason = follows_ ? kWay : kNotYet;
+    answer.why = answer.reason;
+  }
+  if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
+  if (!goes_back(held, now, dt)) return answer;
+  answer.target = robot_.place;
+  answer.retreats = true;
+  return answer;
+}
+
+// Moves the robot in front of what was measured at once, and of what is foreseen at its speed. A
+// ball's rim may still be behind what it is beside: then it goes farther. False: it is not seen to
+// be in front.
+bool RobotGuide::goes_back(Place held, double now, double dt) {
+  double step = std::max(std::min(options_.retreat * dt, held.seen.behind), held.seen.measured);
+  const bool clears = held.seen.measured > 0 && is_clear(now - held.seen.age);
+  robot_.gone += clears ? step - held.seen.measured : step;
+  for (int k = 0; k < kTries; ++k) {
+    robot_.place = *robot_.place + step * held.seen.towards;
+    held = judge(*robot_.place, now, robot_.memory);
+    if (!held.solid() || !(held.seen.measured > 0)) return held.free() || held.solid();
+    step = held.seen.measured;
+    robot_.gone += step;
+  }
+  return false;
+}
+
+// Lets the robot go back only from what comes over its place no faster than it may go back: by what
+// is seen and foreseen of it since a frame that showed nothing there. What came by more than kJump
+// at once, or unseen, stands between it and the camera: the way back would lead into it. A shorter
+// loss of sight than kFreeFor changes nothing.
+void RobotGuide::note_held(const Place& held, double now) {
+  if (held.free() || held.solid()) robot_.seen = now;
+  if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
+  if (!held.free() && !held.solid()) robot_.clear = -kNever;
+  const bool clear = held.free() || (held.solid() && !(held.seen.measured > 0));
+  if (clear) (void)is_clear(now - held.seen.age);
+  if (!held.solid()) {
+    robot_.over = {};
+    return;
+  }
+  followed_ = -kNever;
+  const bool begins = robot_.over.what.empty();
+  if (begins) robot_.over.since = now;
+  if (robot_.over.what == kCame) return;
+  const bool leaps = held.seen.behind > kJump;
+  const double moved = held.seen.behind + robot_.gone;
+  const double foreseen = held.seen.behind - held.seen.measured;
+  const bool fast = leaps || moved > options_.retreat * (now - robot_.clear) ||
+                    foreseen > options_.retreat * held.seen.age;
+  const bool came = begins && (leaps || now - robot_.clear > kStays);
+  robot_.over.what = came ? kCame : fast && options_.retreat > 0 ? kFast : kPassed;
+}
+
+// A frame showed nothing over the robot's place.
+// False: a later one did, too.
+bool RobotGuide::is_clear(double stamp) {
+  if (stamp <= robot_.clear) return false;
+  robot_.clear = stamp;
+  robot_.gone = 0;
+  return true;
+}
+
+}  // namespace palpate::ros
