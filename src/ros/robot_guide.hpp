@@ -38,7 +38,8 @@ class RobotGuide {
   /// No target is sent now, for other reasons; then it waits for the half second, or the button.
   void pause();
 
-  /// Nothing is known of the hand now: for less than 20 ms that changes nothing.
+  /// Nothing is known of the hand now: for less than 20 ms that changes nothing. After more, what
+  /// was seen before does not count, and it goes on where proxy and way are seen free.
   void miss_hand(double now);
 
   /// The robot is there, whatever target was answered last.

@@ -13,6 +13,7 @@ namespace palpate::ros {
 namespace {
 
 constexpr double kStill = 0.05;  // s without a step: the servo stands still (judgement)
+constexpr std::string_view kNoSteps = "the servo makes no steps";
 constexpr std::string_view kSilent = "no data from the hand";
 constexpr std::string_view kSlow = "the network is too slow";
 
@@ -80,7 +81,7 @@ RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
   const bool was_up = known ? std::exchange(up_, !down) : up_;
   const std::string_view why = objection(state, now);
   if (why.empty()) return guide_.look(state, now, down && was_up);
-  if (why == kSilent) {
+  if (why == kSilent || why == kNoSteps) {
     guide_.miss_hand(now);
   } else {
     guide_.pause();
@@ -116,7 +117,7 @@ RosBridge::RobotState RobotTarget::state() const {
 
 // Why the hand allows no target; empty: it does.
 std::string_view RobotTarget::objection(const ServoState& state, double now) {
-  if (state.step == 0 || now - stepped_ > kStill) return "the servo makes no steps";
+  if (state.step == 0 || now - stepped_ > kStill) return kNoSteps;
   if (state.device == DeviceState::Status::silent) return kSilent;
   if (state.device != DeviceState::Status::ok) return "the hand has ended";
   if (state.guard.fault != Guard::Fault::none) return "the hand has a fault";
