@@ -48,6 +48,13 @@ std::uint32_t color_bits(NumberType type, double value) {
   return fits ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) : 0U;
 }
 
+// Numbers in a row of text.
+std::size_t values_of(const PcdHeader& header) {
+  std::size_t sum = 0;
+  for (const PcdField& field : header.fields) sum += field.count;
+  return sum;
+}
+
 class PcdReader {
  public:
   explicit PcdReader(const Input& input)
@@ -72,13 +79,17 @@ class PcdReader {
   }
 
   CloudBuilder read_ascii() {
-    const std::size_t numbers = header_.fields.size();
-    CloudBuilder result = builder((data_.size() + 1) / (2 * numbers) + 1);
+    CloudBuilder result = builder((data_.size() + 1) / (2 * header_.fields.size()) + 1);
     Progress progress(input_.options, input_.bytes.size());
     TextScanner scanner(input_, header_.size);
     Row row{};
     for (std::size_t i = 0; i < header_.points; ++i) {
-      if (!read_ascii_row(scanner, row)) fail_cut(i);
+      scanner.begin_row();
+      const bool complete = read_ascii_row(scanner, row);
+      if (!scanner.row_is_on_a_line() || (complete && !scanner.at_line_end())) {
+        fail_at_row(input_, {scanner.row().begin, values_of(header_)});
+      }
+      if (!complete) fail_cut(i);
       result.add(row);
       progress.at(scanner.offset());
     }

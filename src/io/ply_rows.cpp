@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "io/text_scanner.hpp"
+#include "palpate/base/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -26,6 +27,9 @@ class AsciiCursor {
     }
     return true;
   }
+  void begin_row() { scanner_.begin_row(); }
+  [[nodiscard]] TextRow row() const { return scanner_.row(); }
+  [[nodiscard]] bool row_ends() const { return scanner_.at_line_end(); }
   [[nodiscard]] std::size_t offset() const { return scanner_.offset(); }
   static std::size_t least_size(NumberType) { return 2; }  // a digit and a space
 
@@ -48,6 +52,9 @@ class BinaryCursor {
     offset_ += count * size_of(type);
     return true;
   }
+  void begin_row() {}
+  [[nodiscard]] static TextRow row() { return {}; }
+  [[nodiscard]] static bool row_ends() { return true; }
   [[nodiscard]] std::size_t offset() const { return offset_; }
   static std::size_t least_size(NumberType type) { return size_of(type); }
 
@@ -75,24 +82,44 @@ class PlyReader {
 
   void run(const PlyHeader& header, std::span<PlyTable> tables) {
     for (const PlyElement& element : header.elements) {
-      if (tables.empty()) return;
-      if (tables.front().element != &element) {
+      if (tables.empty() && !odd_) return;
+      if (tables.empty() || tables.front().element != &element) {
         skip_element(element);
-        continue;
+      } else {
+        read_rows(tables.front());
+        tables = tables.subspan(1);
       }
-      read_rows(tables.front());
-      tables = tables.subspan(1);
+      if (odd_ && !cursor_.row_ends()) fail_at_row(input_, *odd_);
     }
+    cursor_.begin_row();
+    if (odd_ && cursor_.offset() < input_.bytes.size()) fail_at_row(input_, *odd_);
   }
 
  private:
   void read_rows(PlyTable& table) {
     const PlyElement& element = *table.element;
     for (std::size_t i = 0; i < element.count; ++i) {
+      cursor_.begin_row();
       if (!read_row(table)) fail_cut(element, i);
-      table.take(table.row);
+      end_row();
+      take(table);
       progress_.at(cursor_.offset());
     }
+  }
+
+  // What is wrong with values that are not this row's own is where they come from.
+  void take(const PlyTable& table) const {
+    try {
+      table.take(table.row);
+    } catch (const Error&) {
+      if (odd_) fail_at_row(input_, *odd_);
+      throw;
+    }
+  }
+
+  // Rows may go on over lines, and lines over rows, as long as all their values fit in the end.
+  void end_row() {
+    if (!odd_ && !cursor_.row_ends()) odd_ = cursor_.row();
   }
 
   bool read_row(PlyTable& table) {
@@ -116,11 +143,13 @@ class PlyReader {
   void skip_element(const PlyElement& element) {
     if (element.properties.empty()) return;
     for (std::size_t i = 0; i < element.count; ++i) {
+      cursor_.begin_row();
       for (const PlyProperty& property : element.properties) {
         const bool there =
             property.list_count ? skip_list(property) : cursor_.skip(property.type, 1);
         if (!there) fail_cut(element, i);
       }
+      end_row();
       progress_.at(cursor_.offset());
     }
   }
@@ -146,11 +175,13 @@ class PlyReader {
     const std::size_t begin = cursor_.offset();
     if (!cursor_.next(*property.list_count, length)) return false;
     if (length >= 0 && length <= 4294967295.0) return true;
+    if (odd_) fail_at_row(input_, *odd_);
     fail_at_byte(input_, begin, fmt::format("invalid list length {}", length),
                  "The file is damaged: export it again");
   }
 
   [[noreturn]] void fail_cut(const PlyElement& element, std::size_t present) const {
+    if (odd_) fail_at_row(input_, *odd_);
     fail_at_byte(input_, input_.bytes.size(),
                  fmt::format("the file ends after {} of {} rows of \"{}\"", present, element.count,
                              excerpt(element.name)),
@@ -162,6 +193,7 @@ class PlyReader {
   const Input& input_;
   Cursor cursor_;
   Progress progress_;
+  std::optional<TextRow> odd_;  // the first row that ends within a line
 };
 
 }  // namespace

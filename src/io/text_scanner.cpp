@@ -99,6 +99,7 @@ std::string_view TextScanner::next_token() {
   skip_space();
   const std::size_t begin = offset_;
   while (offset_ < text_.size() && !is_space(text_[offset_])) ++offset_;
+  ++row_.values;
   return text_.substr(begin, offset_ - begin);
 }
 
@@ -113,6 +114,34 @@ std::optional<double> TextScanner::next_number() {
                  "Correct this line, or export the file again");
   }
   return value;
+}
+
+void TextScanner::begin_row() {
+  skip_space();
+  row_ = {.begin = offset_};
+}
+
+bool TextScanner::at_line_end() const {
+  std::size_t at = offset_;
+  while (at < text_.size() && (text_[at] == ' ' || text_[at] == '\t')) ++at;
+  return at == text_.size() || text_[at] == '\n' || text_[at] == '\r';
+}
+
+bool TextScanner::row_is_on_a_line() const {
+  const std::string_view row = trim(text_.substr(row_.begin, offset_ - row_.begin));
+  return row.find('\n') == std::string_view::npos;
+}
+
+void fail_at_row(const Input& input, const TextRow& row) {
+  const std::string_view rest = input.text().substr(row.begin);
+  std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+  const std::string shown = excerpt(line);
+  std::size_t found = 0;
+  while (!take_word(line).empty()) ++found;
+  fail_at_line(input, row.begin,
+               fmt::format("{} values in a row, but the header declares {}: \"{}\"", found,
+                           row.values, shown),
+               "Correct this row, or what the header declares, or export the file again");
 }
 
 bool is_blank_or_comment(std::string_view line) {

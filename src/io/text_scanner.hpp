@@ -50,6 +50,12 @@ template <class T>
 [[nodiscard]] double load_number(NumberType type, const std::byte* bytes,
                                  std::endian order = std::endian::little);
 
+/// Where a row of text begins, and how many values were taken from it.
+struct TextRow {
+  std::size_t begin = 0;
+  std::size_t values = 0;
+};
+
 /// Walks through text: line by line, or token by token where white space is all that separates.
 class TextScanner {
  public:
@@ -73,13 +79,29 @@ class TextScanner {
   /// @throws Error for a token that is no number.
   std::optional<double> next_number();
 
+  /// On to the next value, with which a row begins: lines without values are passed over.
+  void begin_row();
+
+  /// The row since begin_row().
+  [[nodiscard]] TextRow row() const { return row_; }
+
+  /// Does the line hold no further value?
+  [[nodiscard]] bool at_line_end() const;
+
+  /// Do the values since begin_row() lie on one line?
+  [[nodiscard]] bool row_is_on_a_line() const;
+
  private:
   void skip_space();
 
   const Input& input_;
   std::string_view text_;
   std::size_t offset_;
+  TextRow row_;
 };
+
+/// Throws Error for a row whose line has another number of values than the header declares.
+[[noreturn]] void fail_at_row(const Input& input, const TextRow& row);
 
 /// A whole token as a number, in the C locale whatever the user's is; "nan" and "inf" count, a
 /// leading plus too. What is too large for a double becomes infinite, what is too small zero.

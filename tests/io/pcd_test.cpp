@@ -171,6 +171,16 @@ TEST(Pcd, SaysHowManyPointsOfACutFileAreThere) {
   EXPECT_THAT(refusal(packed.substr(0, packed.size() - 1)), HasSubstr("compressed bytes declared"));
 }
 
+TEST(PcdRows, AreRefusedWhereTheyHaveAnotherNumberOfValuesThanDeclared) {
+  const std::string begin = Head{.width = "3", .points = "3"}.text();
+  EXPECT_THAT(refusal(begin + "0 0 0 9 9\n1 1 1 9 9\n2 2 2 9 9\n", "a.pcd"),
+              HasSubstr("a.pcd, line 12: 5 values in a row, but the header declares 3"));
+  EXPECT_THAT(refusal(begin + "0 0 0\n\n1 1\n2 2 2\n"),
+              HasSubstr("line 14: 2 values in a row, but the header declares 3: \"1 1\""));
+  EXPECT_THAT(refusal(begin + "0 0 0\n1 1\n1\n2 2 2\n"), HasSubstr("line 13: 2 values"));
+  EXPECT_EQ(read_text(begin + "\n0 0 0 \r\n \n1 1 1\t\r\n2 2 2").cloud.size(), 3u);
+}
+
 TEST(Pcd, RefusesHostileCounts) {
   const Head most{.width = "18446744073709551615", .points = "18446744073709551615"};
   EXPECT_THAT(refusal(most.text() + "1 2 3\n"), HasSubstr("after 1 of 18446744073709551615"));

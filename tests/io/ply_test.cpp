@@ -193,6 +193,34 @@ TEST(Ply, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal(header("ascii", 0, kXyz)), HasSubstr("holds no points"));
 }
 
+// Values too many or too few must not become those of the next rows.
+TEST(PlyRows, AreRefusedWhereTheyHaveAnotherNumberOfValuesThanDeclared) {
+  const std::string begin = header("ascii", 3, kXyz);
+  EXPECT_THAT(
+      refusal(begin + "0 0 0 9\n1 1 1 9\n2 2 2 9\n", "a.ply"),
+      HasSubstr("a.ply, line 8: 4 values in a row, but the header declares 3: \"0 0 0 9\""));
+  EXPECT_THAT(refusal(begin + "0 0 0\n\n1 1\n2 2 2\n"),
+              HasSubstr("line 10: 2 values in a row, but the header declares 3"));
+  // What is consumed ends with a line here, but a line is left.
+  EXPECT_THAT(refusal(header("ascii", 4, kXyz) + "0 0 0 9\n1 1 1 9\n2 2 2 9\n3 3 3 9\n"),
+              HasSubstr("line 8: 4 values in a row"));
+  const std::string faces =
+      "ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(kXyz) +
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(refusal(faces + "3 0 1 2 1\n3 2 1 0\n"),
+              HasSubstr("line 13: 5 values in a row, but the header declares 4"));
+}
+
+TEST(PlyRows, MayBeBrokenOverLinesAndShareThem) {
+  for (const std::string_view rows :
+       {"0 0\n0\n1\n1 1\n2 2 2\n", "0 0 0 1 1\n1 2 2 2\n", "0 0 0 1 1 1 2 2 2"}) {
+    const CloudFile file = read_text(header("ascii", 3, kXyz) + std::string(rows));
+    ASSERT_EQ(file.cloud.size(), 3u);
+    EXPECT_EQ(file.cloud.point(1), Eigen::Vector3d(1, 1, 1));
+    EXPECT_EQ(file.cloud.point(2), Eigen::Vector3d(2, 2, 2));
+  }
+}
+
 TEST(Ply, ManyColumnsAreRefused) {
   std::string text = "ply\nformat ascii 1.0\n";
   for (int i = 0; i < 5000; ++i) text += "element e" + std::to_string(i) + " 0\n";
