@@ -93,6 +93,7 @@ class PcdReader {
       result.add(row);
       progress.at(scanner.offset());
     }
+    unused_ = rows_from(input_, scanner.offset());
     return result;
   }
 
@@ -116,6 +117,7 @@ class PcdReader {
   CloudBuilder read_binary() {
     const std::size_t present = data_.size() / header_.point_size;
     if (present < header_.points) fail_cut(present);
+    unused_ = present - header_.points;
     CloudBuilder result = builder(present);
     Progress progress(input_.options, header_.points);
     Row row{};
@@ -182,7 +184,7 @@ class PcdReader {
   }
 
   CloudFile finish(CloudBuilder result, std::string format) const {
-    CloudFile file = result.finish(std::move(format));
+    CloudFile file = result.finish(std::move(format) + unused(unused_));
     const bool is_set = header_.viewpoint != PcdHeader{}.viewpoint;
     const Eigen::Vector3d stand =
         input_.options.scale * Eigen::Map<const Eigen::Vector3d>(header_.viewpoint.data());
@@ -202,6 +204,7 @@ class PcdReader {
   PcdHeader header_;
   FieldUses uses_;
   std::span<const std::byte> data_;
+  std::size_t unused_ = 0;  // points behind the last declared one
 };
 
 }  // namespace

@@ -99,8 +99,8 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
       add_face(input, face_table, points.count, mesh);
     };
   }
-  read_ply_rows(input, header, tables);
-  return choose_cloud(input, mesh, builder.finish(std::string(name_of(header.encoding))));
+  const std::string over = unused(read_ply_rows(input, header, tables));
+  return choose_cloud(input, mesh, builder.finish(std::string(name_of(header.encoding)) + over));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 // The two ways to get the next number of an element; false at the end of the bytes.
 class AsciiCursor {
  public:
-  AsciiCursor(const Input& input, std::size_t offset) : scanner_(input, offset) {}
+  AsciiCursor(const Input& input, std::size_t offset) : input_(input), scanner_(input, offset) {}
   bool next(NumberType, double& value) {
     const std::optional<double> number = scanner_.next_number();
     value = number.value_or(0);
@@ -28,12 +28,16 @@ class AsciiCursor {
     return true;
   }
   void begin_row() { scanner_.begin_row(); }
+  [[nodiscard]] std::size_t rows_left(const PlyElement&) const {
+    return rows_from(input_, offset());
+  }
   [[nodiscard]] TextRow row() const { return scanner_.row(); }
   [[nodiscard]] bool row_ends() const { return scanner_.at_line_end(); }
   [[nodiscard]] std::size_t offset() const { return scanner_.offset(); }
   static std::size_t least_size(NumberType) { return 2; }  // a digit and a space
 
  private:
+  const Input& input_;
   TextScanner scanner_;
 };
 
@@ -53,6 +57,14 @@ class BinaryCursor {
     return true;
   }
   void begin_row() {}
+  [[nodiscard]] std::size_t rows_left(const PlyElement& last) const {
+    std::size_t size = 0;
+    for (const PlyProperty& property : last.properties) {
+      if (property.list_count) return 0;
+      size += size_of(property.type);
+    }
+    return size > 0 ? (bytes_.size() - offset_) / size : 0;
+  }
   [[nodiscard]] static TextRow row() { return {}; }
   [[nodiscard]] static bool row_ends() { return true; }
   [[nodiscard]] std::size_t offset() const { return offset_; }
@@ -80,9 +92,9 @@ class PlyReader {
   PlyReader(const Input& input, Cursor cursor)
       : input_(input), cursor_(std::move(cursor)), progress_(input.options, input.bytes.size()) {}
 
-  void run(const PlyHeader& header, std::span<PlyTable> tables) {
+  std::size_t run(const PlyHeader& header, std::span<PlyTable> tables) {
     for (const PlyElement& element : header.elements) {
-      if (tables.empty() && !odd_) return;
+      if (tables.empty() && !odd_) return 0;
       if (tables.empty() || tables.front().element != &element) {
         skip_element(element);
       } else {
@@ -93,6 +105,7 @@ class PlyReader {
     }
     cursor_.begin_row();
     if (odd_ && cursor_.offset() < input_.bytes.size()) fail_at_row(input_, *odd_);
+    return cursor_.rows_left(header.elements.back());
   }
 
  private:
@@ -210,13 +223,13 @@ PlyTable table_of(const PlyElement& element, std::span<const std::string_view> n
   return table;
 }
 
-void read_ply_rows(const Input& input, const PlyHeader& header, std::span<PlyTable> tables) {
+std::size_t read_ply_rows(const Input& input, const PlyHeader& header, std::span<PlyTable> tables) {
   if (header.encoding == PlyEncoding::ascii) {
     return PlyReader(input, AsciiCursor(input, header.size)).run(header, tables);
   }
   const bool little = header.encoding == PlyEncoding::little_endian;
   const BinaryCursor cursor(input, header.size, little ? std::endian::little : std::endian::big);
-  PlyReader(input, cursor).run(header, tables);
+  return PlyReader(input, cursor).run(header, tables);
 }
 
 std::size_t most_rows(const Input& input, const PlyHeader& header, const PlyElement& element) {

@@ -31,8 +31,10 @@ struct PlyTable {
                                 double absent = 0);
 
 /// Reads the file up to the last of `tables`, which come in its order; skips all else.
-/// @throws Error when the file is cut or a number is none.
-void read_ply_rows(const Input& input, const PlyHeader& header, std::span<PlyTable> tables);
+/// @return how many rows follow the last one that is declared; of bytes only where their rows have
+///   one size, and only where the last element was read.
+/// @throws Error when the file is cut, a number is none, or rows of text do not fit their lines.
+std::size_t read_ply_rows(const Input& input, const PlyHeader& header, std::span<PlyTable> tables);
 
 /// How many rows of the element the file's bytes can hold, at most.
 [[nodiscard]] std::size_t most_rows(const Input& input, const PlyHeader& header,

@@ -49,13 +49,31 @@ double out_of_range_value(std::string_view token) {
                               : std::numeric_limits<double>::infinity();
 }
 
+// How Microsoft's older runtimes write what is not finite, with zeros up to the digits asked for.
+bool is_not_finite(std::string_view token) {
+  if (token.starts_with('-')) token.remove_prefix(1);
+  token = token.substr(0, token.find_last_not_of('0') + 1);
+  return token == "1.#QNAN" || token == "1.#SNAN" || token == "1.#IND" || token == "1.#INF";
+}
+
 }  // namespace
+
+char line_end_of(std::string_view text) {
+  constexpr std::size_t kFirst = 4096;  // bytes that the first line ends in (judgement)
+  const std::size_t at = text.substr(0, kFirst).find_first_of("\r\n");
+  const bool lone = at < text.size() && text[at] == '\r' && !text.substr(at + 1).starts_with('\n');
+  return lone ? '\r' : '\n';
+}
 
 std::optional<double> parse_number(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-  if (end != token.data() + token.size() || token.empty()) return {};
+  if (token.empty()) return {};
+  if (end != token.data() + token.size()) {
+    return is_not_finite(token) ? std::optional{std::numeric_limits<double>::quiet_NaN()}
+                                : std::nullopt;
+  }
   if (error == std::errc::result_out_of_range) return out_of_range_value(token);
   return error == std::errc{} ? std::optional{value} : std::nullopt;
 }
@@ -84,7 +102,7 @@ std::string_view take_word(std::string_view& text) {
 
 std::string_view TextScanner::next_line() {
   const std::size_t begin = offset_;
-  const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+  const std::size_t end = std::min(text_.find(line_end_, begin), text_.size());
   offset_ = std::min(end + 1, text_.size());
   std::string_view line = text_.substr(begin, end - begin);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -129,7 +147,21 @@ bool TextScanner::at_line_end() const {
 
 bool TextScanner::row_is_on_a_line() const {
   const std::string_view row = trim(text_.substr(row_.begin, offset_ - row_.begin));
-  return row.find('\n') == std::string_view::npos;
+  return row.find(line_end_) == std::string_view::npos;
+}
+
+std::size_t rows_from(const Input& input, std::size_t offset) {
+  TextScanner scanner(input, offset);
+  std::size_t rows = 0;
+  while (!scanner.at_end()) {
+    if (!trim(scanner.next_line()).empty()) ++rows;
+  }
+  return rows;
+}
+
+std::string unused(std::size_t count) {
+  if (count == 0) return {};
+  return fmt::format(", {} more than its header declares, which are not used", count);
 }
 
 void fail_at_row(const Input& input, const TextRow& row) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "io/input.hpp"
@@ -56,20 +57,28 @@ struct TextRow {
   std::size_t values = 0;
 };
 
+/// What some programs write before UTF-8; it means nothing.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// The character that ends lines: CR where the first line ends with that alone, as on old
+/// Macintoshes; else LF.
+[[nodiscard]] char line_end_of(std::string_view text);
+
 /// Walks through text: line by line, or token by token where white space is all that separates.
 class TextScanner {
  public:
   /// Skips a byte-order mark at the start of the text.
   explicit TextScanner(const Input& input, std::size_t offset = 0)
-      : input_(input), text_(input.text()), offset_(offset) {
-    if (offset == 0 && text_.starts_with("\xEF\xBB\xBF")) offset_ = 3;
+      : input_(input), text_(input.text()), offset_(offset), line_end_(line_end_of(text_)) {
+    if (offset == 0 && text_.starts_with(kByteOrderMark)) offset_ = kByteOrderMark.size();
   }
 
   [[nodiscard]] bool at_end() const { return offset_ >= text_.size(); }
   [[nodiscard]] std::size_t offset() const { return offset_; }
   void move_to(std::size_t offset) { offset_ = offset; }
 
-  /// The rest of the current line without its end (LF, CR LF), and on to the next one.
+  /// The rest of the current line without its end (LF, CR LF, or CR in a text of such), and on to
+  /// the next one.
   std::string_view next_line();
 
   /// The next token; empty at the end of the text.
@@ -97,14 +106,23 @@ class TextScanner {
   const Input& input_;
   std::string_view text_;
   std::size_t offset_;
+  char line_end_;
   TextRow row_;
 };
+
+/// The lines from `offset` on that hold values.
+[[nodiscard]] std::size_t rows_from(const Input& input, std::size_t offset);
+
+/// What a file's format says of so many rows or records behind the last declared one: nothing of
+/// none.
+[[nodiscard]] std::string unused(std::size_t count);
 
 /// Throws Error for a row whose line has another number of values than the header declares.
 [[noreturn]] void fail_at_row(const Input& input, const TextRow& row);
 
 /// A whole token as a number, in the C locale whatever the user's is; "nan" and "inf" count, a
-/// leading plus too. What is too large for a double becomes infinite, what is too small zero.
+/// leading plus too, and "1.#QNAN", "-1.#IND" and "1.#INF" of Microsoft's, which are all not
+/// finite. What is too large for a double becomes infinite, what is too small zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
 
 /// A whole token as a count.

@@ -181,6 +181,15 @@ TEST(PcdRows, AreRefusedWhereTheyHaveAnotherNumberOfValuesThanDeclared) {
   EXPECT_EQ(read_text(begin + "\n0 0 0 \r\n \n1 1 1\t\r\n2 2 2").cloud.size(), 3u);
 }
 
+TEST(PcdRows, BehindTheLastDeclaredOneAreTold) {
+  const std::string_view told = ", 1 more than its header declares, which are not used";
+  EXPECT_EQ(read_text(Head{}.text() + "0 0 0\n1 1 1\n2 2 2\n\n").format,
+            "PCD, ascii" + std::string(told));
+  std::string binary = Head{.data = "binary"}.text();
+  for (int i = 0; i < 10; ++i) append<float>(binary, 1.0F);
+  EXPECT_EQ(read_text(binary).format, "PCD, binary" + std::string(told));
+}
+
 TEST(Pcd, RefusesHostileCounts) {
   const Head most{.width = "18446744073709551615", .points = "18446744073709551615"};
   EXPECT_THAT(refusal(most.text() + "1 2 3\n"), HasSubstr("after 1 of 18446744073709551615"));

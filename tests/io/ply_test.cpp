@@ -221,6 +221,15 @@ TEST(PlyRows, MayBeBrokenOverLinesAndShareThem) {
   }
 }
 
+TEST(PlyRows, BehindTheLastDeclaredOneAreTold) {
+  const std::string_view told = ", 2 more than its header declares, which are not used";
+  const std::string text = header("ascii", 1, kXyz) + "0 0 0\n1 1 1\n\n2 2 2\n";
+  EXPECT_EQ(read_text(text).format, "PLY, ascii" + std::string(told));
+  std::string binary = header("binary_little_endian", 1, kXyz);
+  for (int i = 0; i < 9; ++i) append<float>(binary, 1.0F);
+  EXPECT_EQ(read_text(binary).format, "PLY, binary little endian" + std::string(told));
+}
+
 TEST(Ply, ManyColumnsAreRefused) {
   std::string text = "ply\nformat ascii 1.0\n";
   for (int i = 0; i < 5000; ++i) text += "element e" + std::to_string(i) + " 0\n";

@@ -58,7 +58,7 @@ CloudFile read_binary(const Input& input) {
     }
     mesh.close_face();
   }
-  return sample_faces(input, mesh, "STL, binary");
+  return sample_faces(input, mesh, "STL, binary" + unused((size - kHead) / kTriangle - count));
 }
 
 class StlTextReader {

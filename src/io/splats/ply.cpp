@@ -67,7 +67,7 @@ SplatFile read_trained(const Input& input, const PlyHeader& header, const PlyEle
   table.take = [&](std::span<const double> row) {
     rows.add(trained_splat(row), input.options.scale);
   };
-  read_ply_rows(input, header, {&table, 1});
+  rows.format += unused(read_ply_rows(input, header, {&table, 1}));
   return rows;
 }
 
@@ -134,7 +134,7 @@ SplatFile read_packed(const Input& input, const PlyHeader& header, const PlyElem
     rows.add(packed_splat(row, chunks[done++ / kChunkSize]), input.options.scale);
   };
   rows.splats.reserve(most_rows(input, header, element));
-  read_ply_rows(input, header, tables);
+  rows.format += unused(read_ply_rows(input, header, tables));
   return rows;
 }
 
