@@ -88,15 +88,27 @@ void fit_length(const Input& input, CloudFile& file) {
   if (file.mesh) file.mesh->spacing *= factor;
 }
 
+// Leaves out a byte order mark, but where the bytes are numbers.
+Input without_mark(const Input& input) {
+  Input result = input;
+  const bool marked = input.text().starts_with(kByteOrderMark);
+  if (marked && extension(input.name) != ".splat" && !is_stl(input)) {
+    result.bytes = input.bytes.subspan(kByteOrderMark.size());
+  }
+  return result;
+}
+
 CloudFile read_packed(const Input& input) {
   const Bytes unpacked = unpack(input, name_inside(input.name));
-  const Input inside{unpacked.span(), name_inside(input.name), input.options, input.folder};
+  const Input inside =
+      without_mark({unpacked.span(), name_inside(input.name), input.options, input.folder});
   CloudFile file = read_kind(inside, kind_of(inside));
   file.format += ", gzip";
   return file;
 }
 
-CloudFile read_input(const Input& input) {
+CloudFile read_input(const Input& given) {
+  const Input input = without_mark(given);
   check_options(input);
   try {
     const FileKind kind = kind_of(input);

@@ -24,7 +24,7 @@ void fail_at_byte(const Input& input, std::size_t offset, std::string_view what,
 void fail_at_line(const Input& input, std::size_t offset, std::string_view what,
                   std::string_view remedy) {
   const std::string_view before = input.text().substr(0, offset);
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const auto line = std::count(before.begin(), before.end(), line_end_of(input.text())) + 1;
   throw Error(fmt::format("{}, line {}: {}. {}.", input.name, line, what, remedy));
 }
 

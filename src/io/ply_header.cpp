@@ -30,14 +30,14 @@ class PlyHeaderParser {
   explicit PlyHeaderParser(const Input& input) : input_(input), scanner_(input) {}
 
   PlyHeader run() {
-    (void)next_line();  // "ply": that is how we came here
+    (void)scanner_.next_line();  // "ply": that is how we came here
     while (true) {
       if (scanner_.at_end()) {
         fail(input_, "the PLY header has no end_header line",
              "The file is truncated: download it again");
       }
       line_begin_ = scanner_.offset();
-      std::string_view line = next_line();
+      std::string_view line = scanner_.next_line();
       const std::string_view keyword = take_word(line);
       if (keyword == "end_header") break;
       take(keyword, line);
@@ -48,17 +48,6 @@ class PlyHeaderParser {
   }
 
  private:
-  // Old Macintosh files end lines with CR alone; then the whole header looks like one line.
-  std::string_view next_line() {
-    const std::string_view rest = input_.text().substr(scanner_.offset());
-    const std::size_t cr = rest.find_first_of("\r\n");
-    const bool lone_cr = cr != std::string_view::npos && rest[cr] == '\r' &&
-                         (cr + 1 == rest.size() || rest[cr + 1] != '\n');
-    if (!lone_cr) return scanner_.next_line();
-    scanner_.move_to(scanner_.offset() + cr + 1);
-    return rest.substr(0, cr);
-  }
-
   void take(std::string_view keyword, std::string_view rest) {
     if (keyword == "format") return take_format(take_word(rest));
     if (keyword == "element") return take_element(rest);

@@ -30,6 +30,20 @@ TEST(FileKind, GoesByTheBytesBeforeTheName) {
   EXPECT_EQ(kind(" {}", "a.gltf"), io::FileKind::gltf);
 }
 
+TEST(FileKind, AByteOrderMarkMeansNothing) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n1 2 3\n";
+  const std::string pcd =
+      "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n";
+  for (const std::string& text : {ply, pcd, std::string("1 2 3\n"), std::string("v 1 2 3\n")}) {
+    EXPECT_EQ(read_text(mark + text).format, read_text(text).format);
+  }
+  EXPECT_EQ(refusal(mark + "{\"asset\": 1}"), refusal("{\"asset\": 1}"));
+  EXPECT_EQ(refusal(mark + "[1]"), refusal("[1]"));
+}
+
 TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
   using namespace std::string_view_literals;
   EXPECT_THAT(refusal("\xfd"

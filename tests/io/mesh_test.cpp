@@ -217,11 +217,19 @@ TEST(Stl, IsToldFromItsBytesOrItsName) {
   EXPECT_THAT(refusal(std::string(84, '\0'), "empty.stl"), HasSubstr("none of the 0 faces"));
 }
 
+TEST(Stl, LinesMayEndWithCrAndGiveColours) {
+  const std::string text =
+      "solid a\rcolor 1 0 0\rfacet normal 0 0 1\router loop\rvertex 0 0 0\rvertex 1 0 0\r"
+      "vertex 0 1 0\rendloop\rendfacet\r";
+  EXPECT_EQ(read_text(text + "endsolid a\r").mesh->triangles, 1u);
+  EXPECT_THAT(refusal(text + "hello\r"), HasSubstr("line 10: unknown word \"hello\""));
+}
+
 TEST(Stl, NamesTheLineOfWhatIsWrong) {
   const std::string begin = "solid a\nfacet normal 0 0 1\nouter loop\nVertex 0 0 0\nvertex 1 0 0\n";
   EXPECT_THAT(refusal(begin + "vertex 1 one 0\n"), HasSubstr("line 6: \"one\" is not a number"));
   EXPECT_THAT(refusal(begin + "endloop\n"), HasSubstr("line 6: a face of 2 corners"));
-  EXPECT_THAT(refusal(begin + "color 1 2 3\n"), HasSubstr("unknown word \"color\""));
+  EXPECT_THAT(refusal(begin + "colour 1 2 3\n"), HasSubstr("unknown word \"colour\""));
   EXPECT_THAT(refusal(begin), HasSubstr("the file ends inside a face"));
   EXPECT_EQ(read_text(begin + "vertex 0 1 0\nendloop\nendfacet\nENDSOLID\n").mesh->triangles, 1u);
 }

@@ -29,6 +29,15 @@ TEST(Obj, ReadsColoursBehindTheCoordinates) {
             (std::array<std::uint8_t, 3>{0, 51, 255}));
 }
 
+TEST(Obj, LinesGoOnAfterABackslash) {
+  const std::string text =
+      "v 0 0 \\\n0\nv 1 0 0 # a comment\nv 1 1 0\nv 0 1 0\nf 1 2 \\\r\n 3\nfo 1 3 4\n";
+  const CloudFile file = read_text(text, "a.obj");
+  ASSERT_TRUE(file.mesh);
+  EXPECT_EQ(file.mesh->triangles, 2u);
+  EXPECT_THAT(refusal(text + "f 1 2 9\n", "a.obj"), HasSubstr("line 9: a face has vertex \"9\""));
+}
+
 TEST(Obj, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("v 1 2 3\nv 1 two 3\n"), HasSubstr("line 2: \"two\" is not a number"));
   EXPECT_THAT(refusal("v 1 2\n"), HasSubstr("line 1: 2 numbers"));

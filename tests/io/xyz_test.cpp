@@ -56,6 +56,14 @@ TEST(Xyz, ReadsTheCountOfPts) {
               HasSubstr("has 2 points, but its first line declares 3"));
 }
 
+TEST(Xyz, DropsWhatMicrosoftsRuntimeWritesAsNotFinite) {
+  const CloudFile file =
+      read_text("1 2 3\n1.#QNAN 0 0\n0 -1.#IND 0\n0 0 1.#INF00\n-1.#IND00 0 0\n");
+  EXPECT_EQ(file.cloud.size(), 1u);
+  EXPECT_EQ(file.dropped, 4u);
+  EXPECT_THAT(refusal("1 2 3\n1.#X 0 0\n"), HasSubstr("\"1.#X\" is not a number"));
+}
+
 TEST(Xyz, DropsRowsWithMissingValues) {
   const CloudFile file = read_text("x,y,z\n1,,3\n4,5,6\nnan,0,0\n");
   EXPECT_EQ(file.cloud.size(), 1u);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
@@ -21,6 +23,11 @@ struct Counts {
   std::size_t first_normal = 0;  // byte offset of the first "vn" line
 };
 
+// "fo" is what the first versions of the format call a face.
+bool is_face(std::string_view word) {
+  return word == "f" || word == "fo";
+}
+
 Counts count_lines(const Input& input) {
   Counts counts;
   TextScanner scanner(input);
@@ -29,7 +36,7 @@ Counts count_lines(const Input& input) {
     std::string_view line = scanner.next_line();
     const std::string_view word = take_word(line);
     if (word == "v") ++counts.vertices;
-    if (word == "f") ++counts.faces;
+    if (is_face(word)) ++counts.faces;
     if (word == "vn" && counts.normals++ == 0) counts.first_normal = begin;
   }
   return counts;
@@ -37,11 +44,13 @@ Counts count_lines(const Input& input) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const Input& input)
+  /// `joined`: the same with each line on one line, at the same offsets.
+  ObjReader(const Input& input, const Input& joined)
       : input_(input),
-        counts_(count_lines(input)),
-        vertices_(input),
-        normals_(input, counts_.first_normal) {}
+        joined_(joined),
+        counts_(count_lines(joined)),
+        vertices_(joined),
+        normals_(joined, counts_.first_normal) {}
 
   CloudFile run() {
     const bool normals = counts_.normals == counts_.vertices && counts_.normals > 0;
@@ -92,7 +101,7 @@ class ObjReader {
     std::size_t count = 0;
     for (; count < most; ++count) {
       const std::string_view cell = take_word(line);
-      if (cell.empty()) break;
+      if (cell.empty() || cell[0] == '#') break;
       const std::optional<double> number = parse_number(cell);
       if (!number) wrong(begin, fmt::format("\"{}\" is not a number", excerpt(cell)));
       values[count] = *number;
@@ -102,7 +111,7 @@ class ObjReader {
   }
 
   void read_faces() {
-    TextScanner scanner(input_);
+    TextScanner scanner(joined_);
     Progress progress(input_.options, input_.bytes.size());
     std::size_t before = 0;  // vertices, from which negative numbers count back
     while (!scanner.at_end()) {
@@ -110,7 +119,7 @@ class ObjReader {
       std::string_view line = scanner.next_line();
       const std::string_view word = take_word(line);
       if (word == "v") ++before;
-      if (word == "f") read_face(begin, line, before);
+      if (is_face(word)) read_face(begin, line, before);
       progress.at(scanner.offset());
     }
   }
@@ -137,6 +146,7 @@ class ObjReader {
   }
 
   const Input& input_;
+  const Input& joined_;
   Counts counts_;
   TextScanner vertices_;
   TextScanner normals_;
@@ -144,10 +154,30 @@ class ObjReader {
   Mesh mesh_{.color_scale = ColorScale::guess};
 };
 
+// The text with blanks in place of each backslash before a line's end, and of that end, but not in
+// comments; nothing if there is none.
+std::string join_lines(std::string_view text) {
+  std::string joined;
+  for (std::size_t at = text.find('\\'); at < text.size(); at = text.find('\\', at + 1)) {
+    const std::size_t next = text.find_first_not_of("\r\n", at + 1);
+    const std::size_t length = text.substr(at + 1).starts_with("\r\n") ? 3 : 2;
+    const std::size_t begin = text.find_last_of("\r\n", at) + 1;  // of its line; npos + 1 is 0
+    if (next == at + 1 || text.substr(begin, at - begin).find('#') != std::string_view::npos)
+      continue;
+    if (joined.empty()) joined = text;
+    std::fill_n(joined.begin() + static_cast<std::ptrdiff_t>(at),
+                std::min(length, text.size() - at), ' ');
+  }
+  return joined;
+}
+
 }  // namespace
 
 CloudFile read_obj(const Input& input) {
-  return ObjReader(input).run();
+  const std::string joined = join_lines(input.text());
+  if (joined.empty()) return ObjReader(input, input).run();
+  const Input lines{std::as_bytes(std::span(joined)), input.name, input.options};
+  return ObjReader(input, lines).run();
 }
 
 }  // namespace palpate::io
