@@ -32,6 +32,9 @@ def ply():
     seed("ply", "ascii", head.format("ascii") + plain + "property float intensity\n"
          "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
          + "".join(f"{x} {y} {z} 0.5\n" for x, y, z in POINTS) + "3 0 1 2\n")
+    seed("ply", "strips", head.format("ascii") + plain
+         + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+         + "".join(f"{x} {y} {z}\n" for x, y, z in POINTS) + "9 0 1 2 3 -1 3 1 0 -1\n")
     rich = ("property uchar red\nproperty double z\nproperty list uchar short extra\n"
             "property float nx\nproperty float ny\nproperty float nz\nproperty double x\n"
             "property uchar green\nproperty double y\nproperty uchar blue\nend_header\n")

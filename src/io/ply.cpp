@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "io/cloud_builder.hpp"
@@ -42,8 +43,15 @@ bool is_corner_list(const PlyProperty& property) {
          (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
+// Strips are those of the Stanford scanning repository: each corner makes a triangle with the two
+// before it, and -1 ends a strip.
+bool is_strips(const PlyElement& element) {
+  return element.name == "tristrips";
+}
+
 bool has_faces(const PlyElement& element) {
-  return element.name == "face" && std::ranges::any_of(element.properties, is_corner_list);
+  return (element.name == "face" || is_strips(element)) &&
+         std::ranges::any_of(element.properties, is_corner_list);
 }
 
 PlyTable table_of_points(const PlyElement& element, const Roles& roles) {
@@ -62,16 +70,39 @@ PlyTable table_of_faces(const PlyElement& element) {
   return table;
 }
 
+std::size_t corner_of(const Input& input, const PlyTable& table, std::size_t vertices,
+                      double corner) {
+  if (!(corner >= 0 && corner < static_cast<double>(vertices))) {
+    fail_at_byte(input, table.list_begin,
+                 fmt::format("a face has vertex {}, but there are {}", corner, vertices),
+                 "The file is damaged: export it again");
+  }
+  return static_cast<std::size_t>(corner);
+}
+
 void add_face(const Input& input, const PlyTable& table, std::size_t vertices, Mesh& mesh) {
   for (const double corner : table.items) {
-    if (!(corner >= 0 && corner < static_cast<double>(vertices))) {
-      fail_at_byte(input, table.list_begin,
-                   fmt::format("a face has vertex {}, but there are {}", corner, vertices),
-                   "The file is damaged: export it again");
-    }
-    mesh.add_corner(static_cast<std::size_t>(corner));
+    mesh.add_corner(corner_of(input, table, vertices, corner));
   }
   mesh.close_face();
+}
+
+// Every other triangle of a strip goes round the other way. Those with a corner twice only lead on.
+void add_strips(const Input& input, const PlyTable& table, std::size_t vertices, Mesh& mesh) {
+  std::array<std::size_t, 2> last{};
+  std::size_t length = 0;
+  for (const double item : table.items) {
+    if (item == -1) {
+      length = 0;
+      continue;
+    }
+    const std::size_t corner = corner_of(input, table, vertices, item);
+    const bool is_face = length > 1 && last[0] != last[1] && last[0] != corner && last[1] != corner;
+    const std::size_t odd = length % 2;
+    if (is_face) mesh.add_triangle(last[odd], last[1 - odd], corner);
+    last = {last[1], corner};
+    ++length;
+  }
 }
 
 // `faces`: null where the file has none.
@@ -96,7 +127,7 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
     PlyTable& face_table = tables[faces_first ? 0 : 1];
     face_table = table_of_faces(*faces);
     face_table.take = [&](std::span<const double>) {
-      add_face(input, face_table, points.count, mesh);
+      (is_strips(*faces) ? add_strips : add_face)(input, face_table, points.count, mesh);
     };
   }
   const std::string over = unused(read_ply_rows(input, header, tables));

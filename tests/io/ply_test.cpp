@@ -230,6 +230,23 @@ TEST(PlyRows, BehindTheLastDeclaredOneAreTold) {
   EXPECT_EQ(read_text(binary).format, "PLY, binary little endian" + std::string(told));
 }
 
+// A square of two triangles, the second of which goes round the other way in the strip.
+TEST(PlyStrips, AreTheirTriangles) {
+  const auto mesh = [](std::string_view name, std::string_view type, std::string_view rows) {
+    return read_text("ply\nformat ascii 1.0\nelement vertex 5\n" + std::string(kXyz) + "element " +
+                     std::string(name) + "\nproperty list int " + std::string(type) +
+                     " vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n5 5 5\n" +
+                     std::string(rows));
+  };
+  const CloudFile strips = mesh("tristrips 1", "int", "11 0 1 2 3 3 -1 1 2 -1 4 -1\n");
+  const CloudFile faces = mesh("face 2", "int", "3 0 1 2\n3 2 1 3\n");
+  ASSERT_TRUE(strips.mesh);
+  EXPECT_EQ(strips.mesh->triangles, 2u);
+  EXPECT_EQ(strips.mesh->dropped, 0u);
+  EXPECT_EQ(strips.cloud.positions, faces.cloud.positions);
+  EXPECT_EQ(strips.cloud.normals, faces.cloud.normals);
+}
+
 TEST(Ply, ManyColumnsAreRefused) {
   std::string text = "ply\nformat ascii 1.0\n";
   for (int i = 0; i < 5000; ++i) text += "element e" + std::to_string(i) + " 0\n";
