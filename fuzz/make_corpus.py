@@ -223,6 +223,9 @@ def text():
                                       for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
     seed("xyz", "normals_colors", "".join(f"{x};{y};{z};0;0;1;{r};{g};{b}\n"
                                           for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("any", "ptx-scan", "1\n5\n9 8 7\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n9 8 7 1\n"
+         + "0 0 0 0 0 0 0\n" + "".join(f"{x} {y} {z} 0.5 {r} {g} {b}\n"
+                                       for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
     seed("obj", "plain", "# a seed\nmtllib a.mtl\no thing\n"
          + "".join(f"v {x} {y} {z}\nvn 0 0 2\n" for x, y, z in POINTS) + "f 1//1 2//2 3//3\n")
     seed("obj", "colors", "".join(f"v {x} {y} {z} {r / 255} {g / 255} {b / 255}\n"

@@ -41,6 +41,8 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return read_gltf(input);
     case FileKind::text:
       return read_xyz(input);
+    case FileKind::ptx:
+      return read_ptx(input);
     case FileKind::png:
       return cloud_of(input, read_png(input));
     case FileKind::pgm:

@@ -191,6 +191,14 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// With any other number the first three columns are used.
 [[nodiscard]] CloudFile read_xyz(const Input& input);
 
+/// PTX: the points of all scans, in the world that their matrices lead to, with intensities, and
+/// colours where the first point has them. Points at the scanner itself are where nothing came
+/// back, and dropped. The viewpoint is kept of a single scan.
+[[nodiscard]] CloudFile read_ptx(const Input& input);
+
+/// Is it named as PTX, or do its first lines have the numbers of values that those of PTX have?
+[[nodiscard]] bool is_ptx(const Input& input);
+
 }  // namespace palpate::io
 
 namespace palpate {

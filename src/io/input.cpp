@@ -62,8 +62,8 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, OBJ, STL, glTF, GLB, LAS, LAZ, E57, SPZ, .splat, 16-bit "
-    "depth PNG and PGM, optionally gzipped";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, PTX, OBJ, STL, glTF, GLB, LAS, LAZ, E57, SPZ, .splat, "
+    "16-bit depth PNG and PGM, optionally gzipped";
 
 struct Known {
   std::string_view start;
@@ -149,7 +149,7 @@ FileKind text_kind(const Input& input, std::string_view word) {
   const bool is_obj =
       std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords);
   if (is_obj || extension(input.name) == ".obj") return FileKind::obj;
-  return FileKind::text;
+  return is_ptx(input) ? FileKind::ptx : FileKind::text;
 }
 
 void refuse_known(const Input& input) {
