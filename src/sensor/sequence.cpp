@@ -1,4 +1,4 @@
-// Lists the frames of a folder of depth images or clouds.
+// Reads what a folder of depth images or clouds says of them.
 #include "sensor/sequence.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
+#include "sensor/frame_files.hpp"
 #include "sensor/pose_track.hpp"
 
 namespace palpate {
@@ -29,32 +30,6 @@ std::string text_of(const fs::path& path) {
 bool is_file(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
-}
-
-bool is_frame(const fs::path& path) {
-  const std::string ending = io::extension(path.string());
-  return ending == ".png" || ending == ".pgm" || is_cloud(path);
-}
-
-std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wanted) {
-  std::error_code failure;
-  const bool usual = wanted.empty() && fs::is_directory(folder / "depth", failure);
-  const fs::path place = usual ? folder / "depth" : folder / wanted;
-  std::vector<fs::path> frames;
-  fs::directory_iterator entry(place, failure);
-  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
-    if (is_frame(entry->path())) frames.push_back(entry->path());
-  }
-  if (failure) {
-    throw Error(
-        fmt::format("{}: cannot be listed ({}). Give the folder of the depth images "
-                    "(\"images\" in sequence.json).",
-                    place.string(), failure.message()));
-  }
-  std::ranges::sort(frames);
-  const bool clouds = std::ranges::all_of(frames, is_cloud);
-  if (!clouds) std::erase_if(frames, is_cloud);  // what somebody made of the images
-  return frames;
 }
 
 // Describes a sequence of TUM's benchmark: depth v / 5000 m, and the intrinsics that TUM recommends
