@@ -113,20 +113,20 @@ bool is_comment(std::string_view line) {
   return line.empty() || line.front() == '#';
 }
 
-// Exactly N finite numbers.
+// Exactly N numbers; infinite ones and "nan" are among what a lost pose is written as.
 template <std::size_t N>
 std::optional<std::array<double, N>> numbers(std::string_view line) {
   std::array<double, N> values{};
   for (double& value : values) {
     const std::optional<double> number = io::parse_number(take_word(line));
-    if (!number || !std::isfinite(*number)) return {};
+    if (!number) return {};
     value = *number;
   }
   return io::trim(line).empty() ? std::optional(values) : std::nullopt;
 }
 
-// The four lines of a matrix; its first begins at `begin`.
-Eigen::Isometry3d read_matrix(const Input& input, TextScanner& scanner) {
+// The four lines of a matrix. Nothing when they say that tracking was lost.
+std::optional<Eigen::Isometry3d> read_matrix(const Input& input, TextScanner& scanner) {
   const std::size_t begin = scanner.offset();
   Eigen::Matrix4d matrix;
   for (int row = 0; row < 4; ++row) {
@@ -137,10 +137,23 @@ Eigen::Isometry3d read_matrix(const Input& input, TextScanner& scanner) {
     }
     matrix.row(row) = Eigen::Map<const Eigen::RowVector4d>(values->data());
   }
+  if (!matrix.allFinite()) return {};
   const auto pose = rigid(matrix.block<3, 1>(0, 3), Eigen::Matrix3d(matrix.block<3, 3>(0, 0)));
   if (!pose)
     io::fail_at_line(input, begin, "this matrix is not a rotation and translation", kPoseRemedy);
-  return *pose;
+  return pose;
+}
+
+// The pose of a line of a track, without its time; nothing where tracking was lost.
+std::optional<Eigen::Isometry3d> pose_in(const Input& input, std::size_t offset,
+                                         const std::array<double, 8>& line) {
+  if (!std::ranges::all_of(line, [](double v) { return std::isfinite(v); })) return {};
+  const auto [t, x, y, z, qx, qy, qz, qw] = line;
+  auto pose = rigid({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
+  if (pose) return pose;
+  io::fail_at_line(input, offset,
+                   "this quaternion's length is not 1, or the position is beyond 10^6 m",
+                   kPoseRemedy);
 }
 
 PoseTrack read_track(const Input& input) {
@@ -150,22 +163,16 @@ PoseTrack read_track(const Input& input) {
     const std::size_t offset = scanner.offset();
     const std::string_view line = scanner.next_line();
     if (is_comment(line)) continue;
-    const auto v = numbers<8>(line);
-    if (!v) {
+    const auto values = numbers<8>(line);
+    if (!values || !std::isfinite(values->front())) {
       io::fail_at_line(input, offset, "this is not \"time x y z qx qy qz qw\"", kPoseRemedy);
     }
-    const auto [t, x, y, z, qx, qy, qz, qw] = *v;
-    const auto pose = rigid({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
-    if (!pose) {
-      io::fail_at_line(input, offset,
-                       "this quaternion's length is not 1, or the position is not finite",
-                       kPoseRemedy);
-    }
-    if (!track.empty() && t <= track.back().stamp) {
+    const double stamp = values->front();
+    if (!track.empty() && stamp <= track.back().stamp) {
       io::fail_at_line(input, offset, "this time is not later than that of the previous line",
                        kPoseRemedy);
     }
-    track.push_back({t, *pose});
+    track.push_back({stamp, pose_in(input, offset, *values)});
   }
   return track;
 }
@@ -179,7 +186,7 @@ PosesByOrder read_by_order(const Input& input) {
     if (is_comment(line)) continue;
     const auto number = io::parse_count(take_word(line));
     if (!number) io::fail_at_line(input, offset, "a frame number is missing", kPoseRemedy);
-    result.poses[*number] = read_matrix(input, scanner);
+    if (const auto pose = read_matrix(input, scanner)) result.poses[*number] = *pose;
   }
   return result;
 }
@@ -208,9 +215,12 @@ PosesByNumber read_by_number(const Input& input) {
     const std::string_view line = io::trim(scanner.next_line());
     if (line.empty() || line.front() != '#') continue;
     if (const auto number = frame_number(line)) {
-      result.poses[*number] = read_matrix(input, scanner);
+      if (const auto pose = read_matrix(input, scanner)) result.poses[*number] = *pose;
     } else if (names_mounting(line)) {
-      result.T_told_sensor = read_matrix(input, scanner);
+      const std::size_t offset = scanner.offset();
+      const auto mounting = read_matrix(input, scanner);
+      if (!mounting) io::fail_at_line(input, offset, "this matrix is not finite", kPoseRemedy);
+      result.T_told_sensor = *mounting;
     }
   }
   return result;
@@ -245,11 +255,12 @@ std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp) {
   const StampedPose& before = *std::prev(next);
   if (stamp - before.stamp <= kSame) return before.pose;
   if (next == track.end() || next->stamp - before.stamp > kWidestGap) return {};
+  if (!before.pose || !next->pose) return {};
   const double u = (stamp - before.stamp) / (next->stamp - before.stamp);
-  const Eigen::Quaterniond from(before.pose.linear());
+  const Eigen::Quaterniond from(before.pose->linear());
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = from.slerp(u, Eigen::Quaterniond(next->pose.linear())).toRotationMatrix();
-  pose.translation() = (1 - u) * before.pose.translation() + u * next->pose.translation();
+  pose.linear() = from.slerp(u, Eigen::Quaterniond(next->pose->linear())).toRotationMatrix();
+  pose.translation() = (1 - u) * before.pose->translation() + u * next->pose->translation();
   return pose;
 }
 

@@ -28,10 +28,10 @@ struct ListedFrame {
 [[nodiscard]] std::vector<ListedFrame> parse_frame_list(std::string_view text,
                                                         const std::string& name);
 
-/// A pose at a time.
+/// A pose at a time; nothing where it says that tracking was lost.
 struct StampedPose {
   double stamp = 0;  // s
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  std::optional<Eigen::Isometry3d> pose = Eigen::Isometry3d::Identity();
 };
 
 /// Poses in the order of time.
@@ -53,14 +53,15 @@ using Poses = std::variant<PoseTrack, PosesByOrder, PosesByNumber>;
 
 /// Reads poses, camera to world: lines "time x y z qx qy qz qw" (TUM), groups of a line of three
 /// counts and four of a 4 x 4 matrix (Redwood's .log), or 4 x 4 matrices under comments that name
-/// "frame-NUMBER".
+/// "frame-NUMBER". Numbers that are infinite or no numbers ("nan") say that tracking was lost: that
+/// frame has no pose.
 /// @throws Error that names the line and what it should be.
 [[nodiscard]] Poses parse_poses(std::string_view text, const std::string& name);
 
 /// The pose at a time between two known ones: places in a straight line, rotations along the
 /// shortest arc (slerp). One that is known within a
-/// millisecond is taken as it is. Nothing before the first, after the last, and in gaps above
-/// 0.25 s.
+/// millisecond is taken as it is. Nothing before the first, after the last, in gaps above 0.25 s,
+/// and beside a pose that was lost.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp);
 
 }  // namespace palpate::sensor

@@ -61,7 +61,7 @@ TEST(Poses, ReadsTum) {
       parse_poses("# timestamp tx ty tz qx qy qz qw\n1.5 1 2 3 0 0 0 1\n2.5 4 5 6 0 0 1 0\n", "a"));
   ASSERT_EQ(track.size(), 2u);
   EXPECT_EQ(track[1].stamp, 2.5);
-  EXPECT_TRUE(track[1].pose.isApprox(pose(std::numbers::pi, {4, 5, 6}), 1e-9));
+  EXPECT_TRUE(track[1].pose->isApprox(pose(std::numbers::pi, {4, 5, 6}), 1e-9));
 }
 
 TEST(Poses, ReadsMatricesInOrder) {
@@ -86,6 +86,30 @@ TEST(Poses, ReadsMatricesByNumberAndWhatStandsBehindThem) {
   EXPECT_TRUE(numbered.T_told_sensor.isApprox(pose(0, {0.1, 0, 0})));
 }
 
+TEST(Poses, AreMissingWhereTrackingWasLost) {
+  const std::string lost = "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n";
+  const std::string known = "1 0 0 5\n0 1 0 6\n0 0 1 7\n0 0 0 1\n";
+  const auto ordered = std::get<PosesByOrder>(
+      parse_poses("0 0 1\n" + lost + "-inf -inf -inf -inf\n1 1 2\n" + known, "a"));
+  EXPECT_EQ(ordered.poses.size(), 1u);
+  EXPECT_TRUE(ordered.poses.contains(1));
+  const auto numbered = std::get<PosesByNumber>(
+      parse_poses("# frame-3\n" + lost + "0 0 0 1\n# frame-4\n" + known, "a"));
+  EXPECT_EQ(numbered.poses.size(), 1u);
+  EXPECT_TRUE(numbered.poses.contains(4));
+}
+
+TEST(PoseTrack, KnowsNothingBesideALostPose) {
+  const auto track = std::get<PoseTrack>(
+      parse_poses("0 nan nan nan nan nan nan nan\n0.1 0 0 0 0 0 0 1\n0.2 1 0 0 0 0 0 1\n"
+                  "0.3 -inf 0 0 0 0 0 1\n0.4 2 0 0 0 0 0 1\n",
+                  "a"));
+  ASSERT_EQ(track.size(), 5u);
+  EXPECT_TRUE(pose_at(track, 0.15));
+  EXPECT_TRUE(pose_at(track, 0.2));
+  for (const double lost : {0.0, 0.05, 0.25, 0.3, 0.35}) EXPECT_FALSE(pose_at(track, lost)) << lost;
+}
+
 TEST(Poses, SetsRoundedRotationsRight) {
   const auto ordered = std::get<PosesByOrder>(
       parse_poses("0 0 1\n0.999 0.001 0 0\n0 1.001 0 0\n0 0 1 0\n0 0 0 1\n", "a"));
@@ -100,7 +124,12 @@ TEST(Poses, NamesTheLineThatIsWrong) {
   EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"),
               HasSubstr("not later than"));
   EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 2\n"), HasSubstr("length is not 1"));
-  EXPECT_THAT(refusal(parse_poses, "1 nan 0 0 0 0 0 1\n"), HasSubstr("unknown pose format"));
+  EXPECT_THAT(refusal(parse_poses, "1 0 0 0 0 0 0 1\nnan 0 0 0 0 0 0 1\n"), HasSubstr("line 2"));
+  EXPECT_THAT(
+      refusal(parse_poses,
+              "# depth-to-color extrinsic\nnan 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n# frame-1\n"
+              "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"),
+      HasSubstr("line 2: this matrix is not finite"));
   EXPECT_THAT(refusal(parse_poses, "0 0 1\n1 0 0 0\n0 1 0 0\n"), HasSubstr("line 4"));
   EXPECT_THAT(refusal(parse_poses, "0 0 1\n1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1\n"),
               HasSubstr("line 2: this matrix is not a rotation"));
