@@ -31,6 +31,16 @@ Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b
   return pose;
 }
 
+// What keeps a transform from being a pose.
+std::string what_is_wrong(const Transform& told) {
+  const Quaternion& q = told.rotation;
+  if (q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0) return "its quaternion is all zeros";
+  return fmt::format(
+      "its translation is ({}, {}, {}), its quaternion ({}, {}, {}, {}): that is not finite, or "
+      "the quaternion's length is not 1",
+      told.translation.x, told.translation.y, told.translation.z, q.x, q.y, q.z, q.w);
+}
+
 void explain(std::string* why, std::string words) {
   if (why != nullptr) *why = std::move(words);
 }
@@ -89,7 +99,12 @@ void Transforms::add(const TFMessage& message, bool is_static) {
     const std::string parent = plain(told.header.frame_id);
     const auto pose = isometry(told.transform.translation, told.transform.rotation);
     const bool is_new = !links_.contains(child);
-    if (!pose || child.empty() || parent.empty() || (is_new && links_.size() >= kFrames)) continue;
+    if (child.empty() || parent.empty() || (is_new && links_.size() >= kFrames)) continue;
+    if (!pose) {
+      refuse(child, parent, told.transform);
+      continue;
+    }
+    refused_.erase(child);
     if (is_new || links_[child].parent != parent) {
       if (child == parent || std::ranges::count(ancestors(parent), child) > 0) continue;  // a loop
       links_[child] = {parent, is_static, {}};
@@ -108,6 +123,15 @@ void Transforms::add(const TFMessage& message, bool is_static) {
                      std::max(kept, link.poses.end() - static_cast<std::ptrdiff_t>(
                                                            std::min(link.poses.size(), kPoses))));
   }
+}
+
+void Transforms::refuse(const std::string& child, const std::string& parent,
+                        const Transform& told) {
+  if (refused_.size() >= kFrames && !refused_.contains(child)) return;
+  refused_[child] = fmt::format(
+      "the transform from {} to {} in /tf or /tf_static is no pose: {}. Correct it where it is "
+      "published, and record again",
+      child, parent, what_is_wrong(told));
 }
 
 std::optional<Eigen::Isometry3d> Transforms::at(const Link& link, double stamp) {
@@ -137,8 +161,11 @@ std::optional<Eigen::Isometry3d> Transforms::climb(const std::string& frame,
     const Link& link = links_.at(here);
     const auto step = at(link, stamp);
     if (!step) {
-      explain(why,
-              fmt::format("/tf does not say where {} is in {} at that time", here, link.parent));
+      const auto refused = refused_.find(here);
+      explain(why, refused != refused_.end()
+                       ? refused->second
+                       : fmt::format("/tf does not say where {} is in {} at that time", here,
+                                     link.parent));
       return {};
     }
     pose = *step * pose;
@@ -153,7 +180,10 @@ std::optional<Eigen::Isometry3d> Transforms::find(const std::string& to, const s
   const std::vector<std::string> target = ancestors(plain(to));
   const auto common = std::ranges::find_first_of(up, target);
   if (common == up.end()) {
-    explain(why, fmt::format("/tf connects no frame {} to {}", from, to));
+    auto refused = refused_.find(up.back());
+    if (refused == refused_.end()) refused = refused_.find(target.back());
+    explain(why, refused == refused_.end() ? fmt::format("/tf connects no frame {} to {}", from, to)
+                                           : refused->second);
     return {};
   }
   const auto one = climb(plain(from), *common, stamp, why);

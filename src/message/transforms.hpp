@@ -31,7 +31,8 @@ namespace palpate::message {
 /// moving frames. Not thread-safe.
 class Transforms {
  public:
-  /// Adds transforms; drops those that are no pose or make no tree.
+  /// Adds transforms; drops those that make no tree, and those that are no pose, of which find()
+  /// can tell.
   void add(const TFMessage& message, bool is_static);
 
   /// Transform from the axes of `from` to those of `to` at `stamp` (s), linear and by slerp between
@@ -58,7 +59,10 @@ class Transforms {
                                                        const std::string& root, double stamp,
                                                        std::string* why) const;
 
-  std::map<std::string, Link> links_;  // by the child's name
+  void refuse(const std::string& child, const std::string& parent, const Transform& told);
+
+  std::map<std::string, Link> links_;           // by the child's name
+  std::map<std::string, std::string> refused_;  // what was no pose last, in words, by the child
 };
 
 }  // namespace palpate::message

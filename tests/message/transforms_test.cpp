@@ -77,6 +77,34 @@ TEST(Transforms, LeaveOutWhatIsNoPoseOrMakesNoTree) {
   EXPECT_TRUE(known.find("x", "z", 0));  // the last would have closed a loop
 }
 
+TEST(Transforms, SayWhichTransformIsNoPose) {
+  Transforms known;
+  std::string why;
+  known.add({{transform("odom", "base", 0, {0, 0, 0}),
+              transform("base", "cam", 0, {1, 0, 0}, {0, 0, 0, 0})}},
+            true);
+  for (const auto& [to, from] : {std::pair("odom", "cam"), std::pair("cam", "odom")}) {
+    EXPECT_FALSE(known.find(to, from, 0, &why));
+    EXPECT_THAT(why, testing::HasSubstr("from cam to base"));
+    EXPECT_THAT(why, testing::HasSubstr("quaternion is all zeros"));
+  }
+  known.add({{transform("base", "cam", 0, {1, 0, 0}, {0, 0, 0, 2})}}, true);
+  EXPECT_FALSE(known.find("odom", "cam", 0, &why));
+  EXPECT_THAT(why, testing::HasSubstr("quaternion (0, 0, 0, 2)"));
+  known.add({{transform("base", "cam", 0, {1, 0, 0})}}, true);
+  EXPECT_TRUE(known.find("odom", "cam", 0));
+}
+
+TEST(Transforms, SayWhichTransformOfAMovingFrameIsNoPose) {
+  Transforms known;
+  std::string why;
+  known.add({{transform("world", "cam", 1, {1, 0, 0})}}, false);
+  known.add({{transform("world", "cam", 2, {1, 0, 0}, {0, 0, 0, 0})}}, false);
+  EXPECT_FALSE(known.find("world", "cam", 2, &why));
+  EXPECT_THAT(why, testing::HasSubstr("quaternion is all zeros"));
+  EXPECT_TRUE(known.find("world", "cam", 1));
+}
+
 TEST(Transforms, KeepTenSecondsAndBeginAgainAfterAJumpBack) {
   Transforms known;
   for (int i = 0; i <= 300; ++i)
