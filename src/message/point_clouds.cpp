@@ -65,13 +65,18 @@ std::vector<Column> columns_of(const PointCloud2& message, io::Columns& optional
   return columns;
 }
 
+// Bytes from a row to the next. Some writers of one row leave that out, as nothing follows it.
+std::size_t row_step_of(const PointCloud2& message) {
+  const std::size_t row = static_cast<std::size_t>(message.width) * message.point_step;
+  return message.row_step == 0 && message.height == 1 ? row : message.row_step;
+}
+
 void check_layout(const PointCloud2& message) {
   const std::size_t row = static_cast<std::size_t>(message.width) * message.point_step;
-  const bool fits =
-      message.point_step > 0 && message.row_step >= row &&
-      (message.height == 0 ||
-       (message.row_step <= message.data.size() / message.height && message.row_step > 0));
-  if (fits) return;
+  const std::size_t step = row_step_of(message);
+  const bool fits = message.point_step > 0 && step >= row &&
+                    (message.height == 0 || step <= message.data.size() / message.height);
+  if (fits && (step > 0 || message.height <= 1)) return;
   throw Error(fmt::format("{}: {} x {} points of {} bytes, {} a row, in {} bytes", kName,
                           message.width, message.height, message.point_step, message.row_step,
                           message.data.size()));
@@ -101,10 +106,11 @@ PointCloud cloud_of(const PointCloud2& message) {
   if (message.height > 1) builder.organise(message.width, message.height);
   const std::endian order = message.is_bigendian ? std::endian::big : std::endian::little;
   const auto* bytes = reinterpret_cast<const std::byte*>(message.data.data());
+  const std::size_t row_step = row_step_of(message);
   io::Row row{};
   for (std::size_t v = 0; v < message.height; ++v) {
     for (std::size_t u = 0; u < message.width; ++u) {
-      const std::byte* point = bytes + v * message.row_step + u * message.point_step;
+      const std::byte* point = bytes + v * row_step + u * message.point_step;
       for (const Column& column : columns) set(row, column, point, order);
       builder.add(row);
     }

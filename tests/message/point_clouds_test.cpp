@@ -65,6 +65,14 @@ TEST(PointClouds, KeepsPixelsOfOrganisedOnes) {
   EXPECT_THAT(read.pixels, testing::ElementsAre(0, 1));
 }
 
+TEST(PointClouds, TakesOneRowThatDoesNotSayHowLongItIs) {
+  PointCloud2 message = cloud();
+  message.row_step = 0;
+  const PointCloud read = cloud_of(message);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read.point(1), Eigen::Vector3d(2, 2, 3));
+}
+
 TEST(PointClouds, RefusesThoseThatContradictThemselves) {
   const auto refused = [](auto&& spoil) {
     PointCloud2 message = cloud();
@@ -72,7 +80,8 @@ TEST(PointClouds, RefusesThoseThatContradictThemselves) {
     EXPECT_THROW(static_cast<void>(cloud_of(message)), Error);
   };
   refused([](PointCloud2& m) { m.point_step = 0; });
-  refused([](PointCloud2& m) { m.row_step = 0; });
+  refused([](PointCloud2& m) { m.row_step = 0, m.height = 2, m.width = 1; });
+  refused([](PointCloud2& m) { m.row_step = 0, m.width = 3; });
   refused([](PointCloud2& m) { m.row_step = 10; });
   refused([](PointCloud2& m) { m.width = 1U << 31U; });
   refused([](PointCloud2& m) { m.height = 1U << 31U; });
