@@ -1,11 +1,13 @@
 // Reads COPC files as point stores.
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "geometry/store_nodes.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/copc.hpp"
+#include "io/las_coordinates.hpp"
 
 namespace palpate::io {
 namespace {
@@ -21,10 +23,11 @@ class CopcStore final : public PointStore {
         offset_(scale * header_.offset) {
     std::optional<Copc> copc = read_copc(head_, header_, parts_of(file_));
     if (!copc) return;
+    check_no_degrees(head_, header_);
     nodes_ = std::move(copc->nodes);
     std::ranges::sort(nodes_, {}, &StoredNode::place);
     for (const StoredNode& each : nodes_) layout_.nodes.push_back(each.node);
-    layout_.format = "COPC, " + header_.name();
+    layout_.format = "COPC, " + header_.name() + std::string(stated_unit(head_, header_));
     layout_.lower = scale * (copc->center.array() - copc->half_size);
     layout_.edge = scale * 2 * copc->half_size;
     layout_.spacing = scale * copc->spacing;

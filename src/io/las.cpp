@@ -8,6 +8,7 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/las_coordinates.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
@@ -30,6 +31,30 @@ LasPoint las_point(const LasHeader& header, const std::byte* record) {
 
 namespace {
 
+// Does the header say that other things follow the points: waveforms, or more records?
+bool has_more_behind(const Input& input, const LasHeader& header) {
+  constexpr std::size_t kWaveforms = 227;  // bytes into the header: where they begin, from 1.3 on
+  constexpr std::size_t kRecords14 = 243;  // and how many records follow the points, from 1.4 on
+  const std::byte* data = input.bytes.data();
+  if (header.minor_version >= 3 && header.size >= kWaveforms + sizeof(std::uint64_t) &&
+      load_as<std::uint64_t>(data + kWaveforms) != 0) {
+    return true;
+  }
+  return header.minor_version >= 4 && load_as<std::uint32_t>(data + kRecords14) != 0;
+}
+
+// Tells of records behind as many as the header declares, if whole ones fill the file from there.
+std::string points_behind(const Input& input, const LasHeader& header) {
+  const std::size_t size = input.bytes.size();
+  const std::size_t begin = std::min(header.points_offset, size);
+  const std::size_t bytes = size - begin;
+  if (header.compressed || bytes % header.record_size != 0) return {};
+  const std::size_t present = bytes / header.record_size;
+  if (present <= header.points || has_more_behind(input, header)) return {};
+  return fmt::format(", of whose {} points {} are not used, as its header declares {}", present,
+                     present - header.points, header.points);
+}
+
 // Makes a cloud of points, which `point_at` gives by their number.
 template <class PointAt>
 class LasReader {
@@ -46,7 +71,8 @@ class LasReader {
 
   CloudFile run() {
     CloudFile file;
-    file.format = header_.name();
+    file.format = fmt::format("{}{}{}", header_.name(), stated_unit(input_, header_),
+                              points_behind(input_, header_));
     file.declared = header_.points;
     file.cloud.origin =
         choose_origin(header_.points, [&](std::size_t i) { return place(point_at_(i)); });
@@ -111,6 +137,7 @@ void check_size(const Input& input, const LasHeader& header) {
 
 CloudFile read_las(const Input& input) {
   const LasHeader header = read_las_header(input);
+  check_no_degrees(input, header);
   if (header.compressed) {
     const std::unique_ptr<LasPoint[]> points = laz::read_points(input, header);
     return LasReader(

@@ -28,6 +28,17 @@ TEST(CloudFacts, UnitsAreGuessedWithAReason) {
   EXPECT_NE(far.reason.find("beyond 1e+09 m"), std::string::npos) << far.reason;
 }
 
+TEST(CloudFacts, AUnitThatTheFileStatesIsNotAskedFor) {
+  CloudFile file;
+  file.format = "LAS 1.2, point format 0, in feet";
+  const Box survey = box({635600, 848900, 400}, {3400, 4600, 200});
+  EXPECT_EQ(units_of(file, survey, {}).units, "feet");
+  EXPECT_NE(units_of(file, survey, {}).advice, "");
+  EXPECT_EQ(units_of(file, survey, {.scale = 0.3048}).advice, "");
+  file.format = "LAS 1.2, point format 0, in metres";
+  EXPECT_EQ(units_of(file, survey, {}).advice, "");
+}
+
 TEST(CloudFacts, PlacesAndLinesHaveNoSurface) {
   const Eigen::Vector3f a(0.5f, 0.1f, -3.f);
   const Eigen::Vector3f way(0.3f, 0.1f, 0.2f);

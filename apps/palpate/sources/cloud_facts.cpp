@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "palpate/contact/proxy.hpp"
 
@@ -44,6 +45,17 @@ UnitsGuess survey_units(const Box& bounds) {
           "if they are feet (state-plane data often is), give --scale 0.3048"};
 }
 
+// The unit that a file states, which the description of its format repeats. `rescaled`: whoever
+// gave the scale knew it.
+std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
+  const bool feet = format.find(", in feet") != std::string::npos;
+  if (!feet && format.find(", in metres") == std::string::npos) return {};
+  if (!feet || rescaled) return UnitsGuess{"metres", "the file says what its unit is", ""};
+  return UnitsGuess{
+      "feet", "the file says so",
+      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large"};
+}
+
 }  // namespace
 
 UnitsGuess guess_units(const Box& bounds, const std::string& format) {
@@ -81,7 +93,10 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
 }
 
 UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
-  if (!file.splats || reading.length || reading.scale != 1) return guess_units(core, file.format);
+  const bool rescaled = reading.length || reading.scale != 1;
+  const bool near = farthest(core) <= Proxy::kLargestCoordinate;
+  if (const auto stated = stated_units(file.format, rescaled); near && stated) return *stated;
+  if (!file.splats || rescaled) return guess_units(core, file.format);
   return {"unknown", fmt::format("{:.3g} long, and splats have no unit", core.size().maxCoeff()),
           "give --length with the metres of its longest side"};
 }

@@ -7,6 +7,7 @@
 
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
+#include "io/las_coordinates.hpp"
 #include "io/laz/laz_file.hpp"
 #include "io/laz/points.hpp"
 #include "io/tile/input.hpp"
@@ -24,6 +25,7 @@ class LasFile {
         header_(read_las_header(input())),
         scale_(scale * header_.scale),
         offset_(scale * header_.offset) {
+    check_no_degrees(input(), header_);
     if (header_.compressed) {
       chunks_ = laz::read_chunk_table(input(), header_, parts_of(file_));
     } else {
