@@ -177,7 +177,8 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// Is it an STL file? One of bytes has no mark, but the size that its count of triangles asks for.
 [[nodiscard]] bool is_stl(const Input& input);
 
-/// glTF 2.0, as JSON or in one binary file (GLB): the triangles of its scene, y up turned to z up.
+/// glTF 2.0, as JSON or in one binary file (GLB): the triangles of its scene or, without any, its
+/// points; y up turned to z up.
 /// Data may lie in the file, or in files beside it where `input` has a folder.
 /// @throws Error for compressed (Draco, meshopt) and sparse data.
 [[nodiscard]] CloudFile read_gltf(const Input& input);

@@ -95,7 +95,8 @@ TEST(Gltf, TakesStripsFansAndListsWithIndicesOfEveryKind) {
   }
   EXPECT_THAT(refusal(file("4", 5121, as(std::uint8_t{}, {0, 1, 9, 0, 2, 3}))),
               HasSubstr("an index is 9, but there are 4 vertices"));
-  EXPECT_THAT(refusal(file("1", 5121, as(std::uint8_t{}, {0, 1}))), HasSubstr("has no triangles"));
+  EXPECT_THAT(refusal(file("1", 5121, as(std::uint8_t{}, {0, 1}))),
+              HasSubstr("has neither triangles"));
 }
 
 TEST(Gltf, TakesColoursOfMaterials) {

@@ -1,4 +1,4 @@
-// Reads the triangles of glTF and GLB scenes.
+// Reads the triangles of glTF and GLB scenes, or the points of those that have no triangles.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -29,7 +29,8 @@ constexpr std::size_t kMostCorners = 30'000'000;
 // through in some seconds (judgement)
 constexpr std::size_t kMostPrimitives = 3'000'000;
 
-// Primitive modes that have faces (format).
+// Primitive modes: points, and those that have faces (format).
+constexpr std::size_t kPoints = 0;
 constexpr std::size_t kTriangles = 4;
 constexpr std::size_t kStrip = 5;
 constexpr std::size_t kFan = 6;
@@ -78,12 +79,11 @@ class GltfReader {
 
   CloudFile run() {
     walk();
-    if (mesh_.ends.empty()) {
-      fail(input_, "the scene of this glTF file has no triangles",
-           "Export it again with its meshes");
-    }
-    const bool binary = input_.text().starts_with("glTF");
-    return sample_faces(input_, mesh_, binary ? "glTF, binary" : "glTF");
+    const char* format = input_.text().starts_with("glTF") ? "glTF, binary" : "glTF";
+    if (!mesh_.ends.empty()) return sample_faces(input_, mesh_, format);
+    if (!points_.empty()) return cloud_of_points(format);
+    fail(input_, "the scene of this glTF file has neither triangles nor points",
+         "Export it again with its meshes");
   }
 
  private:
@@ -155,15 +155,19 @@ class GltfReader {
         fail_too_large(fmt::format("{} million parts of meshes", kMostPrimitives / 1'000'000));
       }
       const std::size_t mode = file_.whole(each, "mode").value_or(kTriangles);
-      if (mode >= kTriangles && mode <= kFan) add_primitive(each, mode, transform);
+      const bool faces = mode >= kTriangles && mode <= kFan;
+      if (!(faces || mode == kPoints) || !take(each)) continue;
+      transform_ = transform;
+      faces ? add_faces(mode) : add_points();
     }
   }
 
-  void add_primitive(const json& primitive, std::size_t mode, const Affine3d& transform) {
+  // Makes this the primitive that is being read. False: it has no vertices.
+  bool take(const json& primitive) {
     const json* attributes = find_member(primitive, "attributes");
     const auto position =
         attributes == nullptr ? std::nullopt : file_.whole(*attributes, "POSITION");
-    if (!position) return;
+    if (!position) return false;
     positions_ = file_.numbers(*position);
     if (positions_.width != 3) file_.wrong("positions are not three numbers each");
     take_colors(primitive, *attributes);
@@ -172,11 +176,36 @@ class GltfReader {
       corners_ = file_.numbers(*index);
       if (corners_->width != 1 || is_floating(corners_->type)) file_.wrong("indices are no counts");
     }
-    const std::size_t count = corners_ ? corners_->count : positions_.count;
+    return true;
+  }
+
+  std::size_t corner_count() const { return corners_ ? corners_->count : positions_.count; }
+
+  void add_points() {
+    for (std::size_t i = 0; i < corner_count(); ++i) {
+      points_.push_back(vertex_at(index_of_corner(i)));
+      if (points_.size() > kMostCorners) {
+        fail_too_large(fmt::format("{} million points", kMostCorners / 1'000'000));
+      }
+    }
+  }
+
+  CloudFile cloud_of_points(const char* format) {
+    CloudBuilder builder(input_, mesh_.columns, ColorScale::byte, points_.size());
+    Row row{};
+    for (const MeshVertex& vertex : points_) {
+      std::copy_n(vertex.data(), 3, row.begin());
+      std::copy_n(vertex.data() + 3, 3, row.begin() + index_of(Role::red));
+      builder.add(row);
+    }
+    return builder.finish(format);
+  }
+
+  void add_faces(std::size_t mode) {
+    const std::size_t count = corner_count();
     if (count < 3) return;
     if (place_.size() < positions_.count) place_.resize(positions_.count, kNowhere);
-    transform_ = transform;
-    const bool mirrored = transform.linear().determinant() < 0;
+    const bool mirrored = transform_.linear().determinant() < 0;
     for (std::size_t i = 0; i + 2 < count; i += mode == kTriangles ? 3 : 1) {
       const bool swapped = mirrored != (mode == kStrip && i % 2 == 1);
       const std::size_t first = corner(mode == kFan ? 0 : i);
@@ -212,23 +241,28 @@ class GltfReader {
     mesh_.columns.colors |= colors_.has_value() || factor_ != std::array<double, 4>{1, 1, 1, 1};
   }
 
-  // The vertex in the mesh of a corner of the primitive.
-  std::size_t corner(std::size_t i) {
+  // The vertex of the primitive that its corner names.
+  std::size_t index_of_corner(std::size_t i) const {
     const double number = corners_ ? corners_->at(i, 0) : static_cast<double>(i);
     if (!(number >= 0 && number < static_cast<double>(positions_.count))) {
       file_.wrong(
           fmt::format("an index is {}, but there are {} vertices", number, positions_.count));
     }
-    const auto vertex = static_cast<std::size_t>(number);
+    return static_cast<std::size_t>(number);
+  }
+
+  // The vertex in the mesh of a corner of the primitive.
+  std::size_t corner(std::size_t i) {
+    const std::size_t vertex = index_of_corner(i);
     if (place_[vertex] == kNowhere) {
       place_[vertex] = static_cast<std::uint32_t>(mesh_.vertices.size());
       placed_.push_back(vertex);
-      add_vertex(vertex);
+      mesh_.vertices.push_back(vertex_at(vertex));
     }
     return place_[vertex];
   }
 
-  void add_vertex(std::size_t i) {
+  MeshVertex vertex_at(std::size_t i) const {
     const Vector3d local(positions_.at(i, 0), positions_.at(i, 1), positions_.at(i, 2));
     MeshVertex vertex = MeshVertex::Zero();
     vertex.head<3>() = transform_ * local;
@@ -236,7 +270,7 @@ class GltfReader {
       vertex[static_cast<Eigen::Index>(3 + k)] =
           shade(factor_[k] * (colors_ ? colors_->at(i, k) : 1));
     }
-    mesh_.vertices.push_back(vertex);
+    return vertex;
   }
 
   static constexpr std::uint32_t kNowhere = 0xFFFFFFFF;
@@ -244,6 +278,7 @@ class GltfReader {
   const Input& input_;
   GltfFile file_;
   Mesh mesh_;
+  std::vector<MeshVertex> points_;
   // The primitive that is being read:
   GltfNumbers positions_;
   std::optional<GltfNumbers> corners_;

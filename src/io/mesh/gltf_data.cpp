@@ -128,6 +128,9 @@ GltfFile::GltfFile(const Input& input) : input_(input) {
 
 std::string_view GltfFile::unpack_glb() {
   const auto number = [&](std::size_t at) { return load_as<std::uint32_t>(&input_.bytes[at]); };
+  if (input_.bytes.size() >= kGlbHead && number(4) == 1) {
+    fail(input_, "this is binary glTF of version 1", "Export it again as GLB of glTF 2.0");
+  }
   std::string_view text;
   std::size_t at = kGlbHead;
   for (int chunk = 0; chunk < 2; ++chunk) {
