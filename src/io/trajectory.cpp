@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/text_scanner.hpp"
+#include "io/time_unit.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -138,6 +139,9 @@ class Reader {
     }
     std::array<double, kColumns.size()> values{};
     for (std::size_t i = 0; i < places_.size(); ++i) values[i] = value(cells, i);
+    if (const auto wrong = io::not_in_seconds(values[0])) {
+      fail(fmt::format("{}. {}.", wrong->what, wrong->remedy));
+    }
     if (!rows_.empty() && !(values[0] > rows_.back().time)) {
       fail(fmt::format("t = {} s follows t = {} s: times must increase from row to row", values[0],
                        rows_.back().time));

@@ -40,8 +40,8 @@ int compare_numbers(std::string_view a, std::string_view b) {
   return a.compare(b);
 }
 
-// Orders names by the numbers in them: "f2" comes before "f10". Digits behind a number and a point are a
-// fraction, which its first digits order, so that "1.25" comes before "1.5".
+// Orders names by the numbers in them: "f2" comes before "f10". Digits behind a number and a point
+// are a fraction, which its first digits order, so that "1.25" comes before "1.5".
 bool comes_before(std::string_view a, std::string_view b) {
   const std::string_view whole_a = a;
   const std::string_view whole_b = b;

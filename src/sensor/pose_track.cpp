@@ -12,6 +12,7 @@
 
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
+#include "io/time_unit.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -71,6 +72,11 @@ std::optional<ListedFrame> frame_of(std::string_view line) {
   return is_depth(*first) ? first : second;
 }
 
+void check_seconds(const io::Input& input, std::size_t offset, double stamp) {
+  const auto wrong = io::not_in_seconds(stamp);
+  if (wrong) io::fail_at_line(input, offset, wrong->what, wrong->remedy);
+}
+
 }  // namespace
 
 std::vector<ListedFrame> parse_frame_list(std::string_view text, const std::string& name) {
@@ -89,6 +95,7 @@ std::vector<ListedFrame> parse_frame_list(std::string_view text, const std::stri
           "this is neither \"time file\" nor \"time file time file\" with one file under depth/",
           kRemedy);
     }
+    check_seconds(input, offset, frame->stamp);
     if (!frames.empty() && frame->stamp <= frames.back().stamp) {
       io::fail_at_line(input, offset, "this time is not later than that of the previous line",
                        kRemedy);
@@ -168,6 +175,7 @@ PoseTrack read_track(const Input& input) {
       io::fail_at_line(input, offset, "this is not \"time x y z qx qy qz qw\"", kPoseRemedy);
     }
     const double stamp = values->front();
+    check_seconds(input, offset, stamp);
     if (!track.empty() && stamp <= track.back().stamp) {
       io::fail_at_line(input, offset, "this time is not later than that of the previous line",
                        kPoseRemedy);

@@ -10,6 +10,7 @@
 
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
+#include "io/time_unit.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/frame_files.hpp"
 #include "sensor/pose_track.hpp"
@@ -83,6 +84,10 @@ std::vector<SequenceFrame> listed_frames(const fs::path& folder, const std::stri
 }
 
 void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std::size_t images) {
+  if (const auto wrong = io::not_in_seconds(stamps.empty() ? 0 : stamps.back())) {
+    throw Error(fmt::format("{}: in \"stamps\", {}. {}.", (folder / "sequence.json").string(),
+                            wrong->what, wrong->remedy));
+  }
   const bool good =
       stamps.empty() || (stamps.size() == images &&
                          std::ranges::adjacent_find(stamps, std::greater_equal{}) == stamps.end());
@@ -102,8 +107,8 @@ std::optional<double> time_in_name(const fs::path& frame) {
   const bool whole = error == std::errc() && end == name.data() + name.size();
   if (!is_cloud(frame) || !whole || !std::isfinite(time)) return std::nullopt;
   if (name.find('.') != std::string::npos) return time;
-  if (name.size() == 16) return 1e-6 * time;
-  return name.size() == 19 ? std::optional(1e-9 * time) : std::nullopt;
+  const bool since_1970 = name.size() == 16 || name.size() == 19;
+  return since_1970 ? std::optional(time / io::unit_of_time(time).per_second) : std::nullopt;
 }
 
 // False: not all names are times, and nothing has changed.
