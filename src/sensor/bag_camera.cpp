@@ -71,7 +71,7 @@ class BagRecording final : public Recording {
   [[nodiscard]] Status show(const BagImage& image, DepthFrame& frame, std::string& why) const;
 
   std::string file_;
-  bag::McapReader reader_;
+  SplitBag reader_;
   RosFrames frames_;
   std::string frame_;
   BagRate rate_;
@@ -81,11 +81,10 @@ class BagRecording final : public Recording {
   ImageTimes times_;
   std::uint64_t log_ = 0;  // how far the file was read, ns
   bool read_ = false;      // to its end
-  std::size_t told_ = 0;   // losses
 };
 
 BagRecording::BagRecording(const BagName& name)
-    : file_(name.file), reader_(name.file), frames_(topic_of(reader_, name)), frame_(name.frame) {
+    : file_(name.file), reader_(name.files), frames_(topic_of(reader_, name)), frame_(name.frame) {
   measure();
   learn_camera();
   learn_what_stands_still();
@@ -111,10 +110,10 @@ void BagRecording::measure() {
 
 // So that the first images have a camera, which is often told a little later.
 void BagRecording::learn_camera() {
-  const auto is_picture = [&](const auto& each) {
-    return is_image(each.second) && !holds<message::PointCloud2>(each.second);
+  const auto is_picture = [&](const Channel& channel) {
+    return is_image(channel) && !holds<message::PointCloud2>(channel);
   };
-  if (std::ranges::none_of(reader_.contents().channels, is_picture)) return;
+  if (std::ranges::none_of(reader_.channels(), is_picture)) return;
   reader_.choose([&](const Channel& channel) { return is_info(channel); });
   std::string why = fmt::format("there is no CameraInfo; record it with {}", topic());
   int tried = 0;
@@ -161,8 +160,8 @@ Status BagRecording::next(DepthFrame& frame, double& time, std::string& why) {
     why = error.what();
     return Status::damaged;
   }
-  if (told_ < reader_.contents().losses.size()) {
-    why = fmt::format("{}: {}", file_, reader_.contents().losses[told_++]);
+  if (const auto loss = reader_.next_loss()) {
+    why = *loss;
     return Status::damaged;
   }
   if (waiting_.empty()) return Status::ended;

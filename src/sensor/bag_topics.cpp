@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <vector>
 
+#include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::sensor {
@@ -26,26 +28,51 @@ bool is_there(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-// Finds the file in a folder: ROS 2 records a folder, mostly with one file.
-std::string file_in(const std::string& folder) {
+// The files that the metadata.yaml of a folder lists as parts of its recording. Older ones have the
+// folder's name before theirs.
+std::vector<std::string> listed_files(const std::string& folder) {
+  std::ifstream metadata(fs::path(folder) / "metadata.yaml");
+  std::vector<std::string> files;
+  bool in_list = false;
+  for (std::string line; std::getline(metadata, line);) {
+    std::string_view text = io::trim(line);
+    if (!in_list || !text.starts_with('-')) {
+      in_list = text.starts_with("relative_file_paths:");
+      continue;
+    }
+    text = io::trim(text.substr(1));
+    if (text.size() > 1 && (text.front() == '"' || text.front() == '\'')) {
+      text = text.substr(1, text.size() - 2);
+    }
+    files.push_back((fs::path(folder) / fs::path(text).filename()).string());
+  }
+  const auto is_mcap = [](const std::string& file) { return file.ends_with(".mcap"); };
+  return std::ranges::all_of(files, is_mcap) ? files : std::vector<std::string>();
+}
+
+// Finds the files of a recording: ROS 2 records a folder, with one file or several.
+std::vector<std::string> files_of(const std::string& path) {
   std::error_code ignored;
-  if (!fs::is_directory(folder, ignored)) return folder;
-  std::vector<std::string> found;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+  if (!fs::is_directory(path, ignored)) return {path};
+  std::vector<std::string> found = listed_files(path);
+  if (!found.empty()) return found;
+  for (const auto& entry : fs::directory_iterator(path, ignored)) {
     if (entry.path().extension() == ".mcap") found.push_back(entry.path().string());
   }
   std::ranges::sort(found);
-  if (found.size() == 1) return found.front();
+  if (found.size() == 1) return found;
   throw Error(found.empty()
                   ? fmt::format("{}: there is no MCAP file in this folder; bags of another format "
                                 "become one by 'ros2 bag convert'",
-                                folder)
-                  : fmt::format("{}: there are several MCAP files in this folder; name one: {}",
-                                folder, fmt::join(found, ", ")));
+                                path)
+                  : fmt::format("{}: there are several MCAP files in this folder, and no "
+                                "metadata.yaml that says in which order they are one recording; "
+                                "name one: {}",
+                                path, fmt::join(found, ", ")));
 }
 
 // "" where nobody's message says what it is.
-std::string encoding_of(bag::McapReader& reader, const std::string& topic) {
+std::string encoding_of(SplitBag& reader, const std::string& topic) {
   reader.choose([&](const Channel& channel) {
     return channel.topic == topic &&
            (holds<message::Image>(channel) || holds<CompressedImage>(channel));
@@ -72,12 +99,12 @@ struct Fitting {
   std::vector<std::string> clouds;
 };
 
-Fitting fitting_topics(bag::McapReader& reader) {
+Fitting fitting_topics(SplitBag& reader) {
   Fitting fitting;
   const auto add = [](std::vector<std::string>& topics, const std::string& topic) {
     if (std::ranges::count(topics, topic) == 0) topics.push_back(topic);
   };
-  for (const auto& [number, channel] : reader.contents().channels) {
+  for (const Channel& channel : reader.channels()) {
     if (holds<PointCloud2>(channel)) add(fitting.clouds, channel.topic);
     if (!holds<message::Image>(channel) && !holds<CompressedImage>(channel)) continue;
     const std::string encoding = encoding_of(reader, channel.topic);
@@ -99,7 +126,7 @@ std::string in_words(const Fitting& fitting) {
 }  // namespace
 
 BagName parse_bag_name(const std::string& name) {
-  if (is_there(name)) return {file_in(name), {}, {}};
+  if (is_there(name)) return {name, files_of(name), {}, {}};
   const std::size_t topic = name.rfind(":/");
   const std::size_t option =
       topic == std::string::npos ? name.rfind(kFrameOption) : name.find(kFrameOption, topic);
@@ -112,15 +139,15 @@ BagName parse_bag_name(const std::string& name) {
       throw Error(fmt::format("bag:{}: no frame is named; write bag:FILE,frame=FRAME", name));
     }
   }
-  parsed.file = file_in(parsed.file);
+  parsed.files = files_of(parsed.file);
   return parsed;
 }
 
-std::string topic_of(bag::McapReader& reader, const BagName& name) {
-  const auto is_named = [&](const auto& each) {
-    return each.second.topic == name.topic && may_be_felt(each.second);
+std::string topic_of(SplitBag& reader, const BagName& name) {
+  const auto is_named = [&](const Channel& channel) {
+    return channel.topic == name.topic && may_be_felt(channel);
   };
-  if (std::ranges::any_of(reader.contents().channels, is_named)) return name.topic;
+  if (std::ranges::any_of(reader.channels(), is_named)) return name.topic;
   const Fitting fitting = fitting_topics(reader);
   if (!name.topic.empty()) {
     throw Error(fmt::format("{}: no images and no clouds on {}; {}", name.file, name.topic,

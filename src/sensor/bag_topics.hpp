@@ -1,22 +1,26 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "bag/mcap_reader.hpp"
+#include "bag/mcap_format.hpp"
 #include "message/schema.hpp"
 #include "message/sensor_types.hpp"
+#include "sensor/split_bag.hpp"
 
 namespace palpate::sensor {
 
 /// Parts of "FILE[:TOPIC][,frame=FRAME]".
 struct BagName {
-  std::string file;
-  std::string topic;  ///< empty: the one that fits
-  std::string frame;  ///< empty: images are placed nowhere
+  std::string file;                ///< or folder, for messages
+  std::vector<std::string> files;  ///< that are read, in this order
+  std::string topic;               ///< empty: the one that fits
+  std::string frame;               ///< empty: images are placed nowhere
 };
 
 /// A file whose name looks like more is taken for what it is. Of a folder, as ROS 2 records into,
-/// the one MCAP file in it. @throws Error when there are none or several, or no frame is named.
+/// the MCAP files that its metadata.yaml lists or, without one, the only one in it. @throws Error
+/// when there are none or it is not said which, or no frame is named.
 [[nodiscard]] BagName parse_bag_name(const std::string& name);
 
 /// Are these messages of T, in ROS 2's encoding?
@@ -34,6 +38,6 @@ template <message::Message T>
 /// The topic that is named; else the only one of depth images, else the only one of clouds. What
 /// the reader gives next is afterwards anything.
 /// @throws Error when there is no such topic, or several; it lists those that fit.
-[[nodiscard]] std::string topic_of(bag::McapReader& reader, const BagName& name);
+[[nodiscard]] std::string topic_of(SplitBag& reader, const BagName& name);
 
 }  // namespace palpate::sensor
