@@ -38,9 +38,8 @@ bool knows_sides(const PrepareOptions& options) {
 
 }  // namespace
 
-std::optional<SurfaceEye> OneView::eye_of(const PointCloud& cloud,
-                                                  const PrepareOptions& options,
-                                                  const Eigen::Isometry3d& T_world_sensor) {
+std::optional<SurfaceEye> OneView::eye_of(const PointCloud& cloud, const PrepareOptions& options,
+                                          const Eigen::Isometry3d& T_world_sensor) {
   if (!knows_sides(options)) return {};
   if (options.viewpoint) return SurfaceEye{T_world_sensor * *options.viewpoint, {}};
   const bool given = !cloud.normals.empty();

@@ -17,8 +17,8 @@ class OneView {
   /// camera there sees each point in its pixel, and then it proves that of all that follow it,
   /// since few pixels prove nothing. `T_world_sensor`: of the cloud's frame.
   [[nodiscard]] std::optional<SurfaceEye> eye_of(const PointCloud& cloud,
-                                                         const PrepareOptions& options,
-                                                         const Eigen::Isometry3d& T_world_sensor);
+                                                 const PrepareOptions& options,
+                                                 const Eigen::Isometry3d& T_world_sensor);
 
  private:
   bool proved_ = false;
