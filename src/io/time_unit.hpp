@@ -15,8 +15,9 @@ struct TimeUnit {
 };
 
 /// What a time since 1970 counts, told by its size: of the years from 1973 to 5138 one in seconds
-/// has up to 11 digits, and one in smaller units more.
+/// has up to 11 digits, and one in smaller units more. What has more than 20 is no time.
 [[nodiscard]] constexpr TimeUnit unit_of_time(double time) {
+  if (time > 1e20) return {"seconds", 1};
   if (time > 1e17) return {"nanoseconds", 1e9};
   if (time > 1e14) return {"microseconds", 1e6};
   if (time > 1e11) return {"milliseconds", 1e3};
