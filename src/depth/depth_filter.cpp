@@ -178,8 +178,8 @@ struct DepthFilter::State {
     out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
-    if (out.duplicate && same_pose && region == last_region) return out;
     const bool again = out.duplicate && same_pose;
+    if (again && region == last_region) return out;
     if (!again) out.noise = noise(frame);
     return points(frame, again);
   }

@@ -83,7 +83,9 @@ class Reader {
     while (std::getline(stream, line)) {
       ++line_;
       if (line_ == 1 && io::is_utf16(line)) fail("this is UTF-16 text. Save it as UTF-8");
-      if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+      if (line_ == 1 && line.starts_with(io::kByteOrderMark)) {
+        line.erase(0, io::kByteOrderMark.size());
+      }
       take_line(line);
     }
     if (stream.bad()) fail("could not be read completely");

@@ -150,15 +150,19 @@ bool RobotGuide::may_start(bool pressed) const {
   return pressed || free_for_.value_or(0) >= kFreeFor || looked_ - followed_ <= kFreeFor;
 }
 
+// The first look counts no time.
+void RobotGuide::count_free(double dt) {
+  free_for_ = free_for_ ? *free_for_ + dt : 0;
+}
+
 // Stops following when the proxy is not free. Counts how long hand and proxy were seen free. A
 // shorter loss of sight than kFreeFor suspends the count; `hand`: what is seen of the hand or,
 // where the proxy is not free, of the proxy.
 void RobotGuide::note(const Place& hand, bool proxy_free, double dt, bool pressed) {
-  const bool sighted = hand.free() || hand.solid();
-  if (sighted) sighted_ = looked_;
+  if (hand.sighted()) sighted_ = looked_;
   if (proxy_free && hand.free()) {
-    free_for_ = free_for_ ? *free_for_ + dt : 0;
-  } else if (sighted || looked_ - sighted_ > kFreeFor) {
+    count_free(dt);
+  } else if (hand.sighted() || looked_ - sighted_ > kFreeFor) {
     free_for_.reset();
   }
   follows_ = proxy_free && (follows_ || may_start(pressed));
@@ -203,10 +207,11 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
   const Reason reason = broken_way(state);
   if (!reason.empty() && !robot_.place) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
-  if (!reason.empty() || state.contact.touching)
+  if (reason.empty() && !state.contact.touching) {
+    count_free(dt);
+  } else {
     free_for_.reset();
-  else
-    free_for_ = free_for_ ? *free_for_ + dt : 0;
+  }
   follows_ = reason.empty() && (follows_ || may_start(pressed));
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
   if (!pressed && robot_.place && (state.contact.proxy - *robot_.place).norm() > kJoin)

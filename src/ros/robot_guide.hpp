@@ -60,18 +60,20 @@ class RobotGuide {
 
     [[nodiscard]] bool free() const { return seen.says == Seen::Says::free; }
     [[nodiscard]] bool solid() const { return seen.says == Seen::Says::solid; }
+    [[nodiscard]] bool sighted() const { return free() || solid(); }
   };
 
   [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
   [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now) const;
   [[nodiscard]] bool may_start(bool pressed) const;
+  void count_free(double dt);
   void note(const Place& hand, bool proxy_free, double dt, bool pressed);
   // `stamp`: of the newest frame, which shows the target free, s.
   [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double stamp, double ahead = 0);
   [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
   void note_held(const Place& held, double now);
-  [[nodiscard]] bool is_clear(double stamp);
+  bool note_clear(double stamp);
   [[nodiscard]] bool goes_back(Place held, double now, double dt);
   void forget();
   [[nodiscard]] Answer without_view(const ServoState& state, double dt, bool pressed);

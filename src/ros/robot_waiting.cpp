@@ -13,8 +13,8 @@ constexpr Reason kPassed = "the surface passed over the tool";
 constexpr Reason kCame = "something came between camera and tool";
 constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
 constexpr Reason kWay = "the way to the tool is not seen free";
-constexpr int kTries =
-    3;  // steps back for one frame: each leaves r^2 / 2 D of a ball's rim (judgement)
+// Steps back for one frame: each leaves r^2 / 2 D of a ball's rim (judgement).
+constexpr int kTries = 3;
 
 }  // namespace
 
@@ -45,12 +45,12 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
 // be in front.
 bool RobotGuide::goes_back(Place held, double now, double dt) {
   double step = std::max(std::min(options_.retreat * dt, held.seen.behind), held.seen.measured);
-  const bool clears = held.seen.measured > 0 && is_clear(now - held.seen.age);
+  const bool clears = held.seen.measured > 0 && note_clear(now - held.seen.age);
   robot_.gone += clears ? step - held.seen.measured : step;
   for (int k = 0; k < kTries; ++k) {
     robot_.place = *robot_.place + step * held.seen.towards;
     held = judge(*robot_.place, now, robot_.memory);
-    if (!held.solid() || !(held.seen.measured > 0)) return held.free() || held.solid();
+    if (!held.solid() || !(held.seen.measured > 0)) return held.sighted();
     step = held.seen.measured;
     robot_.gone += step;
   }
@@ -62,11 +62,10 @@ bool RobotGuide::goes_back(Place held, double now, double dt) {
 // at once, or unseen, stands between it and the camera: the way back would lead into it. A shorter
 // loss of sight than kFreeFor changes nothing.
 void RobotGuide::note_held(const Place& held, double now) {
-  if (held.free() || held.solid()) robot_.seen = now;
+  if (held.sighted()) robot_.seen = now;
   if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
-  if (!held.free() && !held.solid()) robot_.clear = -kNever;
-  const bool clear = held.free() || (held.solid() && !(held.seen.measured > 0));
-  if (clear) (void)is_clear(now - held.seen.age);
+  if (!held.sighted()) robot_.clear = -kNever;
+  if (held.sighted() && !(held.seen.measured > 0)) note_clear(now - held.seen.age);
   if (!held.solid()) {
     robot_.over = {};
     return;
@@ -84,9 +83,8 @@ void RobotGuide::note_held(const Place& held, double now) {
   robot_.over.what = came ? kCame : fast && options_.retreat > 0 ? kFast : kPassed;
 }
 
-// A frame showed nothing over the robot's place.
-// False: a later one did, too.
-bool RobotGuide::is_clear(double stamp) {
+// Notes that a frame showed nothing over the robot's place. False: a later one did, too.
+bool RobotGuide::note_clear(double stamp) {
   if (stamp <= robot_.clear) return false;
   robot_.clear = stamp;
   robot_.gone = 0;

@@ -45,8 +45,8 @@ UnitsGuess survey_units(const Box& bounds) {
           "if they are feet (state-plane data often is), give --scale 0.3048"};
 }
 
-// The unit that a file states, which the description of its format repeats. `rescaled`: whoever
-// gave the scale knew it.
+// The unit that a file states, which the description of its format repeats. `rescaled`: the
+// caller gave the scale, and so knows the unit.
 std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
   const bool feet = format.find(", in feet") != std::string::npos;
   if (!feet && format.find(", in metres") == std::string::npos) return {};
