@@ -47,6 +47,13 @@ double weight(double height, double limit) {
   return std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
 }
 
+// Heights beyond `limit` do not count.
+double score(const std::vector<Match>& matches, double limit) {
+  double sum = 0;
+  for (const Match& m : matches) sum += weight(m.height, limit);
+  return sum;
+}
+
 Isometry3d turned(const Vector3d& turn, const Vector3d& about) {
   Isometry3d result = Isometry3d::Identity();
   if (turn.norm() > 0) {
@@ -210,22 +217,23 @@ void Aligner::refine(Poses& poses, Moving moving, double reach, std::size_t stri
   }
 }
 
-double Aligner::score(const Poses& poses, Moving moving) const {
-  double sum = 0;
-  for (const Match& m : matches(poses, moving, radius_)) sum += weight(m.height, radius_);
-  return sum;
-}
-
 void Aligner::place(Poses& poses, std::size_t source) const {
   const std::vector<Vector3d> around = turns();
   std::vector<Poses> found(around.size(), poses);
-  std::vector<double> scores(found.size());
+  std::vector<std::vector<Match>> lie(found.size());
   const Moving moving{source, source + 1};
   parallel_each(found.size(), 1, [&](std::size_t i) {
     found[i][source] = turned(around[i], middles_[source]);
     refine(found[i], moving, size_, kStride);
-    scores[i] = score(found[i], moving);
+    lie[i] = matches(found[i], moving, radius_);
   });
+  // The measured noise is that of the best fit: R is wider where the noise has long waves.
+  double noise = radius_;
+  for (const auto& m : lie) {
+    if (m.size() >= kEnough) noise = std::min(noise, kTukey * kGaussian * middle_height(m));
+  }
+  std::vector<double> scores;
+  for (const auto& m : lie) scores.push_back(score(m, std::max(noise, 1e-9 * size_)));
   poses = found[static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin())];
   refine(poses, moving, radius_);
   const std::size_t shared = matches(poses, moving, radius_).size();

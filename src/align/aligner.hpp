@@ -61,7 +61,6 @@ class Aligner {
                              std::size_t stride = 1) const;
   Equations equations(const std::vector<Match>& matches, Moving moving, double limit) const;
   double step(Poses& poses, Moving moving, double reach, std::size_t stride) const;
-  double score(const Poses& poses, Moving moving) const;
   void check_held(const Equations& e) const;
 
   const std::vector<RoughSource>& sources_;
