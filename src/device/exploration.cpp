@@ -198,7 +198,7 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   strokes.travel_speed = scale * std::clamp(plan.region / scale, 0.1, 0.3);
   strokes.seed = options.seed;
   strokes.progress = options.progress;
-  plan.target = explore(all.view(), strokes);
+  plan.target = explore(all.view(), strokes, &plan.presses);
 
   Box way;
   for (const TrajectoryRow& row : plan.target) way.extend(row.position);
@@ -206,6 +206,10 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   for (TrajectoryRow& row : plan.target) {
     row.position = plan.workspace.position_to_device(row.position);
   }
+  // Held, a hand stays behind its target by this share of the target's depth; half of it tells a
+  // hand that is held from one that is not.
+  const double held = felt / (felt + options.hand.stiffness);
+  for (Press& press : plan.presses) press.pull *= 0.5 * held / scale;
   return plan;
 }
 

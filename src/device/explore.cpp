@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "base/numbers.hpp"
+#include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -74,10 +74,10 @@ class Player {
     }
   }
 
+  [[nodiscard]] double time() const { return static_cast<double>(rows_.size()) * options_.period; }
   Trajectory take() { return std::move(rows_); }
 
  private:
-  [[nodiscard]] double time() const { return static_cast<double>(rows_.size()) * options_.period; }
   void add(const Vector3d& place) { rows_.push_back({time(), origin_ + place}); }
 
   Vector3d origin_;
@@ -93,12 +93,12 @@ class Explorer {
         random_(options.seed),
         player_(surface.origin, options) {}
 
-  Trajectory run() {
+  Trajectory run(std::vector<Press>& presses) {
     std::vector<MapSample> stroke = next_stroke(next_start(map_.center()));
     player_.dwell(above(stroke.front()), kDwell);
     while (!player_.over()) {
       if (options_.progress) options_.progress(player_.share());
-      touch(stroke);
+      presses.push_back(touch(stroke));
       const MapSample last = stroke.back();
       Route way;
       for (int i = 0; i < kTries && !way.clear; ++i) {
@@ -142,18 +142,23 @@ class Explorer {
   }
 
   // Down along the normal, along the stroke with the depth going up and down, and off again.
-  void touch(const std::vector<MapSample>& stroke) {
+  Press touch(const std::vector<MapSample>& stroke) {
     const double depth = options_.depth;
     player_.move({above(stroke.front()), under(stroke.front(), depth)}, options_.slide_speed);
     player_.dwell(under(stroke.front(), depth), kDwell);
+    Press press{player_.time()};
     std::vector<Vector3d> way;
     for (std::size_t i = 0; i < stroke.size(); ++i) {
       const double phase = static_cast<double>(i) * kStep / 6 * std::numbers::pi;
       way.push_back(under(stroke[i], depth * (0.75 + 0.25 * std::cos(phase))));
     }
     player_.move(way, options_.slide_speed);
+    press.end = player_.time();
     player_.dwell(way.back(), kDwell / 2);
     player_.move({way.back(), above(stroke.back())}, options_.slide_speed);
+    press.resume = player_.time();
+    press.pull = 0.5 * depth;  // where the stroke is shallowest
+    return press;
   }
 
   std::vector<MapSample> next_stroke(const MapSample& start) {
@@ -270,28 +275,26 @@ class Explorer {
   std::vector<Vector3d> touched_;
 };
 
-void require(bool good, const char* name, double value) {
-  if (!good) throw Error(fmt::format("exploration: {} = {} is out of range", name, value));
-}
-
 }  // namespace
 
-Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options) {
+Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options,
+                   std::vector<Press>* presses) {
   if (surface.points.empty()) throw Error("exploration: there are no points to explore");
   if (!surface.normals.empty() && surface.normals.size() != surface.points.size()) {
     throw Error(fmt::format("exploration: {} normals for {} points", surface.normals.size(),
                             surface.points.size()));
   }
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  require(positive(options.duration), "duration", options.duration);
-  require(positive(options.period), "period", options.period);
-  require(positive(options.radius), "radius", options.radius);
-  require(positive(options.region), "region", options.region);
-  require(positive(options.slide_speed), "slide_speed", options.slide_speed);
-  require(positive(options.travel_speed), "travel_speed", options.travel_speed);
-  require(std::isfinite(options.depth), "depth", options.depth);
-  require(std::isfinite(options.offset), "offset", options.offset);
-  return Explorer(surface, options).run();
+  const Requirement require{"exploration"};
+  require.positive("duration (s)", options.duration, "give one above 0");
+  require.positive("period (s)", options.period, "give one above 0");
+  require.positive("radius (m)", options.radius, "give one above 0");
+  require.positive("region (m)", options.region, "give one above 0");
+  require.positive("slide_speed (m/s)", options.slide_speed, "give one above 0");
+  require.positive("travel_speed (m/s)", options.travel_speed, "give one above 0");
+  require(std::isfinite(options.depth), "depth (m)", options.depth, "give a finite one");
+  require(std::isfinite(options.offset), "offset (m)", options.offset, "give a finite one");
+  std::vector<Press> own;
+  return Explorer(surface, options).run(presses != nullptr ? *presses : own);
 }
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "palpate/device/simulated.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/io/trajectory.hpp"
 
@@ -83,8 +84,10 @@ struct StrokeOptions {
 /// the points until they end or the stroke is long enough. Moves begin and end at rest. Clouds
 /// larger than `region` are explored around their median point. Same input, same trajectory; no
 /// clock and no thread.
+/// `presses` (nullable) gets the times at which the hand slides, with the target's depth as pull.
 /// @throws Error when there are no points or an option is out of range.
-[[nodiscard]] Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options = {});
+[[nodiscard]] Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options = {},
+                                 std::vector<Press>* presses = nullptr);
 
 /// 1 where a hand can explore `extent` metres as they are, else the fitting one of
 /// ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ...

@@ -1,6 +1,7 @@
 // Moves a simulated hand after remote commands, or along its trajectory when none come.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/latest.hpp"
@@ -13,6 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+// s in which a hand that nothing holds is at its target: five time constants of 10 ms, the usual
+// hand's damping over its stiffness (SimulatedDeviceOptions::Hand)
+constexpr double kSettled = 0.05;
+
 TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
   const Requirement require{"teleoperated hand"};
   require.positive("speed", o.speed, "give a positive speed in m/s");
@@ -20,6 +25,14 @@ TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
   require.positive("command_timeout", o.command_timeout, "give a positive time in seconds");
   require.positive("release_time", o.release_time, "give a positive time in seconds");
   require.not_negative("return_after", o.return_after, "give 0 or more seconds");
+  double last = -std::numeric_limits<double>::infinity();
+  for (const Press& p : o.presses) {
+    const bool ordered = last <= p.begin && p.begin <= p.end && p.end <= p.resume;
+    require(ordered, "presses' begin", p.begin,
+            "give presses one after the other, begin to resume");
+    require.not_negative("presses' pull", p.pull, "give 0 or more metres");
+    last = p.end;
+  }
   return o;
 }
 
@@ -74,7 +87,8 @@ struct TeleoperatedHand::Inside {
   void receive(double now, const Vector3d& position) noexcept;
   void choose_mode(double now) noexcept;
   void advance(double now, const Vector3d& position) noexcept;
-  void play(double dt) noexcept;
+  void play(double dt, const Vector3d& position) noexcept;
+  void skip_lost(const Vector3d& position) noexcept;
   void approach(const Vector3d& goal, double dt) noexcept;
   void go(const Vector3d& goal, double speed, double dt) noexcept;
 
@@ -89,6 +103,8 @@ struct TeleoperatedHand::Inside {
   double trajectory_time = 0;  // on the trajectory
   double received = 0;         // when the last command came
   double released = 0;         // when the tool was released
+  double held_at = 0;          // on the trajectory, when a press was held back last
+  std::size_t next_press = 0;  // that is not over
   std::uint64_t generation = 0;
   bool started = false;
 };
@@ -172,17 +188,31 @@ void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noe
       if (target.position == trajectory.at(trajectory_time)) mode = Mode::playing;
       return;
     case Mode::playing:
-      play(dt);
+      play(dt, position);
       return;
   }
 }
 
-void TeleoperatedHand::Inside::play(double dt) noexcept {
+void TeleoperatedHand::Inside::play(double dt, const Vector3d& position) noexcept {
   trajectory_time += dt;
   target.position = trajectory.at(trajectory_time);
+  skip_lost(position);
   if (trajectory_time < trajectory.end()) return;
   trajectory.rewind();
+  next_press = 0;
   trajectory_time = trajectory.front().time;
+  mode = Mode::returning;
+}
+
+void TeleoperatedHand::Inside::skip_lost(const Vector3d& position) noexcept {
+  const std::vector<Press>& presses = options.presses;
+  while (next_press < presses.size() && presses[next_press].end < trajectory_time) ++next_press;
+  if (next_press == presses.size()) return;
+  const Press& press = presses[next_press];
+  const bool held = (target.position - position).norm() > press.pull;
+  if (held || trajectory_time < press.begin) held_at = trajectory_time;
+  if (trajectory_time - held_at < kSettled) return;
+  trajectory_time = press.resume;
   mode = Mode::returning;
 }
 

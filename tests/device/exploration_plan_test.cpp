@@ -37,6 +37,22 @@ TEST(ExplorationPlan, HandFeelsTheSameOfSmallAndLargeClouds) {
   }
 }
 
+TEST(ExplorationPlan, PressesAreWhereTheTargetIsUnderTheSurface) {
+  Scene scene;
+  scene.add("cloud", scaled(1));
+  const Placement plan = plan_exploration(scene, {}, {.duration = 10});
+  ASSERT_GT(plan.presses.size(), 3u);
+  double last = 0;
+  for (const Press& press : plan.presses) {
+    EXPECT_LE(last, press.begin);
+    EXPECT_LE(press.begin, press.end);
+    EXPECT_LE(press.end, press.resume);
+    EXPECT_GT(press.pull, 0);
+    EXPECT_LT(press.pull, plan.depth) << "in a scene of scale 1";
+    last = press.resume;
+  }
+}
+
 TEST(ExplorationPlan, StiffnessThatWasAskedForIsKeptAndHeldStable) {
   Scene scene;
   scene.add("cloud", scaled(1000));

@@ -67,8 +67,6 @@ TEST(RemoteTarget, ListenersSeeWholePosesWhileAnotherThreadSpeaks) {
   }
 }
 
-using Eigen::Vector3d;
-
 constexpr double kStep = 1e-3;  // s
 
 // A second along x at 5 cm/s and back.
@@ -256,6 +254,44 @@ TEST(TeleoperatedHand, RefusesOptionsOutOfRange) {
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.release_time = std::nan("")}), Error);
   EXPECT_THROW(TeleoperatedHand(remote, {}, {.return_after = -1}), Error);
   EXPECT_THROW(TeleoperatedHand(remote, {{1, {0, 0, 0}}, {0, {0, 0, 0}}}), Error);
+}
+
+// Down at 0.1 s, a press from there to 1 s, and off again at 1.2 s.
+Trajectory one_press() {
+  return {{0, {0, 0, 0.05}},
+          {0.1, {0, 0, -0.01}},
+          {1, {0.1, 0, -0.01}},
+          {1.2, {0.1, 0, 0.05}},
+          {3, {0.1, 0, 0.05}}};
+}
+
+TEST(TeleoperatedHand, LiftsWhereNothingHoldsItsPress) {
+  RemoteTarget remote;
+  TeleoperatedHand hand(remote, one_press(), {.speed = 1, .presses = {{0.1, 1, 1.2, 0.004}}});
+  Asker held(hand, {0, 0, 0});
+  EXPECT_NEAR(held.ask_until(0.501).position.z(), -0.01, 1e-12);
+  held.device_at({0, 0, -0.007});  // nearer to the target than one that is held
+  EXPECT_GT(held.ask().position.x(), 0.04);
+  TargetSource::Target last = held.ask_until(0.54);
+  EXPECT_EQ(last.position.z(), -0.01) << "not yet lost: the pull is less for 40 ms";
+  // The hand follows its target: it is lost, and lifts straight to where the press is over.
+  for (; held.now() < 0.8;) {
+    held.device_at(last.position);
+    last = held.ask();
+  }
+  EXPECT_NEAR((last.position - Vector3d(0.1, 0, 0.05)).norm(), 0, 1e-9);
+  EXPECT_LE(held.fastest(), 1 + 1e-9);
+}
+
+TEST(TeleoperatedHand, RefusesPressesOutOfOrder) {
+  RemoteTarget remote;
+  const auto make = [&](std::vector<Press> presses) {
+    TeleoperatedHand(remote, one_press(), {.presses = std::move(presses)});
+  };
+  EXPECT_THROW(make({{0.5, 0.4, 1, 0}}), Error);
+  EXPECT_THROW(make({{0.1, 0.4, 0.3, 0}}), Error);
+  EXPECT_THROW(make({{0.5, 0.6, 0.7, 0}, {0.1, 0.2, 0.3, 0}}), Error);
+  EXPECT_THROW(make({{0.1, 0.4, 0.5, -1}}), Error);
 }
 
 }  // namespace

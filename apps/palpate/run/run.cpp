@@ -77,11 +77,14 @@ void play_back(Hand& hand, Trajectory trajectory) {
 // The hand is pulled along `target` again and again, unless somebody takes the tool. Who did not
 // ask for the page has a run that ends with its trajectory.
 void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Trajectory target) {
+  static const RemoteTarget nobody;
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
-  hand.remote = std::make_unique<RemoteTarget>();
-  hand.guide = std::make_unique<TeleoperatedHand>(*hand.remote, std::move(target),
-                                                  TeleoperatedHandOptions{.speed = kReachingSpeed});
+  TeleoperatedHandOptions options{.speed = kReachingSpeed};
+  if (hand.plan) options.presses = hand.plan->presses;
+  if (task.page.served) hand.remote = std::make_unique<RemoteTarget>();
+  hand.guide = std::make_unique<TeleoperatedHand>(hand.remote ? *hand.remote : nobody,
+                                                  std::move(target), options);
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
 }
 
@@ -89,8 +92,10 @@ void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Traj
 void simulate(Hand& hand, const HandTask& task, Trajectory target) {
   SimulatedDeviceOptions device;
   device.rate = task.motion.rate.value_or(device.rate);
-  if (task.page.served) return guide(hand, task, device, std::move(target));
-  hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
+  if (!task.page.served) {
+    hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
+  }
+  if (task.page.served || hand.plan) return guide(hand, task, device, std::move(target));
   hand.device = std::make_unique<SimulatedDevice>(device, std::move(target));
 }
 
@@ -177,9 +182,9 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.guard = run.time.guard;
   const bool usual = !run.time.own_watchdog;
   if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
-  if (usual && hand.guide) options.guard.silence = std::numeric_limits<double>::infinity();
+  if (usual && hand.remote) options.guard.silence = std::numeric_limits<double>::infinity();
   // Nobody can be thrown by a page, and a hand that rests in contact would pay for no more force.
-  if (hand.guide) options.guard.soft_start = 0;
+  if (hand.remote) options.guard.soft_start = 0;
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

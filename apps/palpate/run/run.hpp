@@ -30,7 +30,7 @@ struct Hand {
   std::string name;                      ///< for messages
   DevicePlan chosen;                     ///< what is to be at the hand
   std::unique_ptr<RemoteTarget> remote;  ///< takes the tool from its trajectory; null: nobody can
-  std::unique_ptr<TeleoperatedHand> guide;  ///< what `remote` speaks to
+  std::unique_ptr<TeleoperatedHand> guide;  ///< what pulls the hand and listens to `remote`
   std::unique_ptr<Device> device;
   const RemoteDevice* socket = nullptr;  ///< the device, where it is another program's
   Workspace workspace;

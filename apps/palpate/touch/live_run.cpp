@@ -39,7 +39,7 @@ constexpr int kPageSteps = 5;
 Device& paced_by(std::optional<PacedDevice>& paced, const Hand& hand, const Clock& clock) {
   Device& device = *hand.device;
   if (!device.info().keeps_time) return device;
-  return paced.emplace(device, clock, hand.guide ? kPageSteps : PacedDevice::kMostSteps);
+  return paced.emplace(device, clock, hand.remote ? kPageSteps : PacedDevice::kMostSteps);
 }
 
 // One hand of a run in real time: its servo, on a thread of its own from construction on. The

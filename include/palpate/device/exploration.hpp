@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "palpate/device/device.hpp"
 #include "palpate/device/simulated.hpp"
@@ -24,6 +25,7 @@ struct Placement {
   double region = 0;     ///< largest extent of what is explored, m
   double depth = 0;      ///< that a hand that explores is meant to reach under the surface, m
   Trajectory target;  ///< where such a hand wants to be, device frame; empty: it does not explore
+  std::vector<Press> presses = {};  ///< of that trajectory
 };
 
 struct ExplorationOptions {

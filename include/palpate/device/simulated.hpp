@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
@@ -196,12 +197,20 @@ class RemoteTarget {
   std::unique_ptr<Inside> inside_;
 };
 
+/// A part of a trajectory in which the hand presses against what holds it back.
+struct Press {
+  double begin = 0, end = 0;  ///< s, on the trajectory
+  double resume = 0;  ///< s: where the trajectory is off the surface again, not before `end`
+  double pull = 0;    ///< m; a hand that is held back stays farther from its target
+};
+
 struct TeleoperatedHandOptions {
   double speed = 0.5;            ///< limit of the target's speed, but on the trajectory, m/s; > 0
   double braking = 10;           ///< m/s^2 with which the target comes to rest at a command; > 0
   double command_timeout = 0.1;  ///< s without a command after which the tool is released; > 0
   double release_time = 0.2;     ///< time constant in which the hand ceases to pull, s; > 0
   double return_after = 3;       ///< s from the release until the trajectory goes on; 0 or more
+  std::vector<Press> presses = {};  ///< on the trajectory, in the order of their times
 };
 
 /// A hand that plays a trajectory again and again, such as that of plan_exploration(), until
@@ -210,6 +219,8 @@ struct TeleoperatedHandOptions {
 ///
 ///  - To the trajectory's beginning, and back to where it was interrupted, the target moves at
 ///    `speed`; the trajectory waits for it.
+///  - A hand that nothing held back for 50 ms of a press has lost what it pressed (a rim, a hole):
+///  it goes straight to where the trajectory is off the surface, and on from there.
 ///  - Commands are interpolated between their irregular times, and followed no faster than `speed`
 ///    and than comes to rest there by `braking`.
 ///  - A command that limits the hand's force does so until the trajectory goes on, after its
