@@ -202,7 +202,7 @@ class Contact:
 class Proxy:
     def __init__(self, *, stiffness: float = ..., friction_static: float = ..., friction_dynamic: float = ...,
                  friction_viscous: float = ..., texture_amplitude: float = ..., texture_wavelength: float = ...,
-                 method: _Method = ..., max_iterations: int = ..., tangent_tolerance: float = ...) -> None: ...
+                 method: _Method = ..., max_iterations: int = ..., tangent_tolerance: float = ..., rise_time: float = ...) -> None: ...
     def step(self, field: AnyField, hip: _Three, dt: float = ...) -> Contact: ...
     def reset(self, position: _Three) -> None: ...
     @property
@@ -269,7 +269,7 @@ class Servo:
                  threshold: float = ..., minimum_support: float = ..., tool_radius: float = ..., capped: bool = ...,
                  sharp_edges: bool = ..., stiffness: float = ..., friction_static: float = ..., friction_dynamic: float = ...,
                  friction_viscous: float = ..., texture_amplitude: float = ..., texture_wavelength: float = ...,
-                 method: _Method = ..., max_iterations: int = ..., tangent_tolerance: float = ..., maximum_force: float = ...,
+                 method: _Method = ..., max_iterations: int = ..., tangent_tolerance: float = ..., rise_time: float = ..., maximum_force: float = ...,
                  slew: float = ..., damping: float = ..., soft_start: float = ..., stiffness_share: float = ...,
                  clutch_button: int | None = ..., rate: float | None = ..., realtime_priority: bool = ...,
                  lock_memory: bool = ..., processor: int | None = ...) -> None: ...

@@ -130,6 +130,7 @@ void take(Keywords& keywords, ProxyOptions& options) {
                 {{"converged", Method::converged}, {"single_step", Method::single_step}});
   keywords.take("max_iterations", options.max_iterations);
   keywords.take("tangent_tolerance", options.tangent_tolerance);
+  keywords.take("rise_time", options.rise_time);
 }
 
 void take(Keywords& keywords, GuardOptions& options) {

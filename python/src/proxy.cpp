@@ -114,7 +114,7 @@ void define_results(py::module_& module) {
 constexpr const char* kProxy = R"(The point that follows the hand and stays on the surface.
 
 Keywords: stiffness (500 N/m), friction_static, friction_dynamic, friction_viscous (N s/m), texture_amplitude (m),
-texture_wavelength (m), method (converged, single_step), max_iterations, tangent_tolerance. Input that is not
+texture_wavelength (m), method (converged, single_step), max_iterations, tangent_tolerance, rise_time (s). Input that is not
 finite is a fault: zero force until reset().)";
 
 constexpr const char* kRollout = R"(All ticks of a hand, without the GIL.

@@ -29,6 +29,8 @@ const ProxyOptions& checked(const ProxyOptions& options) {
           "max_iterations", options.max_iterations, "give 1 to 1000");
   require(options.tangent_tolerance >= 1e-6 && options.tangent_tolerance <= 0.1,
           "tangent_tolerance", options.tangent_tolerance, "give 1e-6 to 0.1 support radii");
+  require(options.rise_time > 0, "rise_time (s)", options.rise_time,
+          "give a time above 0, infinity for no rise that nothing pays for");
   return options;
 }
 

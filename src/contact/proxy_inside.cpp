@@ -243,7 +243,8 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
 
 void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
                          Contact& contact) noexcept {
-  spring_.pull(touch_.softened(options_.stiffness), position_ - hip, dissipated, dt, contact);
+  spring_.pull(touch_.softened(options_.stiffness), position_ - hip, dissipated,
+               {dt, dt / options_.rise_time}, contact);
   contact.drift = touch_.surface.velocity;
   contact.source = touch_.surface.source;
 }

@@ -45,6 +45,10 @@ void EnergyTank::rise(double wanted, double half_square, double dt) noexcept {
   energy_ -= paid;
 }
 
+void EnergyTank::give(double wanted, double risen) noexcept {
+  if (stiffness_ < wanted) stiffness_ = std::min(wanted, stiffness_ + risen * wanted);
+}
+
 void EnergyTank::fill(double energy) noexcept {
   energy_ = std::min(kCapacity, energy_ + energy);
 }
@@ -86,9 +90,10 @@ void Spring::wait(const Eigen::Vector3d& stretch) noexcept {
   tank_.take_over(0);
 }
 
-void Spring::pull(double full, const Eigen::Vector3d& stretch, double dissipated, double dt,
+void Spring::pull(double full, const Eigen::Vector3d& stretch, double dissipated, Step step,
                   Contact& contact) noexcept {
-  tank_.follow(wanted(full), stretch.norm(), dissipated, dt);
+  tank_.follow(wanted(full), stretch.norm(), dissipated, step.dt);
+  tank_.give(wanted(full), step.risen);
   pull(full, stretch, contact);
 }
 

@@ -34,6 +34,9 @@ class EnergyTank {
   /// stiffness. Finite for finite arguments; never above max(wanted, what it was).
   double follow(double wanted, double stretch, double dissipated, double dt) noexcept;
 
+  /// Raises the stiffness by the share `risen` of `wanted` (N/m), up to it, and nothing pays.
+  void give(double wanted, double risen) noexcept;
+
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
   [[nodiscard]] double energy() const noexcept { return energy_; }        ///< J in the tank
 
@@ -106,8 +109,13 @@ class Spring {
     fading_.take(place, stiffness);
   }
 
-  /// A step of `dt` (s) in which friction took `dissipated` (J).
-  void pull(double full, const Eigen::Vector3d& stretch, double dissipated, double dt,
+  /// Time of a step.
+  struct Step {
+    double dt;     // s
+    double risen;  // share of the stiffness that comes though nothing pays for it
+  };
+  /// A step in which friction took `dissipated` (J).
+  void pull(double full, const Eigen::Vector3d& stretch, double dissipated, Step step,
             Contact& contact) noexcept;
 
   /// Adds what earlier contacts left to this step's contact.

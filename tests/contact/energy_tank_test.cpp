@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "contact/spring.hpp"
+#include "contact/test_fields.hpp"
 
 namespace palpate {
 namespace {
@@ -36,6 +38,67 @@ TEST(EnergyTank, FallGoesByTheClockAndFillsTheTank) {
   EXPECT_DOUBLE_EQ(after, 500 * std::exp(-0.05));
   EXPECT_DOUBLE_EQ(tank.energy(), 0.5 * (500 - after) * 9e-6);
   EXPECT_EQ(tank.follow(0.99 * after, 3e-3, 0, 1e-3), 0.99 * after);
+}
+
+TEST(EnergyTank, GivesByTheClockUpToWhatIsWanted) {
+  EnergyTank tank;
+  tank.restart(100);
+  tank.give(500, 0.1);
+  EXPECT_DOUBLE_EQ(tank.stiffness(), 150);
+  for (int i = 0; i < 10; ++i) tank.give(500, 0.1);
+  EXPECT_EQ(tank.stiffness(), 500);
+  tank.give(400, 0.1);
+  EXPECT_EQ(tank.stiffness(), 500) << "a fall is not its matter";
+}
+
+class FadedSheet final : public Field {
+ public:
+  FadedSheet() { sheet_.thickness = 1; }
+  double presence = 1;
+
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override {
+    return sheet_.sample(x);
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return sheet_.is_free(ball);
+  }
+  [[nodiscard]] Surface surface(const Eigen::Vector3d&) const noexcept override {
+    return {.presence = presence, .source = 0};
+  }
+  [[nodiscard]] Field::Traits traits() const noexcept override { return sheet_.traits(); }
+
+ private:
+  test::SheetField sheet_;
+};
+
+// A mass of 0.1 kg is pressed by 1 N onto a surface that fades to 2 % for a second and comes back:
+// the depth, m, and the stiffness, N/m, half a second later.
+struct Pressed {
+  double depth, stiffness;
+};
+Pressed pressed_while_it_faded(double rise_time) {
+  FadedSheet sheet;
+  Proxy proxy({.rise_time = rise_time});
+  double z = 1e-3;
+  double speed = 0;
+  double stiffness = 0;
+  for (int i = 0; i < 2000; ++i) {
+    sheet.presence = i > 500 && i <= 1500 ? 0.02 : 1;
+    const Contact contact = proxy.step(sheet, {0, 0, z}, 1e-3);
+    stiffness = contact.stiffness;
+    speed += 1e-3 / 0.1 * (contact.force.z() - 1 - 3 * speed);
+    z += 1e-3 * speed;
+  }
+  return {-z, stiffness};
+}
+
+TEST(EnergyTank, AHandThatNoMotorMovesIsNeverPressedDeepIntoWhatIsSoft) {
+  const Pressed paid = pressed_while_it_faded(std::numeric_limits<double>::infinity());
+  EXPECT_LT(paid.stiffness, 100) << "nothing pays: the case is there";
+  EXPECT_GT(paid.depth, 0.02);
+  const Pressed given = pressed_while_it_faded(0.3);
+  EXPECT_GE(given.stiffness, 450);
+  EXPECT_NEAR(given.depth, 1.0 / 500, 5e-4);
 }
 
 TEST(EnergyTank, FrictionPaysForARise) {

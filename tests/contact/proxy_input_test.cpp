@@ -91,6 +91,7 @@ TEST(Input, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Proxy{{.max_iterations = 0}}, Error);
   EXPECT_THROW(Proxy{{.max_iterations = 1 << 20}}, Error);
   EXPECT_THROW(Proxy{{.tangent_tolerance = 0}}, Error);
+  EXPECT_THROW(Proxy{{.rise_time = 0}}, Error);
 }
 
 /// Says anything: values from a hash of the place. `broken` adds what no field may say.

@@ -53,9 +53,10 @@ void members(auto f, FieldOptions& o) {
     kind, kernel, gradient, threshold, support, tool, capped, sharp, raw, nearest);
 }
 void members(auto f, ProxyOptions& o) {
-  auto& [stiffness, friction, texture, method, iterations, tolerance] = o;
-  f({"stiffness", "friction", "texture", "method", "max_iterations", "tangent_tolerance"},
-    stiffness, friction, texture, method, iterations, tolerance);
+  auto& [stiffness, friction, texture, method, iterations, tolerance, rise] = o;
+  f({"stiffness", "friction", "texture", "method", "max_iterations", "tangent_tolerance",
+     "rise_time"},
+    stiffness, friction, texture, method, iterations, tolerance, rise);
 }
 void members(auto f, GuardOptions::Passivity& o) {
   auto& [on, mass, memory, forget, delay] = o;
@@ -186,10 +187,17 @@ void take_exact(const Json& json, T& value) {
     for (int i = 0; i < 12; ++i)
       take_exact(json.at(static_cast<std::size_t>(i)), value.matrix()(i / 4, i % 4));
   } else if constexpr (Listed<T>) {
+    // What older recordings do not know keeps its default, which is how they were made.
+    const auto& object = json.template get_ref<const Json::object_t&>();
+    const auto take = [&object](const char* name, auto& member) {
+      if (const auto found = object.find(name); found != object.end()) {
+        take_exact(found->second, member);
+      }
+    };
     members(
         [&](std::initializer_list<const char*> names, auto&... member) {
           const char* const* name = names.begin();
-          (take_exact(json.at(*name++), member), ...);
+          (take(*name++, member), ...);
         },
         value);
   } else {

@@ -24,6 +24,7 @@ namespace {
 constexpr double kLongestRun = 86'400;  // s
 
 constexpr double kReachingSpeed = 2;  // m/s, a fast reach of an arm; judgement
+constexpr double kRiseTime = 0.3;     // s; shorter than a press with a mouse lasts (judgement)
 // Guard's watchdog for simulated devices, s; judgement: PacedDevice catches up after a late step.
 constexpr double kSimulatedSilence = 0.05;
 
@@ -184,7 +185,10 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
   if (usual && hand.remote) options.guard.silence = std::numeric_limits<double>::infinity();
   // Nobody can be thrown by a page, and a hand that rests in contact would pay for no more force.
-  if (hand.remote) options.guard.soft_start = 0;
+  if (hand.remote) {
+    options.guard.soft_start = 0;
+    options.proxy.rise_time = kRiseTime;
+  }
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "palpate/field/field.hpp"
@@ -83,6 +84,10 @@ struct ProxyOptions {
   int max_iterations = 20;  ///< constrained sub-steps a step; 1 to 1000
   double tangent_tolerance =
       1e-3;  ///< closest-point iteration stops below this many R; 1e-6 to 0.1
+  /// s in which a softened contact comes to its stiffness though no motion of the hand pays for it;
+  /// above 0. Infinite: it gives a hand no energy (docs/method.md 3.5). For hands that no motor
+  /// moves.
+  double rise_time = std::numeric_limits<double>::infinity();
 };
 
 /// The 3-DOF god-object: follows the hand through free space and stays on the surface when the
