@@ -28,6 +28,9 @@ constexpr std::size_t kQuaternion = 16;
 constexpr std::uint16_t kColors = 1;
 constexpr std::uint16_t kNormals = 2;
 constexpr std::uint16_t kTrust = 4;
+constexpr std::uint16_t kRadii = 8;
+constexpr float kOneMetre = 160;  // a radius of a metre as a byte
+constexpr float kOctave = 8;      // steps for twice a radius
 constexpr float kCloudSteps = 65535;
 constexpr float kSurfaceSteps = 32767;
 
@@ -83,6 +86,12 @@ void put_places(const CloudMessage& message, ByteWriter& bytes) {
 
 }  // namespace
 
+std::uint8_t logarithmic(float radius) noexcept {
+  if (!(radius > 0)) return 0;
+  return static_cast<std::uint8_t>(
+      std::clamp(std::lround(kOneMetre + kOctave * std::log2(std::min(radius, 1e6F))), 0L, 255L));
+}
+
 std::array<std::int8_t, 2> octahedral(const Eigen::Vector3f& normal) noexcept {
   const float length = normal.lpNorm<1>();
   if (!(length > 0) || !std::isfinite(length)) return {0, 0};
@@ -119,13 +128,14 @@ std::string encode(const CloudMessage& message) {
   assert(message.colors.empty() || message.colors.size() == n);
   assert(message.normals.empty() || message.normals.size() == n);
   assert(message.trust.empty() || message.trust.size() == n);
+  assert(message.radii.empty() || message.radii.size() == n);
   ByteWriter bytes(kCloudHeader + 6 * n + 3 * message.colors.size() + 2 * message.normals.size() +
-                   message.trust.size());
+                   message.trust.size() + message.radii.size());
   bytes.put(kCloudKind);
   bytes.put(message.source);
-  bytes.put(static_cast<std::uint16_t>((message.colors.empty() ? 0 : kColors) |
-                                       (message.normals.empty() ? 0 : kNormals) |
-                                       (message.trust.empty() ? 0 : kTrust)));
+  bytes.put(static_cast<std::uint16_t>(
+      (message.colors.empty() ? 0 : kColors) | (message.normals.empty() ? 0 : kNormals) |
+      (message.trust.empty() ? 0 : kTrust) | (message.radii.empty() ? 0 : kRadii)));
   bytes.put(static_cast<std::uint32_t>(n));
   bytes.put(message.stamp);
   put_places(message, bytes);
@@ -136,6 +146,7 @@ std::string encode(const CloudMessage& message) {
     for (const std::int8_t part : octahedral(normal)) bytes.put(part);
   }
   for (const std::uint8_t trust : message.trust) bytes.put(trust);
+  for (const float radius : message.radii) bytes.put(logarithmic(radius));
   return bytes.take();
 }
 

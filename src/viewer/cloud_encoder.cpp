@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
 #include "field/formulas.hpp"
+#include "palpate/geometry/spacing.hpp"
+#include "prepare/radii.hpp"
 #include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
@@ -43,13 +46,46 @@ bool faded(const Source::State& state, double now) {
   return state.frames > 0 && now > state.silent_from + state.fade;
 }
 
+/// The density weight of a point whose R is kUsualMultiple spacings: of a plane, where weights sum
+/// up to the kernel's mean over its disc for each point in that (docs/method.md 2.2).
+double usual_weight(Kernel kernel) {
+  const double mean = kernel == Kernel::wyvill ? 8.0 / 27 : 1.0 / 7;
+  return 1 / (mean * std::numbers::pi * kUsualMultiple * kUsualMultiple);
+}
+
+/// How large points are drawn, m: R, or where they lie more densely than R asks for,
+/// kUsualMultiple spacings.
+std::vector<float> drawn_radii(const SurfacePoints& points) {
+  std::vector<float> radii = newest(points.radii, points.end_radii);
+  const auto& weights = newest(points.density_weights, points.end_density_weights);
+  const double usual = usual_weight(points.kernel);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    radii[i] *= static_cast<float>(std::min(1.0, std::sqrt(weights[i] / usual)));
+  }
+  return radii;
+}
+
+/// The same of points that nothing is known of, by their own spacings.
+std::vector<float> drawn_radii(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
+  std::vector<Eigen::Vector3f> places;
+  places.reserve(kept.size());
+  for (const std::uint32_t i : kept) places.push_back(cloud.positions[i]);
+  const CellGrid grid(places);
+  const std::vector<float> spacings = local_spacings(grid);
+  std::vector<float> radii(places.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    radii[grid.order()[i]] = kUsualMultiple * spacings[i];
+  }
+  return radii;
+}
+
 /// Adds points that are seen and cannot be felt here: as ones that nothing is known of.
-void add_overview(const PointCloud& overview, const Eigen::Vector3d& origin, std::size_t budget,
-                  CloudMessage& message) {
+void add_overview(const PointCloud& overview, const std::vector<std::uint32_t>& kept,
+                  const Eigen::Vector3d& origin, CloudMessage& message) {
   constexpr std::array<std::uint8_t, 3> kGrey{128, 128, 128};
   const Eigen::Vector3f shift = (overview.origin - origin).cast<float>();
   const bool coloured = message.places.empty() ? !overview.colors.empty() : !message.colors.empty();
-  for (const std::uint32_t i : thinned(overview.size(), budget)) {
+  for (const std::uint32_t i : kept) {
     message.places.emplace_back(overview.positions[i] + shift);
     message.trust.push_back(0);
     if (!message.normals.empty()) message.normals.emplace_back(Eigen::Vector3f::Zero());
@@ -90,6 +126,10 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
   const auto& confidences = newest(points.confidences, points.end_confidences);
   const Eigen::Vector3f shift = (points.origin - origin).cast<float>();
   CloudMessage message;
+  const std::vector<float> radii = drawn_radii(points);
+  // What is left of a thinned cloud covers as much.
+  const float wider = std::sqrt(static_cast<float>(shown.size()) / static_cast<float>(kept.size()));
+  message.radii.reserve(kept.size());
   message.places.reserve(kept.size());
   message.trust.reserve(kept.size());
   if (!normals.empty()) message.normals.reserve(kept.size());
@@ -99,6 +139,7 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
     const Eigen::Vector3f& place =
         points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
     message.places.emplace_back(place + shift);
+    message.radii.push_back(wider * radii[i]);
     if (!normals.empty()) message.normals.push_back(normals[i]);
     message.trust.push_back(static_cast<std::uint8_t>(std::lround(255 * confidences[i])));
     if (!points.colors.empty()) message.colors.push_back(points.colors[i]);
@@ -140,14 +181,22 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
 }
 
 SharedBytes CloudEncoder::encode(std::size_t source, const SurfacePoints* points,
-                                 std::size_t share) const {
+                                 std::size_t share) {
   CloudMessage message;
   const Source::State state = scene_.source(source).state();
   const std::size_t left = share - std::min(share, points != nullptr ? points->size() : 0);
   const std::size_t far =
       state.overview ? std::min(std::max(share / kOverviewShare, left), state.overview->size()) : 0;
   if (points != nullptr) message = cloud_of(*points, origin_, share - far);
-  if (points != nullptr && far > 0) add_overview(*state.overview, origin_, far, message);
+  if (points != nullptr && far > 0) {
+    Overview& overview = overviews_[source];
+    if (overview.cloud.lock() != state.overview || overview.kept.size() != far) {
+      overview = {state.overview, thinned(state.overview->size(), far), {}};
+      overview.radii = drawn_radii(*state.overview, overview.kept);
+    }
+    add_overview(*state.overview, overview.kept, origin_, message);
+    message.radii.insert(message.radii.end(), overview.radii.begin(), overview.radii.end());
+  }
   message.source = static_cast<std::uint8_t>(source);
   message.stamp = state.stamp;
   return std::make_shared<const std::string>(viewer::encode(message));

@@ -73,7 +73,7 @@ struct EncodedCloud {
 class CloudEncoder {
  public:
   CloudEncoder(const Scene& scene, const Eigen::Vector3d& origin)
-      : scene_(scene), origin_(origin), sources_(scene.size()) {}
+      : scene_(scene), origin_(origin), sources_(scene.size()), overviews_(scene.size()) {}
 
   /// All that is to be seen at `now` (s, on the snapshots' clock); what did not change has the
   /// bytes that it had.
@@ -88,11 +88,19 @@ class CloudEncoder {
   };
 
   [[nodiscard]] SharedBytes encode(std::size_t source, const SurfacePoints* points,
-                                   std::size_t share) const;
+                                   std::size_t share);
+
+  /// What was drawn of a source's overview last: a store's stays, and its spacings take a while.
+  struct Overview {
+    std::weak_ptr<const PointCloud> cloud;
+    std::vector<std::uint32_t> kept;
+    std::vector<float> radii;  // m
+  };
 
   const Scene& scene_;
   Eigen::Vector3d origin_;
   std::vector<Known> sources_;
+  std::vector<Overview> overviews_;
 };
 
 /// Surface around one tool.

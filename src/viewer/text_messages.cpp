@@ -114,7 +114,7 @@ ClientMessage read_object(const json& object) {
   throw Unread{"unknown message type"};
 }
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 std::string text_of(const json& message) {
   return message.dump(-1, ' ', false, json::error_handler_t::replace);

@@ -83,11 +83,12 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   message.colors = {{10, 20, 30}, {40, 50, 60}};
   message.normals = {{0, 0, 1}, {1, 0, 0}};
   message.trust = {7, 255};
+  message.radii = {1, 0.25F};
   const std::string bytes = encode(message);
-  ASSERT_EQ(bytes.size(), 40u + 2 * (6 + 3 + 2 + 1));
+  ASSERT_EQ(bytes.size(), 40u + 2 * (6 + 3 + 2 + 1 + 1));
   EXPECT_EQ(u8(bytes, 0), 2);
   EXPECT_EQ(u8(bytes, 1), 2);
-  EXPECT_EQ(u16(bytes, 2), 7);
+  EXPECT_EQ(u16(bytes, 2), 15);
   EXPECT_EQ(u32(bytes, 4), 2u);
   EXPECT_EQ(test::number_at<double>(bytes, 8), 7.25);
   expect_vector(bytes, 16, {1, 10, 5});
@@ -100,6 +101,21 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(i8(bytes, 58 + i), normals[i]);
   EXPECT_EQ(u8(bytes, 62), 7);
   EXPECT_EQ(u8(bytes, 63), 255);
+  EXPECT_EQ(u8(bytes, 64), 160);
+  EXPECT_EQ(u8(bytes, 65), 144);
+}
+
+TEST(CloudMessage, ARadiusIsAByteToATwentiethFromAMicrometreToKilometres) {
+  for (float radius = 1e-6F; radius < 3500; radius *= 1.013F) {
+    const float read = std::exp2((logarithmic(radius) - 160) / 8.F);
+    EXPECT_NEAR(read / radius, 1, 0.05) << radius;
+  }
+  EXPECT_EQ(logarithmic(1e-9F), 0);
+  EXPECT_EQ(logarithmic(1e9F), 255);
+  EXPECT_EQ(logarithmic(std::numeric_limits<float>::infinity()), 255);
+  for (const float none : {0.F, -1.F, std::numeric_limits<float>::quiet_NaN()}) {
+    EXPECT_EQ(logarithmic(none), 0);
+  }
 }
 
 TEST(CloudMessage, OfNoPointsIsAHeaderOfFiniteNumbers) {

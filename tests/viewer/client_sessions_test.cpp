@@ -15,7 +15,7 @@ TEST(ClientSessions, HelloIsAnsweredByWelcome) {
   const auto messages = rig.answers(session, kHello);
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0]["type"], "welcome");
-  EXPECT_EQ(messages[0]["version"], 1);
+  EXPECT_EQ(messages[0]["version"], 2);
   EXPECT_EQ(messages[0]["devices"][0], json({{"name", "one"}, {"takeable", true}}));
   EXPECT_EQ(messages[0]["devices"][1]["takeable"], false);
   EXPECT_EQ(messages[0]["settings"][0]["key"], "k");

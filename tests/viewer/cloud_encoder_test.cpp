@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "palpate/scene/scene_field.hpp"
 #include "support/make_points.hpp"
 #include "support/snapshots.hpp"
+#include "viewer/bytes.hpp"
 #include "viewer/scene_encoder.hpp"
 
 namespace palpate::viewer {
@@ -75,6 +78,35 @@ TEST(CloudOf, TrustStaysWithItsPointsAndIsAByteWhoseUpperHalfIsTrusted) {
   EXPECT_EQ(cloud_of(points, Eigen::Vector3d::Zero(), 10).trust, std::vector<std::uint8_t>(10));
 }
 
+// The middle of a plane: at its border a point weighs more.
+float middle_radius(const SurfacePoints& points, std::size_t budget) {
+  const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), budget);
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < cloud.places.size(); ++i) {
+    if (cloud.places[i].norm() < cloud.places[nearest].norm()) nearest = i;
+  }
+  return cloud.radii.at(nearest);
+}
+
+TEST(CloudOf, APointIsDrawnAsLargeAsItsR) {
+  SurfacePoints points = test::make_points(test::plane(0, 4e-3, 15));
+  EXPECT_NEAR(middle_radius(points, 1000), 10e-3, 0.5e-3);
+  points.end_radii.assign(points.size(), 5e-3F);
+  EXPECT_NEAR(middle_radius(points, 1000), 5e-3, 0.25e-3);
+}
+
+TEST(CloudOf, WherePointsLieDenselyInRTheyAreDrawnBySpacing) {
+  std::vector<test::TestPoint> dense = test::plane(0, 4e-3, 31);
+  for (test::TestPoint& point : dense) point.radius = 20e-3;
+  EXPECT_NEAR(middle_radius(test::make_points(dense), 5000), 10e-3, 1e-3);
+  EXPECT_NEAR(middle_radius(test::make_points(dense, Kernel::wendland), 5000), 10e-3, 1e-3);
+}
+
+TEST(CloudOf, WhatIsLeftOfAThinnedCloudIsDrawnSoMuchLarger) {
+  const SurfacePoints points = test::make_points(test::plane(0, 4e-3, 15));
+  EXPECT_NEAR(middle_radius(points, 240), 20e-3, 1e-3);
+}
+
 TEST(CloudOf, ShowsMovingPointsWhereTheyGo) {
   SurfacePoints points = test::make_points(test::plane(0, 4e-3, 3));
   points.end_positions.assign(points.size(), Eigen::Vector3f(1, 2, 3));
@@ -93,6 +125,39 @@ TEST(CloudOf, AThinnedSheetIsStillCoveredEverywhere) {
     float nearest = 1;
     for (const auto& q : cloud.places) nearest = std::min(nearest, (p - q).norm());
     EXPECT_LT(nearest, 16e-3F);
+  }
+}
+
+// A strip whose one half is sampled half as densely, none of it near a tool.
+TEST(CloudEncoder, DrawsWhatIsOnlySeenByItsOwnSpacing) {
+  SourceOptions options;
+  options.policy.clip_to_reach = true;
+  options.T_world_sensor = Eigen::Translation3d(0, 0, 5) * Eigen::Isometry3d::Identity();
+  Scene scene;
+  Source& source = scene.add("sensor", options);
+  SceneField field(scene);
+  PointCloud cloud;
+  for (int i = -40; i < 0; ++i) {
+    for (int j = 0; j < 20; ++j) cloud.positions.emplace_back(4e-3F * i, 4e-3F * j, 0);
+  }
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 10; ++j) cloud.positions.emplace_back(8e-3F * i, 8e-3F * j, 0);
+  }
+  for (const double now : {0.0, 0.1}) {
+    field.update(now, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+    ASSERT_TRUE(source.push(cloud, now, [=] { return now + 0.01; }));
+  }
+  ASSERT_NE(source.state().overview, nullptr);
+  const auto encoded = CloudEncoder(scene, Eigen::Vector3d::Zero()).encode({10'000}, 0.1);
+  ASSERT_EQ(encoded.size(), 1u);
+  const std::string& bytes = *encoded[0].bytes;
+  ASSERT_EQ(test::u32(bytes, 4), 1000u);
+  const std::size_t radii = bytes.size() - 1000;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const double x = -0.16 + 0.312 * test::u16(bytes, 40 + 6 * i) / 65535;
+    if (std::abs(x) < 0.02 || std::abs(x) > 0.14) continue;
+    const double radius = std::exp2((test::u8(bytes, radii + i) - 160) / 8.0);
+    EXPECT_NEAR(radius, x < 0 ? 10e-3 : 20e-3, x < 0 ? 2e-3 : 5e-3) << x;
   }
 }
 

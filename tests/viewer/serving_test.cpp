@@ -60,7 +60,7 @@ TEST(Serving, AnswersOnAnAddressOfVersion6) {
   RawClient client(viewer->port(), RawClient::Loopback::v6);
   EXPECT_TRUE(client.upgrade(host, "http://" + host).starts_with("HTTP/1.1 101"));
   client.send_text(R"({"type":"hello","token":"secret","points":10})");
-  EXPECT_EQ(client.receive_json("welcome")["version"], 1);
+  EXPECT_EQ(client.receive_json("welcome")["version"], 2);
 }
 
 TEST(Serving, RefusesTokensThatCannotBeSaid) {

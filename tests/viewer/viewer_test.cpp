@@ -157,7 +157,7 @@ TEST(Viewer, SendsEachSourcesCloudThinnedToWhatThePageAskedFor) {
   const auto cloud = [](const Frame& f) { return f.binary(2); };
   const std::string few = client->receive_until(cloud).payload;
   EXPECT_EQ(test::u32(few, 4), 100u);
-  EXPECT_EQ(test::u16(few, 2), 6);
+  EXPECT_EQ(test::u16(few, 2), 14);
   EXPECT_NEAR(f32(few, 24), -1, 1e-6);  // z of the lower corner, from the origin
   client->send_text(R"({"type":"points","points":100000})");
   EXPECT_EQ(test::u32(client->receive_until(cloud).payload, 4), 31u * 31);

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decode, DecodeError, Flag, Kind, type CloudMessage, type PastMessage, type StateMessage, type SurfaceMessage } from "../src/protocol/decode";
+import { decode, DecodeError, Flag, Kind, radiusOf, type CloudMessage, type PastMessage, type StateMessage, type SurfaceMessage } from "../src/protocol/decode";
 
 /** Bytes written one by one, as docs/viewer_protocol.md lists them. */
 class Writer {
@@ -50,6 +50,7 @@ function cloud(flags: number): ArrayBuffer {
   if ((flags & 1) !== 0) writer.u8(10, 20, 30, 40, 50, 60, 70, 80, 255);
   if ((flags & 2) !== 0) writer.u8(127, 0, 0, -127, -1, 1);
   if ((flags & 4) !== 0) writer.u8(0, 127, 255);
+  if ((flags & 8) !== 0) writer.u8(0, 144, 168);
   return writer.buffer;
 }
 
@@ -93,8 +94,8 @@ test("a state may have no samples", () => {
   assert.equal((decode(state(0)) as StateMessage).samples.length, 0);
 });
 
-test("a cloud is read with and without colours, normals and trust", () => {
-  const all = decode(cloud(7)) as CloudMessage;
+test("a cloud is read with and without colours, normals, trust and radii", () => {
+  const all = decode(cloud(15)) as CloudMessage;
   assert.equal(all.source, 1);
   assert.equal(all.count, 3);
   assert.equal(all.stamp, 2.5);
@@ -104,6 +105,8 @@ test("a cloud is read with and without colours, normals and trust", () => {
   assert.deepEqual([...all.colours!], [10, 20, 30, 40, 50, 60, 70, 80, 255]);
   assert.deepEqual([...all.normals!], [127, 0, 0, -127, -1, 1]);
   assert.deepEqual([...all.trust!], [0, 127, 255]);
+  assert.deepEqual([...all.radii!], [0, 144, 168]);
+  assert.deepEqual([...(decode(cloud(8)) as CloudMessage).radii!], [0, 144, 168]);
   assert.deepEqual([...(decode(cloud(4)) as CloudMessage).trust!], [0, 127, 255]);
   const normals = decode(cloud(2)) as CloudMessage;
   assert.equal(normals.colours, undefined);
@@ -112,6 +115,13 @@ test("a cloud is read with and without colours, normals and trust", () => {
   assert.equal(bare.colours, undefined);
   assert.equal(bare.normals, undefined);
   assert.equal(bare.trust, undefined);
+  assert.equal(bare.radii, undefined);
+});
+
+test("a radius is a byte of eighths of octaves", () => {
+  assert.equal(radiusOf(160), 1);
+  assert.equal(radiusOf(144), 0.25);
+  assert.equal(radiusOf(0), 2 ** -20);
 });
 
 test("a surface is read, and must not point beyond its vertices", () => {
@@ -141,7 +151,7 @@ test("a surface may be empty: nothing is near", () => {
 });
 
 test("what is cut short anywhere is refused, never read beyond its end", () => {
-  for (const whole of [state(2), oriented(), cloud(7), surface(2), past()]) {
+  for (const whole of [state(2), oriented(), cloud(15), surface(2), past()]) {
     for (let bytes = 0; bytes < whole.byteLength; bytes += 1) {
       assert.throws(() => decode(whole.slice(0, bytes)), DecodeError, `${bytes} of ${whole.byteLength}`);
     }

@@ -38,9 +38,9 @@ export class LookPanel {
       value: kColouringNames[this.look.colouring],
     }, (value) => (this.look.colouring = kColourings[names.indexOf(String(value))] ?? "height"));
     this.add({
-      key: "pointSize", label: "Point size", unit: "× spacing", kind: "number", least: 0.4, most: 4,
-      step: 0.1, value: this.look.pointSize,
-    }, (value) => (this.look.pointSize = Number(value)));
+      key: "disc", label: "Point size", unit: "× R", kind: "number", least: 0.2, most: 2,
+      step: 0.1, value: this.look.disc,
+    }, (value) => (this.look.disc = Number(value)));
     this.add({
       key: "count", label: "Maximum points", kind: "choice", choices: kPointCounts.map(whole),
       value: whole(this.points),

@@ -54,6 +54,7 @@ export interface CloudMessage {
   colours: Uint8Array | undefined;
   normals: Int8Array | undefined; // octahedral
   trust: Uint8Array | undefined; // 255 is 1
+  radii: Uint8Array | undefined; // as radiusOf() reads them
 }
 
 export interface SurfaceMessage {
@@ -121,6 +122,11 @@ function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
   };
 }
 
+/** m, of a byte of a cloud's radii; the cloud's shader does the same. */
+export function radiusOf(byte: number): number {
+  return 2 ** ((byte - 160) / 8);
+}
+
 function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
   need(buffer, 40, "cloud");
   const flags = view.getUint16(2, true);
@@ -131,7 +137,9 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
   const afterColours = afterPlaces + (colours ? 3 * count : 0);
   const afterNormals = afterColours + (normals ? 2 * count : 0);
   const trust = (flags & 4) !== 0;
-  need(buffer, afterNormals + (trust ? count : 0), `cloud of ${count} points`);
+  const afterTrust = afterNormals + (trust ? count : 0);
+  const radii = (flags & 8) !== 0;
+  need(buffer, afterTrust + (radii ? count : 0), `cloud of ${count} points`);
   return {
     kind: Kind.cloud,
     source: view.getUint8(1),
@@ -143,6 +151,7 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
     colours: colours ? new Uint8Array(buffer, afterPlaces, 3 * count) : undefined,
     normals: normals ? new Int8Array(buffer, afterColours, 2 * count) : undefined,
     trust: trust ? new Uint8Array(buffer, afterNormals, count) : undefined,
+    radii: radii ? new Uint8Array(buffer, afterTrust, count) : undefined,
   };
 }
 

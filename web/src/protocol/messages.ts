@@ -1,6 +1,6 @@
 // What page and program say to each other as JSON: docs/viewer_protocol.md.
 
-export const kVersion = 1;
+export const kVersion = 2;
 
 export type Vector = [number, number, number];
 export type Quaternion = [number, number, number, number]; // x, y, z, w

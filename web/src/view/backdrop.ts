@@ -2,11 +2,14 @@
 // drawn anew then. Edges are shaded by depth (eye-dome lighting, Boucheny 2009), so that forms show without normals.
 
 import {
-  DepthTexture, GLSL3, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, UnsignedIntType,
+  AlwaysDepth, DepthTexture, GLSL3, Mesh, NearestFilter, OrthographicCamera, PlaneGeometry, Scene, ShaderMaterial, UnsignedIntType,
   Vector3, Vector4, WebGLRenderTarget, type IUniform, type PerspectiveCamera, type WebGLRenderer,
 } from "three";
 
 export const kCloudLayer = 1; // of what is drawn into the backdrop
+const kPairs = 10; // of places that are compared with each
+const kHollow = 28; // style-sheet pixels to the farthest of them (judgement)
+const kDark = 3.5; // of hollows (judgement)
 
 const kVertex = /* glsl */ `
   out vec2 at;
@@ -16,28 +19,73 @@ const kVertex = /* glsl */ `
   }
 `;
 
-/** Darkens what lies behind its neighbours in the picture, by the logarithm of how far. */
+/** Fills holes of a pixel, and shades what lies in hollows or behind its neighbours. A depth is linear in the picture
+ * where the surface is flat: of two neighbours on opposite sides the mean tells by how much a place lies deeper, however
+ * steep its surface is. */
 const kShade = /* glsl */ `
   uniform sampler2D colours;
   uniform highp sampler2D depths;
   uniform vec2 range; // near and far, m
-  uniform float reach; // pixels
-  uniform float grain; // size of a point's disk, m
+  uniform float slope; // of a pixel
+  uniform float reach; // pixels for one of the style sheet
+  uniform float grain; // by which discs stand out of their surface, m
   in vec2 at;
   out vec4 shown;
 
-  float far(vec2 place) {
-    float z = 2.0 * texture(depths, place).r - 1.0;
-    return log2(2.0 * range.x * range.y / (range.y + range.x - z * (range.y - range.x)));
-  }
+  ivec2 last;
+  float depth(ivec2 place) { return texelFetch(depths, clamp(place, ivec2(0), last), 0).r; }
+  float far(float d) { return range.x * range.y / (range.y - d * (range.y - range.x)); }
 
   void main() {
-    vec2 step = reach / vec2(textureSize(depths, 0));
-    float own = far(at);
-    own -= grain * exp2(-own) * 1.4427; // disks that lie in one surface overlap: that is no edge
-    float behind = max(0.0, own - far(at + vec2(step.x, 0.0))) + max(0.0, own - far(at - vec2(step.x, 0.0))) +
-      max(0.0, own - far(at + vec2(0.0, step.y))) + max(0.0, own - far(at - vec2(0.0, step.y)));
-    shown = vec4(texture(colours, at).rgb * max(0.45, exp(-12.0 * behind)), 1.0);
+    last = textureSize(depths, 0) - 1;
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    float own = depth(here);
+    vec3 colour = texelFetch(colours, here, 0).rgb;
+
+    // A hole: all around but for one are nearer, by more than they differ.
+    float least = 1.0, most = 0.0, second = 0.0;
+    for (int i = 0; i < 9; i += 1) {
+      if (i == 4) continue;
+      float d = depth(here + ivec2(i % 3, i / 3) - 1);
+      least = min(least, d);
+      second = max(second, min(most, d));
+      most = max(most, d);
+    }
+    if (own > 2.0 * second - least) {
+      own = 0.5 * (least + second);
+      vec3 sum = vec3(0.0);
+      float count = 0.0;
+      for (int i = 0; i < 9; i += 1) {
+        ivec2 place = clamp(here + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+        if (i == 4 || depth(place) > second) continue;
+        sum += texelFetch(colours, place, 0).rgb;
+        count += 1.0;
+      }
+      colour = sum / count;
+    }
+    gl_FragDepth = own;
+    if (own >= 1.0) {
+      shown = vec4(0.0);
+      return;
+    }
+
+    float away = far(own);
+    float hollow = 0.0;
+    float edge = 0.0;
+    for (int i = 0; i < ${kPairs}; i += 1) {
+      float part = (float(i) + 0.5) / float(${kPairs});
+      float pixels = reach * mix(1.4, ${kHollow.toFixed(1)}, part * part);
+      float angle = 2.4 * float(i); // the golden one: places all around
+      ivec2 way = ivec2(round(pixels * vec2(cos(angle), sin(angle))));
+      float between = 0.5 * (depth(here + way) + depth(here - way));
+      float deeper = away - far(between); // m
+      float x = (deeper - sign(deeper) * min(abs(deeper), grain)) / (pixels * slope * away);
+      hollow += x / (1.0 + x * x);
+      if (i < 2) edge += 0.5 * max(0.0, x / (1.0 + x));
+    }
+    hollow /= float(${kPairs});
+    float light = hollow > 0.0 ? exp(-${kDark.toFixed(1)} * hollow) : 1.0 - 0.35 * hollow;
+    shown = vec4(colour * light * (1.0 - 0.3 * edge), 1.0);
   }
 `;
 
@@ -71,10 +119,8 @@ const kShow = /* glsl */ `
   }
 `;
 
-const kReach = 1.4; // style-sheet pixels to the neighbours that are compared (judgement)
-
 function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mesh<PlaneGeometry, ShaderMaterial> {
-  const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: kVertex, fragmentShader, uniforms });
+  const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: kVertex, fragmentShader, uniforms, depthFunc: AlwaysDepth });
   const mesh = new Mesh(new PlaneGeometry(1, 1), material);
   mesh.frustumCulled = false;
   return mesh;
@@ -95,7 +141,9 @@ export interface Wanted {
 
 export class Backdrop {
   private readonly points: WebGLRenderTarget;
-  private readonly shaded = new WebGLRenderTarget(1, 1, { depthBuffer: false, minFilter: NearestFilter, magFilter: NearestFilter });
+  private readonly shaded = new WebGLRenderTarget(1, 1, {
+    depthTexture: new DepthTexture(1, 1, UnsignedIntType), minFilter: NearestFilter, magFilter: NearestFilter,
+  });
   private readonly shade: Mesh<PlaneGeometry, ShaderMaterial>;
   private readonly shading = new Scene();
   private readonly flat = new OrthographicCamera();
@@ -112,10 +160,10 @@ export class Backdrop {
     const depthTexture = new DepthTexture(1, 1, UnsignedIntType);
     this.points = new WebGLRenderTarget(1, 1, { depthTexture, samples, minFilter: NearestFilter, magFilter: NearestFilter });
     const depths = { value: depthTexture };
-    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: this.range, reach: { value: 1 }, grain: { value: 0 } });
+    this.shade = screen(kShade, { colours: { value: this.points.texture }, depths, range: this.range, slope: { value: 0 }, reach: { value: 1 }, grain: { value: 0 } });
     this.shading.add(this.shade);
     this.screen = screen(kShow, {
-      colours: { value: this.shaded.texture }, depths, range: this.range, slopes: { value: [1, 1] }, up: { value: new Vector3() },
+      colours: { value: this.shaded.texture }, depths: { value: this.shaded.depthTexture }, range: this.range, slopes: { value: [1, 1] }, up: { value: new Vector3() },
       casters: { value: this.casters }, count: { value: 0 },
     });
     this.screen.renderOrder = -1;
@@ -140,7 +188,8 @@ export class Backdrop {
     camera.layers.set(0);
     this.range.value = [camera.near, camera.far];
     this.shade.material.uniforms["grain"]!.value = grain;
-    this.shade.material.uniforms["reach"]!.value = kReach * sharpness;
+    this.shade.material.uniforms["reach"]!.value = sharpness;
+    this.shade.material.uniforms["slope"]!.value = 2 / (camera.projectionMatrix.elements[5] * height);
     renderer.setRenderTarget(this.shaded);
     renderer.render(this.shading, this.flat);
     renderer.setRenderTarget(null);

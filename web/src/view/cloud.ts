@@ -33,7 +33,7 @@ function makeMaterial(ramps: Texture): ShaderMaterial {
       age: { value: 0 },
       heights: { value: new Vector2(0, 1) },
       up: { value: new Vector3(0, 0, 1) },
-      size: { value: 0.002 },
+      disc: { value: 1 },
       pixels: { value: 1000 },
       ramps: { value: ramps },
     },
@@ -77,6 +77,7 @@ export class Cloud {
     if (message.colours !== undefined) this.fill("own", message.colours);
     if (message.normals !== undefined) this.fill("bend", message.normals);
     if (message.trust !== undefined) this.fill("trust", message.trust);
+    this.fill("wide", message.radii ?? new Uint8Array(message.count)); // none: as small as can be
     const [x, y, z] = message.extent;
     this.points.position.set(...message.lower);
     this.points.scale.set(Math.max(x, 1e-9), Math.max(y, 1e-9), Math.max(z, 1e-9));
@@ -102,8 +103,9 @@ export class Cloud {
     uniforms["up"]!.value = up;
   }
 
-  scale(size: number, pixels: number): void {
-    this.points.material.uniforms["size"]!.value = size * this.spacing;
+  /** disc: radius of what a point is drawn as, in R. */
+  scale(disc: number, pixels: number): void {
+    this.points.material.uniforms["disc"]!.value = disc;
     this.points.material.uniforms["pixels"]!.value = pixels;
   }
 
@@ -115,6 +117,7 @@ export class Cloud {
     geometry.setAttribute("own", new BufferAttribute(new Uint8Array(3 * this.capacity), 3, true));
     geometry.setAttribute("bend", new BufferAttribute(new Int8Array(2 * this.capacity), 2, true));
     geometry.setAttribute("trust", new BufferAttribute(new Uint8Array(this.capacity), 1, true));
+    geometry.setAttribute("wide", new BufferAttribute(new Uint8Array(this.capacity), 1));
   }
 
   private fill(name: string, values: Uint16Array | Uint8Array | Int8Array): void {

@@ -8,12 +8,15 @@ export const kCloudVertex = /* glsl */ `
   uniform float age;        // 0 fresh to 1 stale
   uniform vec2 heights;     // low, high
   uniform vec3 up;
-  uniform float size;       // m
+  uniform float disc;       // radius of a point's disc, in R
   uniform float pixels;     // pixels per unit of size over depth
   uniform sampler2D ramps;
   in vec2 bend;      // octahedral normal
   in vec3 own;
   in float trust;
+  in float wide;     // R, as radiusOf() reads it
+  flat out float radius; // of the disc, m
+  flat out vec3 deep;    // its middle's depth, and what makes a distance a depth
   out vec3 colour;
   out vec3 facing;
 
@@ -27,7 +30,9 @@ export const kCloudVertex = /* glsl */ `
     vec4 world = modelMatrix * vec4(position, 1.0);
     vec4 seen = viewMatrix * world;
     gl_Position = projectionMatrix * seen;
-    gl_PointSize = clamp(size * pixels / -seen.z, 1.5, 160.0);
+    radius = disc * exp2((wide - 160.0) / 8.0);
+    gl_PointSize = max(2.0 * radius * pixels / -seen.z, 1.5);
+    deep = vec3(seen.z, projectionMatrix[2][2], projectionMatrix[3][2]);
 
     vec3 normal = hasNormals ? unbend(bend) : up;
     if (mode == 1) {
@@ -58,6 +63,8 @@ export const kCloudVertex = /* glsl */ `
 
 export const kCloudFragment = /* glsl */ `
   out vec4 shown;
+  flat in float radius;
+  flat in vec3 deep;
   in vec3 colour;
   in vec3 facing;
 
@@ -67,6 +74,8 @@ export const kCloudFragment = /* glsl */ `
     float edge = dot(p, p) + slope * slope;
     float soft = fwidth(edge);
     if (edge > 1.0 + soft) discard;
+    float z = deep.x - radius * slope; // a disc lies in its plane: neighbours' meet where their planes do
+    gl_FragDepth = 0.5 - 0.5 * (deep.y + deep.z / z);
     shown = vec4(colour, clamp((1.0 + soft - edge) / (2.0 * soft), 0.0, 1.0));
   }
 `;

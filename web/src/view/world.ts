@@ -21,7 +21,7 @@ import { Tool } from "./tool";
 
 export interface Look {
   colouring: Colouring;
-  pointSize: number; // 1 is the spacing of points
+  disc: number; // radius of what a point is drawn as, in R
   points: boolean;
   surface: boolean;
   support: boolean;
@@ -31,6 +31,7 @@ export interface Look {
 
 const kClose = 12; // support radii
 const kDropInterval = 100; // ms between two searches for what a tool hovers above
+const kStand = 1.7; // spacings by which discs may stand out of a surface that bends (judgement)
 const kLonePoint = 5e-3; // m, two R of a cloud whose points are all at one place
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
@@ -38,7 +39,7 @@ const kArrowPixels = 80;
 const kAxes = [[0, 0, 1], [0, 1, 0], [0, -1, 0], [1, 0, 0], [-1, 0, 0], [0, 0, -1]].map(([x, y, z]) => new Vector3(x, y, z));
 
 export const kFirstLook: Look = {
-  colouring: "own", pointSize: 1.7, points: true, surface: true, support: true, cameras: true, trail: true,
+  colouring: "own", disc: 0.5, points: true, surface: true, support: true, cameras: true, trail: true,
 };
 
 export class World {
@@ -219,10 +220,10 @@ export class World {
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
       cloud.shade(colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
-      cloud.scale(look.pointSize, stage.pixelScale);
+      cloud.scale(look.disc, stage.pixelScale);
     });
     // Whatever else is asked for, the eye and what clouds are made of decide what they look like.
-    stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.pointSize, look.points, ...this.visible].join();
+    stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.disc, look.points, ...this.visible].join();
     stage.grain = this.lift();
     this.frusta.forEach((frustum, i) => {
       frustum.lines.visible = look.cameras && this.visible[i] === true;
@@ -250,7 +251,7 @@ export class World {
   /** How far points stand out towards the eye: what lies in the surface is lifted above them. */
   private lift(): number {
     const spacing = this.clouds.reduce((most, cloud) => Math.max(most, cloud.spacing), 0);
-    return this.look.points ? spacing * this.look.pointSize : 0;
+    return this.look.points ? kStand * spacing : 0;
   }
 
   private shownClouds(): Cloud[] {

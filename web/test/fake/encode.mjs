@@ -34,16 +34,18 @@ export function encodePast(device, time, steps) {
   return bytes;
 }
 
-/** bare: without colours and normals. */
+/** bare: without colours and normals. R is 2.5 spacings of points that lie evenly on the sides of their box. */
 export function encodeCloud(source, stamp, points, bare = false) {
   const n = points.length;
   const lower = [0, 1, 2].map((i) => points.reduce((least, p) => Math.min(least, p.place[i]), Infinity));
   const upper = [0, 1, 2].map((i) => points.reduce((most, p) => Math.max(most, p.place[i]), -Infinity));
   const extent = upper.map((u, i) => u - lower[i]);
-  const bytes = Buffer.alloc(40 + (bare ? 7 : 12) * n);
+  const [x, y, z] = extent;
+  const radius = Math.round(160 + 8 * Math.log2(2.5 * Math.sqrt((x * y + y * z + z * x) / Math.max(n, 1))));
+  const bytes = Buffer.alloc(40 + (bare ? 8 : 13) * n, Math.min(255, Math.max(0, radius)));
   bytes.writeUInt8(2, 0);
   bytes.writeUInt8(source, 1);
-  bytes.writeUInt16LE(bare ? 4 : 7, 2);
+  bytes.writeUInt16LE(bare ? 12 : 15, 2);
   bytes.writeUInt32LE(n, 4);
   bytes.writeDoubleLE(stamp, 8);
   [...lower, ...extent].forEach((value, i) => bytes.writeFloatLE(value, 16 + 4 * i));
