@@ -32,8 +32,7 @@ inline constexpr unsigned short kDefaultPriority = 0x7fff;
 
 inline constexpr unsigned kNoDevice = 0xffffffff;
 
-// Calibration styles, as bits: by hand in a given pose; automatic; in the inkwell.
-inline constexpr int kEncoderReset = 1;
+// Calibration styles, as bits: automatic; in the inkwell. By hand in a given pose, 1, is not used.
 inline constexpr int kAutomatic = 2;
 inline constexpr int kInkwell = 4;
 // States of calibration.
@@ -62,7 +61,7 @@ struct OpenHapticsFacts {
   std::string serial_number;
   double continuous_force = 0;   ///< N
   double maximum_stiffness = 0;  ///< N/m
-  int calibration_styles = 0;    ///< hd::kEncoderReset, hd::kAutomatic, hd::kInkwell
+  int calibration_styles = 0;    ///< bits: hd::kAutomatic, hd::kInkwell, others
 };
 
 /// The part of that interface that is used here. Most functions act on the current device.

@@ -62,7 +62,7 @@ class Limiter {
               [](const Leaf& a, const Leaf& b) { return a.bound < b.bound; });
   }
 
-  /// min_j (R_j + distance / 2).
+  /// min_j (R_j + slope * distance), but for points j on the plane of i, where `own` is known.
   [[nodiscard]] float limit_at(std::uint32_t i) const {
     const Eigen::Vector3f& p = grid_.points()[i];
     const float matters = kMatters * radii_[i];

@@ -61,8 +61,11 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
-      grown.hidden[i] != 0 ? void(++counts[sheet].hidden)
-                           : seen[sheet].add(static_cast<double>(cosine));
+      if (grown.hidden[i] != 0) {
+        ++counts[sheet].hidden;
+      } else {
+        seen[sheet].add(static_cast<double>(cosine));
+      }
     }
   }
   for (std::uint32_t k = 0; k < seen.size(); ++k) {

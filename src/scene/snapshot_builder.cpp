@@ -29,7 +29,7 @@ constexpr std::size_t kMostSeen = 20000;
 // A sensor is silent no sooner than after so many intervals (judgement; docs/method.md 7.4).
 constexpr double kSilentIntervals = 3;
 
-void check(const SourceOptions& source) {
+const SourceOptions& checked(const SourceOptions& source) {
   for (const double radius : {source.prepare.minimum_radius, source.prepare.radius.value_or(0)}) {
     if (radius >= 0 && std::isfinite(radius)) continue;
     throw Error(fmt::format("invalid support radius of {} m; give a length in metres", radius));
@@ -47,6 +47,7 @@ void check(const SourceOptions& source) {
     throw Error(fmt::format("policy: invalid silence of {} s or fade of {} s; give times above 0",
                             options.silence, options.fade));
   }
+  return source;
 }
 
 /// The points of a cloud that preparation would take, by whether a tool can come to them before the
@@ -89,7 +90,7 @@ double time_of(const char* what, double time) {
 }  // namespace
 
 SnapshotBuilder::SnapshotBuilder(const SourceOptions& options)
-    : options_((check(options), options)),
+    : options_(checked(options)),
       policies_{options.policy.policy.value_or(kDepthPolicy),
                 options.policy.policy.value_or(kCloudPolicy)},
       filter_(options.depth),

@@ -127,9 +127,12 @@ Way PointMoves::unseen(Fate fate, std::uint32_t i) const {
       return hide(i);
     case Fate::hold:
       return hold(i);
-    default:
-      return leave(i);
+    case Fate::follow:
+    case Fate::stay:  // of points that a block shows
+    case Fate::leave:
+      break;
   }
+  return leave(i);
 }
 
 /// Keeps a point of which nothing says whether it is gone or there.
