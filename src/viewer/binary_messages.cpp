@@ -29,6 +29,7 @@ constexpr std::uint16_t kColors = 1;
 constexpr std::uint16_t kNormals = 2;
 constexpr std::uint16_t kTrust = 4;
 constexpr std::uint16_t kRadii = 8;
+constexpr std::uint16_t kFaded = 16;
 constexpr float kOneMetre = 160;  // a radius of a metre as a byte
 constexpr float kOctave = 8;      // steps for twice a radius
 constexpr float kCloudSteps = 65535;
@@ -135,7 +136,8 @@ std::string encode(const CloudMessage& message) {
   bytes.put(message.source);
   bytes.put(static_cast<std::uint16_t>(
       (message.colors.empty() ? 0 : kColors) | (message.normals.empty() ? 0 : kNormals) |
-      (message.trust.empty() ? 0 : kTrust) | (message.radii.empty() ? 0 : kRadii)));
+      (message.trust.empty() ? 0 : kTrust) | (message.radii.empty() ? 0 : kRadii) |
+      (message.faded ? kFaded : 0)));
   bytes.put(static_cast<std::uint32_t>(n));
   bytes.put(message.stamp);
   put_places(message, bytes);

@@ -158,7 +158,6 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
     if (known.points.lock() != newest[s] || known.frames != state.frames || known.faded != gone) {
       known = {newest[s], state.frames, gone, {}};
     }
-    if (gone) newest[s] = nullptr;
     sizes[s] = newest[s] ? newest[s]->size() : 0;
     if (newest[s] && state.overview) sizes[s] += state.overview->size();
   }
@@ -199,6 +198,7 @@ SharedBytes CloudEncoder::encode(std::size_t source, const SurfacePoints* points
   }
   message.source = static_cast<std::uint8_t>(source);
   message.stamp = state.stamp;
+  message.faded = sources_[source].faded;
   return std::make_shared<const std::string>(viewer::encode(message));
 }
 

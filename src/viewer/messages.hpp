@@ -89,6 +89,7 @@ struct Notice {
   Viewer::NoticeLevel level = Viewer::NoticeLevel::info;
   std::string text;
   std::optional<double> share = {};  ///< of work that takes a while, 0-1: the notice stays until 1
+  bool over = false;                 ///< what it says is true no more: it is taken back
 
   bool operator==(const Notice&) const = default;
 };
@@ -203,7 +204,8 @@ struct CloudMessage {
   std::vector<std::array<std::uint8_t, 3>> colors = {};
   std::vector<Eigen::Vector3f> normals = {};
   std::vector<std::uint8_t> trust = {};  ///< SurfacePoints::confidences, 255 for 1
-  std::vector<float> radii = {};         ///< R, m; of a thinned cloud so much larger that it covers
+  bool faded = false;  ///< nothing has confirmed it for so long that it cannot be felt any more
+  std::vector<float> radii = {};  ///< R, m; of a thinned cloud so much larger that it covers
 };
 
 [[nodiscard]] std::string encode(const CloudMessage& message);

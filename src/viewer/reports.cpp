@@ -156,7 +156,7 @@ double StateReporter::rate(double now, std::uint64_t step) {
 std::vector<Notice> FaultNotices::update(std::span<const ViewedStream> streams,
                                          std::span<const DeviceFault> devices) {
   std::vector<Notice> news;
-  present_.clear();
+  const std::vector<Notice> before = std::exchange(present_, {});
   for (const ViewedStream& stream : streams) {
     const Notice notice{Viewer::NoticeLevel::warning, stream.state.problem};
     if (is_new(stream.state)) news.push_back(notice);
@@ -168,6 +168,11 @@ std::vector<Notice> FaultNotices::update(std::span<const ViewedStream> streams,
     if (fault == Guard::Fault::none) continue;
     present_.push_back({Viewer::NoticeLevel::fault, fmt::format("{}: {}", name, in_words(fault))});
     if (changed) news.push_back(present_.back());
+  }
+  for (Notice notice : before) {
+    if (std::ranges::find(present_, notice) != present_.end()) continue;
+    notice.over = true;
+    news.push_back(std::move(notice));
   }
   return news;
 }

@@ -68,7 +68,8 @@ class FaultNotices {
   /// A problem that comes again after so long, in s of the stream's clock, is a new one.
   static constexpr double kPeace = 10;
 
-  /// Problems new since the last call. Each index stands for the same device in every call.
+  /// Problems new since the last call, and those that lasted until then and are over. Each index
+  /// stands for the same device in every call.
   [[nodiscard]] std::vector<Notice> update(std::span<const ViewedStream> streams,
                                            std::span<const DeviceFault> devices);
 

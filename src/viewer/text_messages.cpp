@@ -240,6 +240,7 @@ std::string sources_text(std::span<const SourceReport> sources, const std::strin
 std::string notice_text(const Notice& notice) {
   json message{{"type", "notice"}, {"level", name_of(notice.level)}, {"text", notice.text}};
   if (notice.share) message["share"] = *notice.share;
+  if (notice.over) message["over"] = true;
   return text_of(message);
 }
 

@@ -84,11 +84,12 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   message.normals = {{0, 0, 1}, {1, 0, 0}};
   message.trust = {7, 255};
   message.radii = {1, 0.25F};
+  message.faded = true;
   const std::string bytes = encode(message);
   ASSERT_EQ(bytes.size(), 40u + 2 * (6 + 3 + 2 + 1 + 1));
   EXPECT_EQ(u8(bytes, 0), 2);
   EXPECT_EQ(u8(bytes, 1), 2);
-  EXPECT_EQ(u16(bytes, 2), 15);
+  EXPECT_EQ(u16(bytes, 2), 31);
   EXPECT_EQ(u32(bytes, 4), 2u);
   EXPECT_EQ(test::number_at<double>(bytes, 8), 7.25);
   expect_vector(bytes, 16, {1, 10, 5});

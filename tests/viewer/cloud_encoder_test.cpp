@@ -161,5 +161,27 @@ TEST(CloudEncoder, DrawsWhatIsOnlySeenByItsOwnSpacing) {
   }
 }
 
+TEST(CloudEncoder, KeepsTheLastCloudOfASilentSensorAndSaysThatItHasFaded) {
+  Scene scene;
+  Source& source = scene.add("sensor");
+  PointCloud cloud;
+  for (int i = 0; i < 400; ++i) {
+    cloud.positions.emplace_back(4e-3F * static_cast<float>(i % 20),
+                                 4e-3F * static_cast<float>(i / 20), 0);
+  }
+  for (const double now : {0.0, 0.1}) ASSERT_TRUE(source.push(cloud, now, [=] { return now; }));
+  CloudEncoder encoder(scene, Eigen::Vector3d::Zero());
+  const double gone = source.state().silent_from + source.state().fade + 1;
+  const auto flags = [&](double now) {
+    const auto encoded = encoder.encode({1000}, now);
+    EXPECT_EQ(test::u32(*encoded.at(0).bytes, 4), 400u);
+    return test::u16(*encoded.at(0).bytes, 2);
+  };
+  EXPECT_EQ(flags(0.1) & 16, 0);
+  EXPECT_EQ(flags(gone) & 16, 16);
+  ASSERT_TRUE(source.push(cloud, gone, [=] { return gone; }));
+  EXPECT_EQ(flags(gone) & 16, 0);
+}
+
 }  // namespace
 }  // namespace palpate::viewer

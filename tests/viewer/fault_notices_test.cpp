@@ -39,6 +39,9 @@ TEST(FaultNotices, WhatLastsIsPresentUntilItEnds) {
   EXPECT_TRUE(faults.update(stalled, {}).empty());
   EXPECT_EQ(faults.present(), Notices{kDark});
   const std::vector runs{stream(StreamState::Phase::running, kDark.text, 5)};
+  Notice taken_back = kDark;
+  taken_back.over = true;
+  EXPECT_EQ(faults.update(runs, {}), Notices{taken_back});
   EXPECT_TRUE(faults.update(runs, {}).empty());
   EXPECT_TRUE(faults.present().empty());
 }
@@ -60,7 +63,9 @@ TEST(FaultNotices, AFaultThatIsForgottenAndLatchedAgainIsTold) {
   const std::vector<DeviceFault> well{{"one", Guard::Fault::none}};
   const std::vector<DeviceFault> failed{{"one", Guard::Fault::device}};
   EXPECT_EQ(faults.update({}, failed).size(), 1u);
-  EXPECT_TRUE(faults.update({}, well).empty());
+  const Notices over = faults.update({}, well);
+  ASSERT_EQ(over.size(), 1u);
+  EXPECT_TRUE(over.front().over);
   EXPECT_TRUE(faults.present().empty());
   EXPECT_EQ(faults.update({}, failed).size(), 1u);
 }

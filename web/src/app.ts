@@ -161,6 +161,7 @@ export class App {
         this.world.takeSources(message.sources);
         return this.sources.update(message.robot);
       case "notice":
+        if (message.over === true) return this.notices.takeBack(message.text);
         return this.notices.add(message.level, message.text, message.share, this.passes(message.text));
       case "record":
         return this.bar.recording(message.on, message.file);

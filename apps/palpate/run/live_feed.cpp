@@ -14,6 +14,9 @@ namespace {
 
 // Between looks at where tools are. A hand of 1 m/s goes 5 mm, less than a block; judgement.
 constexpr std::chrono::milliseconds kIdle{5};
+// s after which a simulated camera has stalled: below it is a busy machine, which is no fault of a
+// sensor's; judgement.
+constexpr double kSimulatedStall = 1;
 
 }  // namespace
 
@@ -27,6 +30,8 @@ LiveFeed::LiveFeed(LoadedScene& loaded, const Clock& clock, double start, Record
       preparing_.emplace_back([this, i](const std::stop_token& stop) { prepare(i, stop); });
     }
     if (!from.camera) continue;
+    const bool simulated = from.camera->info().name.starts_with("simulated");
+    options.stall = simulated ? kSimulatedStall : StreamOptions().stall;
     Feeding feed = feeding(loaded, i, recorder);
     streams_.emplace_back(*from.camera, loaded.scene.source(i).name(), std::move(feed.sink), clock,
                           options, std::move(feed.ended));

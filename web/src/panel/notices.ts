@@ -50,6 +50,11 @@ export class Notices {
     }
   }
 
+  /** What it said is true no more; the list of messages keeps it. */
+  takeBack(text: string): void {
+    for (const notice of this.shown) if (kindOf(notice.text) === kindOf(text)) this.remove(notice);
+  }
+
   private put(level: NoticeLevel, text: string, share?: number): void {
     const alike = kindOf(text);
     const same = this.shown.find((notice) => kindOf(notice.text) === alike && notice.level === level);

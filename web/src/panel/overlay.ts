@@ -30,6 +30,13 @@ export class Overlay {
     this.showAxes();
     this.showScale();
     this.showRamp();
+    this.showFaded();
+  }
+
+  private showFaded(): void {
+    const age = this.world.fadedAge;
+    byId("faded").hidden = age === undefined;
+    if (age !== undefined) say(byId("faded"), `grey: last seen ${age.toFixed(age < 10 ? 1 : 0)} s ago, not felt`);
   }
 
   private showAxes(): void {

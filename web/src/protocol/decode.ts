@@ -55,6 +55,7 @@ export interface CloudMessage {
   normals: Int8Array | undefined; // octahedral
   trust: Uint8Array | undefined; // 255 is 1
   radii: Uint8Array | undefined; // as radiusOf() reads them
+  faded: boolean; // not confirmed for so long that it cannot be felt any more
 }
 
 export interface SurfaceMessage {
@@ -152,6 +153,7 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
     normals: normals ? new Int8Array(buffer, afterColours, 2 * count) : undefined,
     trust: trust ? new Uint8Array(buffer, afterNormals, count) : undefined,
     radii: radii ? new Uint8Array(buffer, afterTrust, count) : undefined,
+    faded: (flags & 16) !== 0,
   };
 }
 

@@ -78,7 +78,7 @@ export type FromProgram =
   | { type: "settings"; values: Record<string, SettingValue> }
   | { type: "devices"; devices: DeviceReport[] }
   | { type: "sources"; sources: SourceReport[]; robot?: string }
-  | { type: "notice"; level: NoticeLevel; text: string; share?: number } // of work that takes a while, 0 to 1
+  | { type: "notice"; level: NoticeLevel; text: string; share?: number; over?: boolean } // share: of work that takes a while, 0 to 1
   | { type: "record"; on: boolean; file?: string }
   | ({ type: "time" } & Moment)
   | { type: "envelope"; forces: number[] } // N, the largest in equal parts of the length

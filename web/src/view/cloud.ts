@@ -31,6 +31,7 @@ function makeMaterial(ramps: Texture): ShaderMaterial {
       hasNormals: { value: false },
       sourceColour: { value: [0.5, 0.5, 0.5] },
       age: { value: 0 },
+      faded: { value: false },
       heights: { value: new Vector2(0, 1) },
       up: { value: new Vector3(0, 0, 1) },
       disc: { value: 1 },
@@ -46,6 +47,7 @@ export class Cloud {
   count = 0;
   whole = 0; // points that are felt; 0: not known
   private even = 0.002; // m, between points that lie evenly
+  faded = false; // cannot be felt any more
   hasNormals = false;
   private hasColours = false;
   private hasTrust = false;
@@ -70,6 +72,8 @@ export class Cloud {
     if (message.count >= this.capacity) this.grow(message.count + 1); // an empty one, too, has its columns
     this.count = message.count;
     this.stamp = message.stamp;
+    this.faded = message.faded;
+    this.points.material.uniforms["faded"]!.value = message.faded;
     this.hasColours = message.colours !== undefined;
     this.hasNormals = message.normals !== undefined;
     this.hasTrust = message.trust !== undefined;

@@ -6,6 +6,7 @@ export const kCloudVertex = /* glsl */ `
   uniform bool hasNormals;
   uniform vec3 sourceColour;
   uniform float age;        // 0 fresh to 1 stale
+  uniform bool faded;       // cannot be felt any more: grey
   uniform vec2 heights;     // low, high
   uniform vec3 up;
   uniform float disc;       // radius of a point's disc, in R
@@ -49,6 +50,8 @@ export const kCloudVertex = /* glsl */ `
     } else {
       colour = sourceColour;
     }
+
+    if (faded) colour = vec3(0.35 + 0.3 * dot(colour, vec3(0.3, 0.6, 0.1)));
 
     facing = vec3(0.0, 0.0, 1.0);
     if (hasNormals) {

@@ -188,6 +188,12 @@ export class World {
     return scaleBar(this.stage.pixelAt(this.navigation.controls.target), this.stage.canvas.clientWidth);
   }
 
+  /** s, of the oldest shown cloud that cannot be felt any more, as nothing confirms it. */
+  get fadedAge(): number | undefined {
+    const ages = this.shownClouds().filter((cloud) => cloud.faded).map((cloud) => this.time - cloud.stamp);
+    return ages.length > 0 ? Math.max(...ages) : undefined;
+  }
+
   /** What is asked for; where no cloud knows it, what tells several sources apart, or height. */
   get colouring(): Colouring {
     const { colouring } = this.look;
