@@ -36,7 +36,7 @@ export class LookPanel {
     this.add({
       key: "colouring", label: "Colour by", kind: "choice", choices: names,
       value: kColouringNames[this.look.colouring],
-    }, (value) => (this.look.colouring = kColourings[names.indexOf(String(value))] ?? "height"));
+    }, (value) => (this.look.colouring = kColourings[names.indexOf(String(value))] ?? "own"));
     this.add({
       key: "disc", label: "Point size", unit: "× R", kind: "number", least: 0.2, most: 2,
       step: 0.1, value: this.look.disc,

@@ -6,6 +6,8 @@ import {
   Vector3, Vector4, WebGLRenderTarget, type IUniform, type PerspectiveCamera, type WebGLRenderer,
 } from "three";
 
+import { screenColour } from "./colours";
+
 export const kCloudLayer = 1; // of what is drawn into the backdrop
 const kPairs = 10; // of places that are compared with each
 const kHollow = 28; // style-sheet pixels to the farthest of them (judgement)
@@ -69,13 +71,15 @@ const kShade = /* glsl */ `
       return;
     }
 
+    // Each pixel begins elsewhere on its spiral (interleaved gradient noise, Jimenez 2014): no ghosts of edges.
+    float turn = 6.283 * fract(52.98 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.005837))));
     float away = far(own);
     float hollow = 0.0;
     float edge = 0.0;
     for (int i = 0; i < ${kPairs}; i += 1) {
       float part = (float(i) + 0.5) / float(${kPairs});
       float pixels = reach * mix(1.4, ${kHollow.toFixed(1)}, part * part);
-      float angle = 2.4 * float(i); // the golden one: places all around
+      float angle = turn + 2.4 * float(i); // the golden one: places all around
       ivec2 way = ivec2(round(pixels * vec2(cos(angle), sin(angle))));
       float between = 0.5 * (depth(here + way) + depth(here - way));
       float deeper = away - far(between); // m
@@ -89,7 +93,7 @@ const kShade = /* glsl */ `
   }
 `;
 
-/** With soft shadows below the tools, as a lamp straight above casts them. */
+/** With soft shadows below the tools, as a lamp straight above casts them on what is not steep; dents glow. */
 const kShow = /* glsl */ `
   uniform sampler2D colours;
   uniform highp sampler2D depths;
@@ -97,25 +101,31 @@ const kShow = /* glsl */ `
   uniform vec2 slopes; // of the picture's edges
   uniform vec3 up;
   uniform vec4 casters[4]; // place, as the eye has it, and radius, m
+  uniform float heats[4];
+  uniform vec3 hot;
   uniform int count; // of them
   in vec2 at;
   out vec4 shown;
   void main() {
     float depth = texture(depths, at).r;
-    if (depth >= 1.0) discard; // nothing there: the canvas keeps its ground
-    gl_FragDepth = depth;
     float far = 2.0 * range.x * range.y / (range.y + range.x - (2.0 * depth - 1.0) * (range.y - range.x));
     vec3 seen = far * vec3((2.0 * at - 1.0) * slopes, -1.0);
+    vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
+    if (depth >= 1.0) discard; // nothing there: the canvas keeps its ground
+    gl_FragDepth = depth;
+    float level = smoothstep(0.1, 0.5, dot(normal, up));
     float light = 1.0;
+    float glow = 0.0;
     for (int i = 0; i < count; i += 1) {
       float radius = casters[i].w;
       vec3 way = casters[i].xyz - seen;
       float above = dot(way, up);
       float wide = radius + 0.2 * max(above, 0.0); // softer from higher up (judgement)
       float aside = dot(way, way) - above * above;
-      light -= 0.5 * smoothstep(-radius, 0.0, above) * (radius / wide) * exp(-aside / (wide * wide));
+      light -= 0.5 * level * smoothstep(-radius, 0.0, above) * (radius / wide) * exp(-aside / (wide * wide));
+      glow = max(glow, heats[i] * exp(-0.25 * dot(way, way) / (radius * radius)));
     }
-    shown = vec4(texture(colours, at).rgb * max(light, 0.4), 1.0);
+    shown = vec4(mix(texture(colours, at).rgb * max(light, 0.4), hot, 0.8 * glow), 1.0);
   }
 `;
 
@@ -126,10 +136,11 @@ function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mes
   return mesh;
 }
 
-/** What throws a shadow. */
+/** What throws a shadow, and lets what it touches glow. */
 export interface Caster {
   place: Vector3;
   radius: number; // m
+  heat: number; // 0 to 1
 }
 
 export interface Wanted {
@@ -149,6 +160,7 @@ export class Backdrop {
   private readonly flat = new OrthographicCamera();
   private readonly range = { value: [0, 1] };
   private readonly casters = [0, 1, 2, 3].map(() => new Vector4());
+  private readonly heats = [0, 0, 0, 0];
   private eye = "";
   private clouds = "";
   private drawn = -Infinity; // ms
@@ -164,9 +176,13 @@ export class Backdrop {
     this.shading.add(this.shade);
     this.screen = screen(kShow, {
       colours: { value: this.shaded.texture }, depths: { value: this.shaded.depthTexture }, range: this.range, slopes: { value: [1, 1] }, up: { value: new Vector3() },
-      casters: { value: this.casters }, count: { value: 0 },
+      casters: { value: this.casters }, heats: { value: this.heats }, hot: { value: [0, 0, 0] }, count: { value: 0 },
     });
     this.screen.renderOrder = -1;
+  }
+
+  retint(): void {
+    this.screen.material.uniforms["hot"]!.value = screenColour("--force");
   }
 
   /** Draws the clouds of a scene, unless `clouds` and eye are as they were. While the eye stands still, clouds that
@@ -202,7 +218,8 @@ export class Backdrop {
     uniforms["slopes"]!.value = [1 / projection[0], 1 / projection[5]];
     (uniforms["up"]!.value as Vector3).copy(up).transformDirection(camera.matrixWorldInverse);
     uniforms["count"]!.value = Math.min(casters.length, this.casters.length);
-    casters.slice(0, this.casters.length).forEach(({ place, radius }, i) => {
+    casters.slice(0, this.casters.length).forEach(({ place, radius, heat }, i) => {
+      this.heats[i] = heat;
       this.casters[i]!.set(...place.clone().applyMatrix4(camera.matrixWorldInverse).toArray(), radius);
     });
   }

@@ -14,6 +14,7 @@ export const kColourings = ["source", "height", "normal", "age", "own", "trust"]
 export type Colouring = (typeof kColourings)[number];
 
 const kStale = 1; // s, the age that shows as stale
+const kTint = 0.4; // of a source's colour in clay (judgement)
 
 function makeMaterial(ramps: Texture): ShaderMaterial {
   return new ShaderMaterial({
@@ -46,6 +47,8 @@ export class Cloud {
   stamp = NaN;
   count = 0;
   whole = 0; // points that are felt; 0: not known
+  private ownTint = [0, 0, 0];
+  private clay = [0, 0, 0];
   private even = 0.002; // m, between points that lie evenly
   faded = false; // cannot be felt any more
   hasNormals = false;
@@ -65,7 +68,8 @@ export class Cloud {
   }
 
   retint(): void {
-    this.points.material.uniforms["sourceColour"]!.value = screenColour(sourceColour(this.source));
+    this.ownTint = screenColour(sourceColour(this.source));
+    this.clay = screenColour("--clay");
   }
 
   take(message: CloudMessage): void {
@@ -95,12 +99,16 @@ export class Cloud {
   }
 
   knows(colouring: Colouring): boolean {
-    return (colouring !== "own" || this.hasColours) && (colouring !== "trust" || this.hasTrust);
+    return colouring !== "trust" || this.hasTrust;
   }
 
-  shade(colouring: Colouring, age: number, heights: Vector2, up: Vector3): void {
+  /** Without colours of its own it is of clay; beside `others`, of clay with its source's tint. */
+  shade(colouring: Colouring, others: boolean, age: number, heights: Vector2, up: Vector3): void {
     const uniforms = this.points.material.uniforms;
-    uniforms["mode"]!.value = kColourings.indexOf(this.knows(colouring) ? colouring : "height");
+    const isPlain = !this.knows(colouring) || (colouring === "own" && !this.hasColours);
+    uniforms["mode"]!.value = kColourings.indexOf(isPlain ? "source" : colouring);
+    const share = !isPlain ? 1 : others ? kTint : 0;
+    uniforms["sourceColour"]!.value = this.clay.map((part, i) => part + share * (this.ownTint[i]! - part));
     uniforms["hasNormals"]!.value = this.hasNormals;
     uniforms["age"]!.value = Number.isFinite(age) ? Math.min(Math.max(age / kStale, 0), 1) : 0;
     uniforms["heights"]!.value = heights;

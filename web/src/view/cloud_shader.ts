@@ -57,8 +57,8 @@ export const kCloudVertex = /* glsl */ `
     if (hasNormals) {
       facing = mat3(viewMatrix) * normal;
       if (dot(facing, seen.xyz) > 0.0) facing = -facing;
-      vec3 light = normalize(vec3(0.35, 0.55, 0.75));
-      float shade = 0.52 + 0.56 * max(dot(facing, light), 0.0);
+      vec3 light = normalize(vec3(0.4, 0.75, 0.55));
+      float shade = 0.6 + 0.48 * dot(facing, light); // as of a sky: no face is black
       colour *= mode == 2 || mode == 4 ? mix(1.0, shade, 0.35) : shade;
     }
   }

@@ -68,6 +68,7 @@ export class Stage {
 
   retint(): void {
     this.renderer.setClearColor(colourOf("--view"));
+    this.backdrop.retint();
     this.wanted = true;
   }
 

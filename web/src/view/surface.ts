@@ -40,7 +40,6 @@ const kFragment = /* glsl */ `
 `;
 
 const kWide = 0.28; // of the patch, where a press shows (judgement)
-const kFirm = 2; // N, that colour it by 63 %
 
 export class Surface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
@@ -85,9 +84,9 @@ export class Surface {
   }
 
   /** Colours it under the proxy by the force there. */
-  press(tool: { proxyPlace: Vector3; force: Vector3; touching: boolean }): void {
+  press(tool: { proxyPlace: Vector3; heat: number }): void {
     this.proxy.copy(tool.proxyPlace).sub(this.place).divideScalar(this.mesh.scale.x);
-    this.mesh.material.uniforms["force"]!.value = tool.touching ? 1 - Math.exp(-tool.force.length() / kFirm) : 0;
+    this.mesh.material.uniforms["force"]!.value = tool.heat;
   }
 
   /** lift: towards the eye, above the points that lie in the surface, m. */

@@ -21,6 +21,8 @@ const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
 const kEndOn = 0.85; // cosine between the arrow and the way to the eye, from which on it is seen end on
+const kRingPixels = 30; // radius of the ring of an arrow that is seen end on, at most
+const kFirm = 2; // N, that lets the dent glow by 63 %
 const kShadow = 1.6; // of its ball, where its shadow is half as dark (judgement)
 const kEdge = 0.94; // of the half picture, where an arrow ends (judgement)
 const kSides = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(([x, y]) => new Vector4(x, y, 0, kEdge)); // inner products are above 0 inside
@@ -200,7 +202,12 @@ export class Tool {
   /** The ball that is seen of it: the proxy in contact, else the hand. */
   get caster(): Caster {
     const ball = this.touching ? this.proxy : this.hand;
-    return { place: this.touching ? this.proxyPlace : this.hipPlace, radius: kShadow * ball.scale.x };
+    return { place: this.touching ? this.proxyPlace : this.hipPlace, radius: kShadow * ball.scale.x, heat: this.heat };
+  }
+
+  /** How much its dent glows, 0 to 1. */
+  get heat(): number {
+    return this.touching ? 1 - Math.exp(-this.force.length() / kFirm) : 0;
   }
 
   /** How far it is to the surface, m; undefined where it is no farther than points are apart. */
@@ -255,7 +262,7 @@ export class Tool {
     this.endOn.visible = Math.abs(along.dot(towards)) > kEndOn;
     this.endOn.position.copy(this.proxyPlace);
     this.endOn.quaternion.setFromUnitVectors(kForward, towards);
-    this.endOn.scale.setScalar(start + 0.5 * length);
+    this.endOn.scale.setScalar(Math.min(start + 0.5 * length, kRingPixels * pixel));
     this.head.scale.set(headLength * 0.45, headLength, headLength * 0.45);
   }
 }

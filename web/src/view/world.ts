@@ -194,11 +194,10 @@ export class World {
     return ages.length > 0 ? Math.max(...ages) : undefined;
   }
 
-  /** What is asked for; where no cloud knows it, what tells several sources apart, or height. */
+  /** What is asked for, if a cloud knows it. */
   get colouring(): Colouring {
     const { colouring } = this.look;
-    if (this.clouds.some((cloud) => cloud.knows(colouring))) return colouring;
-    return colouring === "own" && this.clouds.length > 1 ? "source" : "height";
+    return this.clouds.some((cloud) => cloud.knows(colouring)) ? colouring : "own";
   }
 
   /** The first place of the eye: gets better with each source that is known, until somebody takes it. */
@@ -225,7 +224,7 @@ export class World {
     const { look, stage, colouring } = this;
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
-      cloud.shade(colouring, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
+      cloud.shade(colouring, this.clouds.length > 1, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
       cloud.scale(look.disc, stage.pixelScale);
     });
     // Whatever else is asked for, the eye and what clouds are made of decide what they look like.

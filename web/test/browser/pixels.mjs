@@ -57,6 +57,18 @@ export async function filled(page) {
   });
 }
 
+/** Which part of the view is of a strong colour: more than a third of what a channel can hold from grey. */
+export async function vivid(page) {
+  return (await viewOf(page)).evaluate((data) => {
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const [least, most] = [Math.min, Math.max].map((of) => of(data[i], data[i + 1], data[i + 2]));
+      if (most - least > 85) count += 1;
+    }
+    return (4 * count) / data.length;
+  });
+}
+
 /** How many cells of one view are in shadow that are not in another: darker, but not black, and of the same colour. */
 export function shaded(page, one, other) {
   return page.evaluate(([first, second]) => {
