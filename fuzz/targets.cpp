@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "bag/mcap_check.hpp"
 #include "bag/mcap_reader.hpp"
 #include "e57_pages_of.hpp"
 #include "io/copc.hpp"
@@ -112,6 +113,8 @@ void check_mcap(std::span<const std::byte> bytes) {
   }
   expect(zeros < std::size_t{1} << 40, "messages without end");
   expect(contents.closed || !contents.losses.empty(), "a loss that is not told");
+  bag::Contents checked = contents;
+  bag::check(bag::RandomFile(file.path()), checked);
   for (std::size_t i = 0; i < contents.attachments.size(); ++i) {
     try {
       expect(reader.attachment(i).data.size() <= bytes.size(), "an attachment");

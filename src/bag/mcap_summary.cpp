@@ -79,7 +79,7 @@ void McapSummary::describe(Bytes& out, std::uint16_t number) {
 
 Bytes McapSummary::ending(const Totals& after, std::uint64_t at) const {
   Bytes out;
-  Record(out, Op::data_end).numbers(std::uint32_t{0});
+  Record(out, Op::data_end).numbers(after.crc);
   const std::size_t summary = out.size();
   Bytes offsets;
   const auto group = [&](Op op, const auto& fill) {

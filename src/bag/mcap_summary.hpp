@@ -27,6 +27,7 @@ struct McapSummary {
     std::uint64_t messages = 0;
     std::uint64_t start = UINT64_MAX;
     std::uint64_t end = 0;
+    std::uint32_t crc = 0;  // of all bytes
     std::uint32_t chunks = 0;
     std::uint32_t attachments = 0;
     std::uint32_t metadata = 0;

@@ -212,6 +212,7 @@ void McapWriter::commit(Bytes& data, McapSummary::Totals after) {
   const std::uint64_t end = end_ + data.size();
   for (std::size_t i = 0; i < summary_.index.size(); ++i)
     after.indexed[i] = summary_.index[i].size();
+  after.crc = static_cast<std::uint32_t>(crc32_z(after.crc, data.data(), data.size()));
   const bool ends = after.indexed[0] < kSmallEnding;
   if (ends) {
     const Bytes tail = summary_.ending(after, end);

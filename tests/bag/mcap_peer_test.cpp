@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bag/bags.hpp"
+#include "bag/mcap_check.hpp"
 #include "message/display_types.hpp"
 
 namespace palpate::bag {
@@ -142,7 +143,12 @@ TEST_F(McapPeer, WritesBagsThatAreRead) {
       EXPECT_EQ(point.y, 1) << kind;
     }
     EXPECT_EQ(next, 1000) << kind;
-    EXPECT_TRUE(contents.losses.empty()) << kind << ": " << contents.losses[0];
+    Contents checked = contents;
+    check(RandomFile(path), checked);
+    // Without chunks @mcap/core writes attachments later than where it says.
+    std::erase(checked.losses,
+               "the summary's index of the attachment at byte 39 is not what is there");
+    EXPECT_TRUE(checked.losses.empty()) << kind << ": " << checked.losses[0];
   }
 }
 

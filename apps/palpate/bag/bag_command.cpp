@@ -16,6 +16,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/report.hpp"
+#include "bag/mcap_check.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/mcap_writer.hpp"
 
@@ -84,8 +85,7 @@ void add_topics(Report& report, const bag::Contents& contents) {
   }
 }
 
-Report report_of(const std::string& path, const bag::Contents& contents, const Losses& losses,
-                 bool checked) {
+Report report_of(const std::string& path, const bag::Contents& contents, bool checked) {
   const bool any = contents.messages > 0;
   Report report(path, fmt::format("MCAP, profile '{}', written by {}", contents.profile,
                                   contents.library.empty() ? "?" : contents.library));
@@ -103,8 +103,8 @@ Report report_of(const std::string& path, const bag::Contents& contents, const L
   for (const bag::AttachmentPlace& place : contents.attachments) {
     report.item("attachments", "attached", "{name}, {bytes} bytes", place.head.name, place.size);
   }
-  add_losses(report, losses);
-  if (losses.empty()) {
+  add_losses(report, contents.losses);
+  if (contents.losses.empty()) {
     report.note("damaged", checked ? "nothing" : "nothing seen; --check reads all of it");
   }
   return report;
@@ -115,17 +115,13 @@ void tell(const BagCommand& command) {
   std::optional<OutputFile> json;
   if (!command.json.empty()) json.emplace(command.json);
   bag::McapReader reader(command.input);
-  Losses unread;
   if (command.check) {
     const Waiting waiting("reading " + command.input);
     for (bag::Message message; reader.next(message);) continue;
-    for (std::size_t i = 0; i < reader.contents().attachments.size(); ++i) {
-      (void)attachment_of(reader, i, unread);
-    }
   }
-  const bag::Contents& contents = reader.contents();
-  const Report report =
-      report_of(command.input, contents, with(contents.losses, unread), command.check);
+  bag::Contents contents = reader.contents();
+  if (command.check) bag::check(bag::RandomFile(command.input), contents);
+  const Report report = report_of(command.input, contents, command.check);
   report.print(command.json == "-" ? stderr : stdout);
   write_whole(json, text_of(report.data));
 }
@@ -173,7 +169,7 @@ void add_bag_options(CLI::App& command, BagCommand& bag) {
     each->add_option("file", bag.input, "an MCAP file")->required()->type_name("FILE");
   }
   bag.info->add_flag("--check", bag.check,
-                     "read all messages and attachments and check their CRCs");
+                     "read all of it, and check its CRCs and indexes against what is there");
   add_json_option(*bag.info, bag.json);
   bag.recover->add_option("output", bag.output, "the new file; never overwrites one")
       ->required()
