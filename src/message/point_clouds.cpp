@@ -96,6 +96,7 @@ void set(io::Row& row, const Column& column, const std::byte* point, std::endian
 }  // namespace
 
 PointCloud cloud_of(const PointCloud2& message) {
+  if (message.width == 0 || message.height == 0) return {};
   check_layout(message);
   io::Columns optional;
   const std::vector<Column> columns = columns_of(message, optional);
@@ -115,6 +116,7 @@ PointCloud cloud_of(const PointCloud2& message) {
       builder.add(row);
     }
   }
+  if (builder.size() == 0) return {};
   PointCloud cloud = builder.finish(kName).cloud;
   cloud.viewpoint = Eigen::Vector3d::Zero();
   return cloud;

@@ -7,8 +7,9 @@ namespace palpate::message {
 
 /// The points of a message in its frame of reference: any layout of fields, either byte order.
 /// Normals, colours ("rgb", "rgba" as PCL packs them) and intensities are kept, points that are not
-/// finite dropped. Organised clouds keep their pixels, and are seen from the frame's origin.
-/// @throws Error that says what contradicts itself, or when there is no point.
+/// finite dropped; there may be none left. Organised clouds keep their pixels, and are seen from
+/// the frame's origin.
+/// @throws Error that says what contradicts itself.
 [[nodiscard]] PointCloud cloud_of(const PointCloud2& message);
 
 /// Positions and normals (where `cloud` has them) as float32; the header stays for the caller to

@@ -46,8 +46,9 @@ std::optional<Objection> check_form(const DepthFrame& frame) {
   return {};
 }
 
-bool is_empty(std::span<const float> depth) {
-  return std::ranges::none_of(depth, [](float z) { return std::isfinite(z) && z > 0; });
+bool is_empty(const DepthFrame& frame) {
+  if (frame.cloud) return frame.cloud->empty();
+  return std::ranges::none_of(frame.depth, [](float z) { return std::isfinite(z) && z > 0; });
 }
 
 // A sum that any changed bit changes: multiply and add, over eight lanes so that a frame costs a
@@ -86,10 +87,8 @@ Objection objection_to(DepthCamera::Status status, const std::string& reason) {
 std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double latest) {
   if (auto objection = check_form(frame); objection && !frame.cloud) return objection;
   if (auto objection = check_stamp(frame.stamp, latest)) return objection;
-  if (!frame.cloud) {
-    if (auto objection = check_size(frame)) return objection;
-    if (auto objection = check_picture(frame)) return objection;
-  }
+  if (auto objection = frame.cloud ? std::nullopt : check_size(frame)) return objection;
+  if (auto objection = check_picture(frame)) return objection;
   stamp_ = frame.stamp;
   return {};
 }
@@ -131,11 +130,12 @@ std::optional<Objection> FrameCheck::check_size(const DepthFrame& frame) {
 }
 
 std::optional<Objection> FrameCheck::check_picture(const DepthFrame& frame) {
-  if (is_empty(frame.depth)) {
-    return Objection{&StreamState::Drops::empty,
-                     "a frame without any depth: is the lens covered, or everything out of range?"};
+  if (is_empty(frame)) {
+    return Objection{
+        &StreamState::Drops::empty,
+        "a frame without any depth or point: is the lens covered, or everything out of range?"};
   }
-  if (allow_repeats_) return {};
+  if (allow_repeats_ || frame.cloud) return {};
   const std::uint64_t picture = sum_of(frame.depth);
   if (picture_ == picture) {
     return Objection{&StreamState::Drops::repeated, "a frame identical to the previous one"};

@@ -170,7 +170,9 @@ DepthFrame first_frame(DepthCamera& camera, std::size_t* failures) {
   const int tries = info.paces ? static_cast<int>(kPatience / kAnswerWait) : kAnswerTries;
   for (int i = 0; i < tries || info.awaits_sender; ++i) {
     const DepthCamera::Status status = camera.read(frame, kAnswerWait);
-    if (status == DepthCamera::Status::frame) return frame;
+    const bool is_frame = status == DepthCamera::Status::frame;
+    if (is_frame && !(frame.cloud && frame.cloud->empty())) return frame;
+    if (is_frame) problem = "its clouds have no points";
     if (failures != nullptr && is_failure(status)) ++*failures;
     if (!camera.reason().empty() && problem != camera.reason()) {
       problem = camera.reason();

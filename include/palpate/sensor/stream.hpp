@@ -20,7 +20,7 @@ struct StreamState {
     std::uint64_t overtaken = 0;  ///< a newer one came before preparation was ready for it
     std::uint64_t repeated = 0;   ///< bit for bit the one before
     std::uint64_t late = 0;       ///< taken no later than the one before, or at no sensible time
-    std::uint64_t empty = 0;      ///< not one pixel with a depth: a covered lens
+    std::uint64_t empty = 0;      ///< not one pixel with a depth, or no point: a covered lens
     std::uint64_t garbage = 0;    ///< damaged, or contradicts itself
     std::uint64_t unposed = 0;    ///< without a pose, in a recording that has poses
     std::uint64_t resized = 0;    ///< of another size than those before, until that size lasts
