@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bag/chunk.hpp"
+#include "bag/other_file.hpp"
 
 namespace palpate::bag {
 
@@ -51,9 +52,7 @@ class Walk {
 
 Contents Walk::run() {
   const Bytes magic = file_.read(0, std::min<std::uint64_t>(file_.size(), kMagic.size()));
-  if (!std::ranges::equal(magic, kMagic)) {
-    throw Error(file_.path() + ": is no MCAP file; name one that ROS 2 or palpate recorded");
-  }
+  if (!std::ranges::equal(magic, kMagic)) refuse_other(file_);
   read_summary();
   std::uint64_t at = kMagic.size();
   for (Known& known : known_) {

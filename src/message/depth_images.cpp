@@ -86,6 +86,12 @@ void copy_row(const Image& image, std::size_t v, std::span<T> row) {
   if (image.is_bigendian != 0) std::ranges::for_each(row, swap_bytes<T>);
 }
 
+// 0: nothing was measured.
+float metres_of(float z, std::optional<double> unit) {
+  if (unit) z *= static_cast<float>(*unit);
+  return std::isfinite(z) && z > 0 ? z : 0.0F;
+}
+
 // image_transport's head of compressed depth: how 32-bit depths became 16 bits, z = a / (value -
 // b).
 struct CompressedHead {
@@ -147,7 +153,7 @@ std::string info_topic(const std::string& image_topic) {
   return image_topic.substr(0, name_in(image_topic)) + "/camera_info";
 }
 
-void read_depth(const Image& image, DepthFrame& frame) {
+void read_depth(const Image& image, DepthFrame& frame, std::optional<double> unit) {
   const bool is_float = image.encoding == "32FC1";
   if (!is_float && image.encoding != "16UC1" && image.encoding != "mono16") {
     throw Error(fmt::format(
@@ -165,16 +171,15 @@ void read_depth(const Image& image, DepthFrame& frame) {
     const std::span row(frame.depth.data() + v * image.width, image.width);
     if (is_float) {
       copy_row(image, v, row);
-      std::ranges::replace_if(
-          row, [](float z) { return !(std::isfinite(z) && z > 0); }, 0.0F);
+      std::ranges::transform(row, row.begin(), [&](float z) { return metres_of(z, unit); });
     } else {
       copy_row(image, v, std::span(steps));
-      to_metres(steps, kMillimetre, row);
+      to_metres(steps, unit.value_or(kMillimetre), row);
     }
   }
 }
 
-void read_depth(const CompressedImage& image, DepthFrame& frame) {
+void read_depth(const CompressedImage& image, DepthFrame& frame, std::optional<double> unit) {
   const bool has_head = image.format.find("compressedDepth") != std::string::npos;
   if (image.format.find("rvl") != std::string::npos) {
     throw Error("depth compressed by RVL; set the publisher's compressedDepth format to png");
@@ -188,10 +193,11 @@ void read_depth(const CompressedImage& image, DepthFrame& frame) {
   }
   const io::DepthImage png = read_png(bytes);
   set_size(frame, static_cast<std::uint32_t>(png.width), static_cast<std::uint32_t>(png.height));
-  if (!image.format.starts_with("32FC1")) return to_metres(png.samples, kMillimetre, frame.depth);
+  if (!image.format.starts_with("32FC1"))
+    return to_metres(png.samples, unit.value_or(kMillimetre), frame.depth);
   std::ranges::transform(png.samples, frame.depth.begin(), [&](std::uint16_t value) {
     const float z = head.a / (static_cast<float>(value) - head.b);
-    return value != 0 && std::isfinite(z) && z > 0 ? z : 0.0F;
+    return value != 0 ? metres_of(z, unit) : 0.0F;
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "message/sensor_types.hpp"
 #include "palpate/depth/depth_frame.hpp"
@@ -24,12 +25,13 @@ namespace palpate::message {
 [[nodiscard]] std::string info_topic(const std::string& image_topic);
 
 /// Puts the depths of an image, 16UC1 (mm) or 32FC1 (m), into `frame.depth` and its size into
-/// `frame.camera`. Stamp, pose and the rest of the camera stay as they are.
+/// `frame.camera`. Stamp, pose and the rest of the camera stay as they are. `unit`: the metres a
+/// step, where it is another one.
 /// @throws Error when it holds no such depths.
-void read_depth(const Image& image, DepthFrame& frame);
+void read_depth(const Image& image, DepthFrame& frame, std::optional<double> unit = {});
 
 /// The same of image_transport's "compressedDepth", or of a 16-bit PNG.
-void read_depth(const CompressedImage& image, DepthFrame& frame);
+void read_depth(const CompressedImage& image, DepthFrame& frame, std::optional<double> unit = {});
 
 /// `frame` as an image of 32FC1, and its camera; stamps and frames of reference stay for the caller
 /// to set.

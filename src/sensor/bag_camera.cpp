@@ -84,7 +84,10 @@ class BagRecording final : public Recording {
 };
 
 BagRecording::BagRecording(const BagName& name)
-    : file_(name.file), reader_(name.files), frames_(topic_of(reader_, name)), frame_(name.frame) {
+    : file_(name.file),
+      reader_(name.files),
+      frames_(topic_of(reader_, name), name.options.unit),
+      frame_(name.options.frame) {
   measure();
   learn_camera();
   learn_what_stands_still();
@@ -237,7 +240,8 @@ Status BagRecording::show(const BagImage& image, DepthFrame& frame, std::string&
 
 DriverInfo bag_driver() {
   return {.name = "bag",
-          .description = "bags of ROS 2 (MCAP): bag:FILE[:TOPIC][,frame=FRAME] (docs/bags.md)",
+          .description =
+              "bags of ROS 2 (MCAP): bag:FILE[:TOPIC][,frame=FRAME][,unit=METRES] (docs/bags.md)",
           .missing = {},
           .devices = {}};
 }

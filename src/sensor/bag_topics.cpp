@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/text_scanner.hpp"
+#include "message/depth_images.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::sensor {
@@ -20,8 +21,6 @@ namespace fs = std::filesystem;
 using bag::Channel;
 using message::CompressedImage;
 using message::PointCloud2;
-
-constexpr std::string_view kFrameOption = ",frame=";
 
 bool is_there(const std::string& path) {
   std::error_code ignored;
@@ -50,52 +49,60 @@ std::vector<std::string> listed_files(const std::string& folder) {
   return std::ranges::all_of(files, is_mcap) ? files : std::vector<std::string>();
 }
 
-// Finds the files of a recording: ROS 2 records a folder, with one file or several.
-std::vector<std::string> files_of(const std::string& path) {
+// The files in a folder that end so, by name.
+std::vector<std::string> files_with(const std::string& folder, std::string_view ending) {
+  std::vector<std::string> found;
   std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) return {path};
-  std::vector<std::string> found = listed_files(path);
-  if (!found.empty()) return found;
-  for (const auto& entry : fs::directory_iterator(path, ignored)) {
-    if (entry.path().extension() == ".mcap") found.push_back(entry.path().string());
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().string().ends_with(ending)) found.push_back(entry.path().string());
   }
   std::ranges::sort(found);
-  if (found.size() == 1) return found;
-  throw Error(found.empty()
-                  ? fmt::format("{}: there is no MCAP file in this folder; bags of another format "
-                                "become one by 'ros2 bag convert'",
-                                path)
-                  : fmt::format("{}: there are several MCAP files in this folder, and no "
-                                "metadata.yaml that says in which order they are one recording; "
-                                "name one: {}",
-                                path, fmt::join(found, ", ")));
+  return found;
 }
 
-// "" where nobody's message says what it is.
-std::string encoding_of(SplitBag& reader, const std::string& topic) {
+// Do a topic's images hold depths? Grey ones of 16 bits may: nothing in them says so.
+enum class Depths { none, maybe, sure };
+
+const std::string& encoding_of(const message::Image& image) {
+  return image.encoding;
+}
+
+const std::string& encoding_of(const CompressedImage& image) {
+  return image.format;
+}
+
+template <class T>
+Depths depths_in(bag::View data) {
+  T image;
+  decode(data, image);
+  const std::string& encoding = encoding_of(image);
+  if (encoding.starts_with("16UC1") || encoding.starts_with("32FC1")) return Depths::sure;
+  DepthFrame frame;
+  read_depth(image, frame);
+  return Depths::maybe;
+}
+
+// What the first message says, or none if it cannot be read.
+Depths depths_of(SplitBag& reader, const std::string& topic) {
   reader.choose([&](const Channel& channel) {
     return channel.topic == topic &&
            (holds<message::Image>(channel) || holds<CompressedImage>(channel));
   });
   try {
     bag::Message found;
-    if (!reader.next(found)) return {};
-    if (holds<message::Image>(reader.channel_of(found))) {
-      message::Image image;
-      decode(found.data, image);
-      return image.encoding;
-    }
-    CompressedImage image;
-    decode(found.data, image);
-    return image.format;
+    if (!reader.next(found)) return Depths::none;
+    return holds<message::Image>(reader.channel_of(found)) ? depths_in<message::Image>(found.data)
+                                                           : depths_in<CompressedImage>(found.data);
   } catch (const Error&) {
-    return {};
+    return Depths::none;
   }
 }
 
-// Topics of depth images, whose first message says that they are, and of clouds.
+// Topics of depth images, whose first message says that they are, of those that may be, and of
+// clouds.
 struct Fitting {
   std::vector<std::string> images;
+  std::vector<std::string> grey;
   std::vector<std::string> clouds;
 };
 
@@ -107,10 +114,9 @@ Fitting fitting_topics(SplitBag& reader) {
   for (const Channel& channel : reader.channels()) {
     if (holds<PointCloud2>(channel)) add(fitting.clouds, channel.topic);
     if (!holds<message::Image>(channel) && !holds<CompressedImage>(channel)) continue;
-    const std::string encoding = encoding_of(reader, channel.topic);
-    if (encoding.starts_with("16UC1") || encoding.starts_with("32FC1")) {
-      add(fitting.images, channel.topic);
-    }
+    const Depths depths = depths_of(reader, channel.topic);
+    if (depths == Depths::sure) add(fitting.images, channel.topic);
+    if (depths == Depths::maybe) add(fitting.grey, channel.topic);
   }
   return fitting;
 }
@@ -118,6 +124,9 @@ Fitting fitting_topics(SplitBag& reader) {
 std::string in_words(const Fitting& fitting) {
   std::vector<std::string> all = fitting.images;
   all.insert(all.end(), fitting.clouds.begin(), fitting.clouds.end());
+  for (const std::string& topic : fitting.grey) {
+    all.push_back(topic + " (grey of 16 bits, if that is depth)");
+  }
   if (!all.empty()) return fmt::format("name one that fits: {}", fmt::join(all, ", "));
   return "it has neither depth images (sensor_msgs Image or CompressedImage, 16UC1 or 32FC1) nor "
          "clouds (PointCloud2) in ROS 2's encoding; 'palpate bag info' lists what it has";
@@ -125,21 +134,43 @@ std::string in_words(const Fitting& fitting) {
 
 }  // namespace
 
-BagName parse_bag_name(const std::string& name) {
-  if (is_there(name)) return {name, files_of(name), {}, {}};
+std::string bag_file(const std::string& name) {
+  if (is_there(name)) return name;
   const std::size_t topic = name.rfind(":/");
-  const std::size_t option =
-      topic == std::string::npos ? name.rfind(kFrameOption) : name.find(kFrameOption, topic);
-  BagName parsed;
-  parsed.file = name.substr(0, std::min(topic, option));
-  if (topic != std::string::npos) parsed.topic = name.substr(topic + 1, option - topic - 1);
-  if (option != std::string::npos) {
-    parsed.frame = name.substr(option + kFrameOption.size());
-    if (parsed.frame.empty()) {
-      throw Error(fmt::format("bag:{}: no frame is named; write bag:FILE,frame=FRAME", name));
-    }
+  return name.substr(0, topic != std::string::npos ? topic : find_options(name));
+}
+
+std::vector<std::string> recorded_files(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return {path};
+  std::vector<std::string> found = listed_files(path);
+  if (!found.empty()) return found;
+  found = files_with(path, ".mcap");
+  if (found.size() == 1) return found;
+  if (!found.empty()) {
+    throw Error(fmt::format(
+        "{}: there are several MCAP files in this folder, and no metadata.yaml that says in which "
+        "order they are one recording; name one: {}",
+        path, fmt::join(found, ", ")));
   }
-  parsed.files = files_of(parsed.file);
+  for (const char* other : {".db3", ".mcap.zstd", ".bag"}) {
+    found = files_with(path, other);
+    if (!found.empty()) return found;  // whose reader says what they are
+  }
+  throw Error(path + ": there is no MCAP file in this folder; name one that ROS 2 recorded into");
+}
+
+BagName parse_bag_name(const std::string& name) {
+  BagName parsed;
+  parsed.file = bag_file(name);
+  std::string_view rest = std::string_view(name).substr(parsed.file.size());
+  if (rest.starts_with(':')) {
+    parsed.topic = rest.substr(1, rest.find(',') - 1);
+    rest.remove_prefix(1 + parsed.topic.size());
+  }
+  parsed.options =
+      parse_topic_options(rest, fmt::format("bag:{}", name.substr(0, name.size() - rest.size())));
+  parsed.files = recorded_files(parsed.file);
   return parsed;
 }
 
@@ -155,10 +186,10 @@ std::string topic_of(SplitBag& reader, const BagName& name) {
   }
   if (fitting.images.size() == 1) return fitting.images.front();
   if (fitting.images.empty() && fitting.clouds.size() == 1) return fitting.clouds.front();
-  throw Error(fmt::format("{}: {}", name.file,
-                          fitting.images.size() + fitting.clouds.size() == 0
-                              ? in_words(fitting)
-                              : "several topics could be felt; " + in_words(fitting)));
+  throw Error(fmt::format(
+      "{}: {}{}", name.file,
+      fitting.images.size() + fitting.clouds.size() > 1 ? "several topics could be felt; " : "",
+      in_words(fitting)));
 }
 
 }  // namespace palpate::sensor

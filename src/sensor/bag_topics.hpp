@@ -7,20 +7,28 @@
 #include "message/schema.hpp"
 #include "message/sensor_types.hpp"
 #include "sensor/split_bag.hpp"
+#include "sensor/topic_options.hpp"
 
 namespace palpate::sensor {
 
-/// Parts of "FILE[:TOPIC][,frame=FRAME]".
+/// Parts of "FILE[:TOPIC][,frame=FRAME][,unit=METRES]".
 struct BagName {
   std::string file;                ///< or folder, for messages
   std::vector<std::string> files;  ///< that are read, in this order
   std::string topic;               ///< empty: the one that fits
-  std::string frame;               ///< empty: images are placed nowhere
+  TopicOptions options;
 };
 
-/// A file whose name looks like more is taken for what it is. Of a folder, as ROS 2 records into,
-/// the MCAP files that its metadata.yaml lists or, without one, the only one in it. @throws Error
-/// when there are none or it is not said which, or no frame is named.
+/// The file or folder that such a name begins with. One whose name looks like more is taken for
+/// what it is.
+[[nodiscard]] std::string bag_file(const std::string& name);
+
+/// The files of a recording: of a folder, as ROS 2 records into, the MCAP files that its
+/// metadata.yaml lists or, without one, the only one in it, or a recording of another kind.
+/// @throws Error when there are none, or it is not said which.
+[[nodiscard]] std::vector<std::string> recorded_files(const std::string& path);
+
+/// @throws Error as recorded_files() and parse_topic_options() do.
 [[nodiscard]] BagName parse_bag_name(const std::string& name);
 
 /// Are these messages of T, in ROS 2's encoding?

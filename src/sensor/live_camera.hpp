@@ -26,9 +26,10 @@ namespace palpate::sensor {
                                                          const CameraOptions& options);
 
 [[nodiscard]] DriverInfo ros_driver();
-/// `name`: "TOPIC[,frame=FRAME]", a topic of depth images (Image of 16UC1 or 32FC1 with the
-/// CameraInfo beside it, or CompressedImage) or of PointCloud2, whose publisher may appear later.
-/// With a frame, /tf and /tf_static say where the sensor is in it. Stamps of programs on this
+/// `name`: "TOPIC[,frame=FRAME][,unit=METRES]", a topic of depth images (Image of 16UC1 or 32FC1
+/// with the CameraInfo beside it, or CompressedImage) or of PointCloud2, whose publisher may appear
+/// later. With a frame, /tf and /tf_static say where the sensor is in it; a unit is the metres a
+/// step of depths or coordinates, where they are not what the type says. Stamps of programs on this
 /// machine's clock are brought to the stream's; others (10 s off) are replaced by the time of
 /// arrival. The environment says in which domain (dds::environment_options()).
 [[nodiscard]] std::unique_ptr<DepthCamera> open_ros(const std::string& name,
@@ -43,11 +44,11 @@ namespace palpate::sensor {
                                                        const CameraOptions& options);
 
 [[nodiscard]] DriverInfo bag_driver();
-/// `name`: "FILE[:TOPIC][,frame=FRAME]", depth images or clouds (as for open_ros()) in an MCAP bag
-/// of ROS 2's messages, which is read as it is played; without a topic the only one that fits. With
-/// a frame, the bag's transforms say where the sensor is in it, those recorded up to 0.1 s after
-/// the image included. Played as PlayedCamera does. What is damaged of the file is left out and
-/// told as damaged frames.
+/// `name`: "FILE[:TOPIC][,frame=FRAME][,unit=METRES]", depth images or clouds (as for open_ros())
+/// in an MCAP bag of ROS 2's messages, which is read as it is played; without a topic the only one
+/// that fits. With a frame, the bag's transforms say where the sensor is in it, those recorded up
+/// to 0.1 s after the image included. Played as PlayedCamera does. What is damaged of the file is
+/// left out and told as damaged frames.
 /// @throws Error when it is no bag, or no topic or camera in it can be used; lists what can.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_bag(const std::string& name,
                                                     const CameraOptions& options);

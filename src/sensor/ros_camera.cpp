@@ -13,6 +13,7 @@
 #include "palpate/base/error.hpp"
 #include "sensor/live_camera.hpp"
 #include "sensor/ros_frames.hpp"
+#include "sensor/topic_options.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -40,26 +41,17 @@ constexpr Quality kSensor{.reliable = false, .depth = 2};
 constexpr Quality kTf{.reliable = true, .depth = 100};
 constexpr Quality kTfStatic{.reliable = true, .depth = 100, .stays = true};
 
-// A topic and where its images are to be placed.
 struct CameraName {
   std::string topic;
-  std::string frame;  // empty: nowhere
+  TopicOptions options;
 };
 
 CameraName parse(const std::string& name) {
   const std::size_t comma = std::min(name.find(','), name.size());
-  CameraName parsed{name.substr(0, comma), {}};
-  if (!parsed.topic.starts_with('/'))
+  const std::string topic = name.substr(0, comma);
+  if (!topic.starts_with('/'))
     throw Error(fmt::format("ros:{}: names of topics begin with '/'", name));
-  if (comma == name.size()) return parsed;
-  const std::string option = name.substr(comma + 1);
-  if (!option.starts_with("frame=") || option.size() == 6 ||
-      option.find(',') != std::string::npos) {
-    throw Error(
-        fmt::format("ros:{}: '{}' is not an option; write ros:TOPIC,frame=FRAME", name, option));
-  }
-  parsed.frame = option.substr(6);
-  return parsed;
+  return {topic, parse_topic_options(std::string_view(name).substr(comma), "ros:" + topic)};
 }
 
 // Collects transforms from /tf and /tf_static.
@@ -98,11 +90,11 @@ class RosCamera final : public DepthCamera {
  public:
   RosCamera(const std::string& name, const Clock* clock)
       : name_(parse(name)),
-        frames_(name_.topic),
+        frames_(name_.topic, name_.options.unit),
         info_{.name = "ros:" + name_.topic, .rate = 30, .paces = true, .repeats = true},
         clock_(clock != nullptr ? *clock : host_),
         participant_(dds::environment_options()) {
-    if (!name_.frame.empty()) transforms_.emplace(participant_);
+    if (!name_.options.frame.empty()) transforms_.emplace(participant_);
     // Says at once when the topic's name is none.
     infos_.emplace(participant_, frames_.info_topic(), kSensor);
   }
@@ -251,7 +243,7 @@ bool RosCamera::place(const Header& header, DepthFrame& frame) {
   // Counted from the stamp: an image that waited already does not keep the next ones waiting.
   for (const double end = frame.stamp + kTransformWait; !frame.T_world_sensor;) {
     frame.T_world_sensor =
-        transforms_->newest().find(name_.frame, header.frame_id, stamp, &reason_);
+        transforms_->newest().find(name_.options.frame, header.frame_id, stamp, &reason_);
     const double left = end - clock_.now();
     if (frame.T_world_sensor || left <= 0) break;
     transforms_->wait(std::min(left, 0.01));
@@ -264,7 +256,8 @@ bool RosCamera::place(const Header& header, DepthFrame& frame) {
 
 DriverInfo ros_driver() {
   return {.name = "ros",
-          .description = "topics of ROS 2: ros:TOPIC[,frame=FRAME] ('palpate ros' lists them)",
+          .description =
+              "topics of ROS 2: ros:TOPIC[,frame=FRAME][,unit=METRES] ('palpate ros' lists them)",
           .missing = {},
           .devices = {}};
 }

@@ -26,7 +26,7 @@ void RosFrames::lose_camera(std::string why) {
 void RosFrames::fill_image(const auto& image, DepthFrame& frame) const {
   if (!camera_) throw Error(fmt::format("{}: {}", info_topic_, no_camera_));
   frame.camera = *camera_;
-  read_depth(image, frame);
+  read_depth(image, frame, unit_);
   if (frame.camera.width != camera_->width || frame.camera.height != camera_->height) {
     throw Error(fmt::format("an image of {} x {} pixels, but {} describes {} x {}",
                             frame.camera.width, frame.camera.height, info_topic_, camera_->width,
@@ -45,7 +45,12 @@ void RosFrames::fill(const message::CompressedImage& image, DepthFrame& frame) c
 void RosFrames::fill(const message::PointCloud2& points, DepthFrame& frame) const {
   frame.depth.clear();
   frame.colors.clear();
-  frame.cloud = std::make_shared<const PointCloud>(cloud_of(points));
+  PointCloud cloud = cloud_of(points);
+  if (unit_) {
+    cloud.origin *= *unit_;
+    for (Eigen::Vector3f& position : cloud.positions) position *= static_cast<float>(*unit_);
+  }
+  frame.cloud = std::make_shared<const PointCloud>(std::move(cloud));
 }
 
 }  // namespace palpate::sensor

@@ -13,8 +13,9 @@ namespace palpate::sensor {
 /// from: a topic that is there now, or a recording. One thread at a time.
 class RosFrames {
  public:
-  explicit RosFrames(std::string topic)
-      : topic_(std::move(topic)), info_topic_(message::info_topic(topic_)) {}
+  /// `unit`: metres a step of depths and coordinates; none: as the messages' type says.
+  explicit RosFrames(std::string topic, std::optional<double> unit = {})
+      : topic_(std::move(topic)), info_topic_(message::info_topic(topic_)), unit_(unit) {}
 
   [[nodiscard]] const std::string& topic() const { return topic_; }
   [[nodiscard]] const std::string& info_topic() const { return info_topic_; }
@@ -36,6 +37,7 @@ class RosFrames {
 
   std::string topic_;
   std::string info_topic_;
+  std::optional<double> unit_;
   std::optional<CameraModel> camera_;
   std::string no_camera_ = "no CameraInfo has come yet";
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include "bag/mcap_check.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/mcap_writer.hpp"
+#include "sensor/bag_topics.hpp"
 
 namespace palpate::app {
 
@@ -110,18 +112,27 @@ Report report_of(const std::string& path, const bag::Contents& contents, bool ch
   return report;
 }
 
+// The file of a bag, which may be named by the folder that ROS 2 recorded it into.
+std::string file_in(const std::string& path) {
+  const std::vector<std::string> files = sensor::recorded_files(path);
+  if (files.size() == 1) return files.front();
+  throw Error(fmt::format("{}: this recording was split into several MCAP files; name one: {}",
+                          path, fmt::join(files, ", ")));
+}
+
 void tell(const BagCommand& command) {
   check_distinct({{"the bag", command.input}}, {{"--json", command.json}});
   std::optional<OutputFile> json;
   if (!command.json.empty()) json.emplace(command.json);
-  bag::McapReader reader(command.input);
+  const std::string path = file_in(command.input);
+  bag::McapReader reader(path);
   if (command.check) {
     const Waiting waiting("reading " + command.input);
     for (bag::Message message; reader.next(message);) continue;
   }
   bag::Contents contents = reader.contents();
-  if (command.check) bag::check(bag::RandomFile(command.input), contents);
-  const Report report = report_of(command.input, contents, command.check);
+  if (command.check) bag::check(bag::RandomFile(path), contents);
+  const Report report = report_of(path, contents, command.check);
   report.print(command.json == "-" ? stderr : stdout);
   write_whole(json, text_of(report.data));
 }
@@ -134,7 +145,7 @@ void recover(const BagCommand& command) {
                     command.output));
   }
   const Waiting waiting("reading " + command.input);
-  bag::McapReader reader(command.input);
+  bag::McapReader reader(file_in(command.input));
   const bag::Contents& contents = reader.contents();
   bag::McapWriter writer(command.output, {.profile = contents.profile});
   std::map<std::uint16_t, std::uint16_t> numbers;
@@ -166,7 +177,9 @@ void add_bag_options(CLI::App& command, BagCommand& bag) {
   bag.recover = command.add_subcommand(
       "recover", "Write what can be read of a damaged or unfinished bag to a new one");
   for (CLI::App* each : {bag.info, bag.recover}) {
-    each->add_option("file", bag.input, "an MCAP file")->required()->type_name("FILE");
+    each->add_option("file", bag.input, "an MCAP file, or the folder that ROS 2 recorded it into")
+        ->required()
+        ->type_name("FILE");
   }
   bag.info->add_flag("--check", bag.check,
                      "read all of it, and check its CRCs and indexes against what is there");

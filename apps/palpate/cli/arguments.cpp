@@ -16,6 +16,7 @@
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_filter.hpp"
+#include "sensor/bag_topics.hpp"
 
 namespace palpate::app {
 namespace {
@@ -67,12 +68,7 @@ std::string free_name(const std::string& wanted, const std::set<std::string>& ta
 
 std::string file_of(const std::string& source) {
   if (!source.starts_with(kBag)) return io::split_scan(source).file;
-  // The file in "runs/monday.mcap:/camera/depth,frame=world".
-  const std::string text = source.substr(kBag.size());
-  std::error_code none;
-  if (std::filesystem::exists(text, none)) return text;
-  const std::size_t topic = text.rfind(":/");
-  return text.substr(0, topic != std::string::npos ? topic : text.rfind(",frame="));
+  return sensor::bag_file(source.substr(kBag.size()));
 }
 
 std::vector<double> parse_numbers(const std::string& text, std::size_t count,

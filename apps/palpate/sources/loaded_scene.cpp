@@ -41,6 +41,17 @@ double middle_depth(const DepthFrame& frame) {
   return median(depths);
 }
 
+// What sets the metres a step of a source's depths, as words after others; cameras know theirs.
+std::string unit_advice(const std::string& path) {
+  const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
+  if (name.starts_with(kBag) || name.starts_with(kRos)) {
+    return fmt::format(", or give the metres a step of depth: {},unit=METRES", path);
+  }
+  if (name.starts_with(kSequence))
+    return ", or correct the metres a step, depth_unit_m in its sequence.json";
+  return lives(path) ? "" : ", or give the metres a step (--depth-unit)";
+}
+
 // Refuses a frame that measured something, and nothing in range: its unit may be another one.
 void check_range(const CloudArgument& source, const DepthFrame& frame,
                  const DepthFilterOptions& range) {
@@ -52,9 +63,8 @@ void check_range(const CloudArgument& source, const DepthFrame& frame,
   if (middle == 0) return;
   throw Error(
       fmt::format("{}: all depths are nearer than {} m or farther than {} m (median {:.4g} m); "
-                  "widen the range (--nearest, --farthest), or correct the unit (depth_unit_m of a "
-                  "recording, --depth-unit of an image)",
-                  source.path, range.nearest, range.farthest, middle));
+                  "widen the range (--nearest, --farthest){}",
+                  source.path, range.nearest, range.farthest, middle, unit_advice(source.path)));
 }
 
 // Farther away the proxy would fault in every step.

@@ -69,10 +69,11 @@ struct CameraOptions {
 };
 
 /// Opens a camera by name: "simulated[:SCENE[,KEY=VALUE]...]" (docs/simulated_cameras.md),
-/// "sequence:DIR" (docs/sequences.md), "bag:FILE[:TOPIC][,frame=FRAME]" (docs/bags.md),
-/// "openni2[:URI]" (PrimeSense, Xtion; without URI the first that is there), "openni2:FILE.oni" or
-/// just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first is 0), "ros:TOPIC[,frame=FRAME]"
-/// (docs/ros2.md), "remote[:PATH]" (docs/remote_camera.md). Set-up: one thread at a time.
+/// "sequence:DIR" (docs/sequences.md), "bag:FILE[:TOPIC][,frame=FRAME][,unit=METRES]"
+/// (docs/bags.md), "openni2[:URI]" (PrimeSense, Xtion; without URI the first that is there),
+/// "openni2:FILE.oni" or just "FILE.oni", "freenect[:NUMBER]" (Kinect v1; the first is 0),
+/// "ros:TOPIC[,frame=FRAME][,unit=METRES]" (docs/ros2.md), "remote[:PATH]" (docs/remote_camera.md).
+/// Set-up: one thread at a time.
 /// @throws Error when the name is none of these, when the build lacks the driver, when there is no
 ///   such camera, it is in use or may not be used; says what to do.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,
