@@ -18,7 +18,8 @@ _Three = Union[Sequence[float], NDArray[Any]]
 _Matrix = Union[NDArray[Any], Sequence[Sequence[float]]]
 """(4, 4): a rigid motion."""
 _Path = Union[str, os.PathLike[str]]
-_Cloud = Union["PointCloud", _Path, _Reals]
+_Points = Union[_Reals, NDArray[np.void]]  # structured: x, y, z
+_Cloud = Union["PointCloud", _Path, _Points]
 _Policy = Literal["replace", "average", "crossfade", "morph"]
 _Kind = Literal["balanced", "pointset", "metaball"]
 _Kernel = Literal["wyvill", "wendland"]
@@ -29,7 +30,7 @@ _Orientation = Literal["automatic", "viewpoint", "outward", "given"]
 class Error(ValueError): ...
 
 class PointCloud:
-    def __init__(self, points: _Reals, *, normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
+    def __init__(self, points: _Points, *, normals: _Reals | None = ..., colors: NDArray[np.uint8] | None = ...,
                  intensities: _Reals | None = ..., viewpoint: _Three | None = ...) -> None: ...
     def __len__(self) -> int: ...
     @property
@@ -115,6 +116,8 @@ class SourceState:
     def depth(self) -> float: ...
     @property
     def disagreement(self) -> float | None: ...
+    @property
+    def problem(self) -> str: ...
 
 class Source:
     @property

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "geometry/rotation.hpp"
 #include "palpate/base/error.hpp"
@@ -60,6 +61,21 @@ std::string reshaped(const std::string& what, const py::array& array,
   return fmt::format("{}.reshape({})", what, fmt::join(shape, ", "));
 }
 
+// The columns of points with named coordinates; anything else as it is.
+py::object coordinates(const py::object& given) {
+  if (!py::isinstance<py::array>(given) || py::hasattr(given, "mask")) return given;
+  const py::object names = given.attr("dtype").attr("names");
+  if (names.is_none()) return given;
+  for (const auto& triple : {std::array{"x", "y", "z"}, std::array{"f0", "f1", "f2"}}) {
+    const auto there = [&](const char* name) { return names.contains(name); };
+    if (!std::ranges::all_of(triple, there)) continue;
+    py::list columns;
+    for (const char* name : triple) columns.append(given[name].attr("ravel")());
+    return py::module_::import("numpy").attr("stack")(columns, py::arg("axis") = 1);
+  }
+  return given;
+}
+
 }  // namespace
 
 py::array readable(const py::object& given, const std::string& what,
@@ -71,6 +87,13 @@ py::array readable(const py::object& given, const std::string& what,
   }
   const auto array = py::reinterpret_borrow<py::array>(given);
   const NumberType* const type = type_for(array.dtype(), types);
+  if (type == nullptr && !array.dtype().attr("names").is_none()) {
+    refuse(
+        what, fmt::format("has the fields {}", words(array.dtype().attr("names"))),
+        fmt::format("numpy.lib.recfunctions.structured_to_unstructured({}[[...]]) with the names "
+                    "of those that it is made of",
+                    what));
+  }
   if (type == nullptr) {
     refuse(what, fmt::format("holds {}", words(array.dtype())),
            fmt::format("{}.astype(np.{})", what, first));
@@ -89,7 +112,7 @@ py::array readable(const py::object& given, const std::string& what,
 }
 
 Vectors::Vectors(const py::object& given, const std::string& what)
-    : array_(readable(given, what, {kFloat64, kFloat32}, {-1, 3})),
+    : array_(readable(coordinates(given), what, {kFloat64, kFloat32}, {-1, 3})),
       size_(static_cast<std::size_t>(array_.shape(0))) {
   if (array_.itemsize() == kFloat32.bytes) {
     narrow_ = static_cast<const float*>(array_.data());
@@ -108,8 +131,14 @@ py::array view_of(std::span<const Eigen::Vector3f> column, const py::handle& own
   return view_of(data, {static_cast<py::ssize_t>(column.size()), 3}, owner);
 }
 
-Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix) {
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+Eigen::Isometry3d pose_of(const Eigen::MatrixXd& matrix) {
+  if (matrix.cols() != 4 || (matrix.rows() != 4 && matrix.rows() != 3)) {
+    throw Error(fmt::format(
+        "a pose has shape ({}, {}); give a (4, 4) matrix from sensor to world, or its first three "
+        "rows",
+        matrix.rows(), matrix.cols()));
+  }
+  if (matrix.rows() == 4 && matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw Error("a pose's last row is not 0, 0, 0, 1; give a (4, 4) matrix from sensor to world");
   }
   if (!is_rotation(matrix.topLeftCorner<3, 3>())) {
@@ -117,8 +146,8 @@ Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix) {
         "a pose is not finite, scales, shears or mirrors; give a rotation and a shift, and scale "
         "the data");
   }
-  Eigen::Isometry3d pose;
-  pose.matrix() = matrix;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.affine() = matrix.topRows<3>();
   return pose;
 }
 

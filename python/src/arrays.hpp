@@ -36,7 +36,8 @@ inline constexpr NumberType kUint8{'u', 1, "uint8"};
                                  std::initializer_list<NumberType> types,
                                  const std::vector<py::ssize_t>& shape);
 
-/// (n, 3) coordinates, read where they are if they fit. Reading needs no GIL.
+/// (n, 3) coordinates, read where they are if they fit; of structured arrays, as ROS's and
+/// RealSense's modules give them, the fields x, y, z or f0, f1, f2. Reading needs no GIL.
 class Vectors {
  public:
   /// @throws py::type_error as readable() does.
@@ -83,7 +84,8 @@ class Away {
   std::scoped_lock<Mutexes...> locks_;
 };
 
-/// A rigid motion of a (4, 4) matrix. @throws Error when it is none.
-[[nodiscard]] Eigen::Isometry3d pose_of(const Eigen::Matrix4d& matrix);
+/// A rigid motion of a (4, 4) matrix, or of the first three rows of one. @throws Error when it is
+/// none.
+[[nodiscard]] Eigen::Isometry3d pose_of(const Eigen::MatrixXd& matrix);
 
 }  // namespace palpate::python

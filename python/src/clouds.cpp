@@ -66,7 +66,7 @@ std::shared_ptr<PointCloud> new_cloud(const py::object& points, const py::kwargs
   return cloud;
 }
 
-std::shared_ptr<Prepared> prepare_cloud(const py::object& cloud, const Eigen::Matrix4d& pose,
+std::shared_ptr<Prepared> prepare_cloud(const py::object& cloud, const Eigen::MatrixXd& pose,
                                         const py::kwargs& given) {
   Keywords keywords(given, "prepare");
   PrepareOptions options;

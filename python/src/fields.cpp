@@ -89,7 +89,7 @@ py::array_t<double> gradients(AnyField& any, const py::object& given,
   return result;
 }
 
-AnalyticField::Options formula_options(const Eigen::Matrix4d& pose, double tool_radius) {
+AnalyticField::Options formula_options(const Eigen::MatrixXd& pose, double tool_radius) {
   AnalyticField::Options options;
   options.T_world_shape = pose_of(pose);
   options.tool_radius = tool_radius;
@@ -102,7 +102,7 @@ void define_formula(py::module_& module, const char* name, const char* words,
   using Bound = Formula<Shape>;
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
   py::class_<Bound, AnyField, std::shared_ptr<Bound>>(module, name, words)
-      .def(py::init([](Sizes... sizes, const Eigen::Matrix4d& pose, double tool_radius) {
+      .def(py::init([](Sizes... sizes, const Eigen::MatrixXd& pose, double tool_radius) {
              return std::make_shared<Bound>(formula_options(pose, tool_radius), sizes...);
            }),
            names..., py::arg("pose") = identity, py::kw_only(), py::arg("tool_radius") = 0.0,

@@ -10,6 +10,7 @@
 
 #include "arrays.hpp"
 #include "clouds.hpp"
+#include "images.hpp"
 #include "module.hpp"
 #include "options.hpp"
 #include "palpate/base/clock.hpp"
@@ -31,11 +32,13 @@ std::shared_ptr<Made> added(const ScenePointer& scene, const Parts&... parts) {
   auto made = std::make_shared<Made>();
   made->scene = scene;
   made->source = &scene->scene.add(parts...);
+  made->index = scene->scene.size() - 1;
+  scene->problems.resize(scene->scene.size());
   return made;
 }
 
 std::shared_ptr<SharedSource> add_cloud(const ScenePointer& scene, const std::string& name,
-                                        const py::object& given_cloud, const Eigen::Matrix4d& pose,
+                                        const py::object& given_cloud, const Eigen::MatrixXd& pose,
                                         const py::kwargs& given) {
   Keywords keywords(given, "Scene.add");
   SourceOptions options;
@@ -50,7 +53,7 @@ std::shared_ptr<SharedSource> add_cloud(const ScenePointer& scene, const std::st
 }
 
 std::shared_ptr<CloudStream> add_stream(const ScenePointer& scene, const std::string& name,
-                                        const Eigen::Matrix4d& pose, const py::kwargs& given) {
+                                        const Eigen::MatrixXd& pose, const py::kwargs& given) {
   Keywords keywords(given, "Scene.add_stream");
   SourceOptions options;
   options.T_world_sensor = pose_of(pose);
@@ -80,7 +83,7 @@ CameraModel model_of(const std::array<double, 4>& K, const std::array<int, 2>& s
 
 std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string& name,
                                    const py::object& K, const std::array<int, 2>& size,
-                                   const Eigen::Matrix4d& pose, double unit,
+                                   const Eigen::MatrixXd& pose, double unit,
                                    const std::array<double, 5>& distortion,
                                    const py::kwargs& given) {
   Keywords keywords(given, "Scene.add_camera");
@@ -94,6 +97,7 @@ std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string&
   auto camera = added<Camera>(scene, name, options);
   camera->model = model_of(lens, size, distortion);
   camera->unit = unit;
+  camera->range = options.depth;
   return camera;
 }
 
@@ -103,22 +107,8 @@ Source::StartTime start_of(const std::optional<double>& stamp, double latency) {
   return [start = *stamp + latency] { return start; };
 }
 
-// Reads the image into memory of the last one.
-void take_image(const py::array& image, Camera& camera) {
-  const auto count = static_cast<std::size_t>(image.size());
-  camera.frame.camera = camera.model;
-  camera.frame.depth.resize(count);
-  if (image.itemsize() == kFloat32.bytes) {
-    const auto* const depth = static_cast<const float*>(image.data());
-    std::copy(depth, depth + count, camera.frame.depth.begin());
-  } else {
-    to_metres({static_cast<const std::uint16_t*>(image.data()), count}, camera.unit,
-              camera.frame.depth);
-  }
-}
-
 bool push_image(Camera& camera, const py::object& depth, const std::optional<double>& stamp,
-                double latency, const std::optional<Eigen::Matrix4d>& pose) {
+                double latency, const std::optional<Eigen::MatrixXd>& pose) {
   const py::array image =
       readable(depth, "depth", {kUint16, kFloat32}, {camera.model.height, camera.model.width});
   const Away away(camera.mutex);
@@ -130,13 +120,14 @@ bool push_image(Camera& camera, const py::object& depth, const std::optional<dou
   take_image(image, camera);
   camera.frame.T_world_sensor.reset();
   if (pose) camera.frame.T_world_sensor = pose_of(*pose);
+  camera.tell(problem_of(camera, image.itemsize() != kFloat32.bytes));
   const bool taken = camera.source->push(camera.frame, start_of(stamp, latency));
   camera.newest = camera.frame.stamp;
   return taken;
 }
 
 bool push_points(CloudStream& stream, const py::object& points, const std::optional<double>& stamp,
-                 double latency, const std::optional<Eigen::Matrix4d>& pose,
+                 double latency, const std::optional<Eigen::MatrixXd>& pose,
                  const py::kwargs& given) {
   Keywords keywords(given, "CloudStream.push");
   const auto cloud = cloud_of(points, keywords);
@@ -151,10 +142,10 @@ std::size_t size_of(SharedScene& scene) {
   return scene.scene.size();
 }
 
-Source::State state_of(SharedScene& scene, std::size_t index) {
+SourceState state_of(SharedScene& scene, std::size_t index) {
   if (index >= size_of(scene)) throw py::index_error("there is no such source");
-  const Away away;
-  return scene.scene.state(index);
+  const Away away(scene.mutex);
+  return {scene.scene.state(index), scene.problems[index]};
 }
 
 py::object points_of(const SharedSource& source) {
@@ -181,7 +172,7 @@ std::string words(SharedScene& scene) {
 }
 
 void define_state(py::module_& module) {
-  using State = Source::State;
+  using State = SourceState;
   py::class_<State>(module, "SourceState", "State of a source; times in s, lengths in m")
       .def_readonly("frames", &State::frames, "frames and clouds that became a surface")
       .def_readonly("dropped", &State::dropped, "dropped because stalled fields held all snapshots")
@@ -194,9 +185,12 @@ void define_state(py::module_& module) {
       .def_readonly("depth", &State::depth, "median of the last frame")
       .def_readonly("disagreement", &State::disagreement,
                     "with other sources; None: nothing shared")
+      .def_readonly("problem", &State::problem,
+                    "why the last image can be no surface, and what to do; empty: none is known")
       .def("__repr__", [](const State& state) {
-        return fmt::format("<{} frames at {:.1f} Hz, {} dropped, {} points>", state.frames,
-                           state.rate(), state.dropped, state.points);
+        return fmt::format("<{} frames at {:.1f} Hz, {} dropped, {} points{}{}>", state.frames,
+                           state.rate(), state.dropped, state.points,
+                           state.problem.empty() ? "" : "; ", state.problem);
       });
 }
 
@@ -251,8 +245,18 @@ void define_sources(py::module_& module) {
 
 }  // namespace
 
-void SharedSource::set_pose(const Eigen::Matrix4d& T_world_sensor) {
+void SharedSource::set_pose(const Eigen::MatrixXd& T_world_sensor) {
   source->set_pose(pose_of(T_world_sensor));
+}
+
+SourceState SharedSource::state() const {
+  const std::lock_guard lock(scene->mutex);
+  return {source->state(), scene->problems[index]};
+}
+
+void SharedSource::tell(std::string problem) {
+  const std::lock_guard lock(scene->mutex);
+  scene->problems[index] = std::move(problem);
 }
 
 void SharedSource::keep() {

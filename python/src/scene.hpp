@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/scene/scene.hpp"
 
@@ -14,20 +17,28 @@ namespace palpate::python {
 /// A scene that Python, fields and servos share: it stays as long as any of them.
 struct SharedScene {
   Scene scene;
-  std::mutex mutex;  ///< of those who add sources or fields
+  std::mutex mutex;                       ///< of those who add sources or fields, and of `problems`
+  std::deque<std::string> problems = {};  ///< of each source, in words; empty: none
+};
+
+/// State of a source, and why its last frame can be no surface.
+struct SourceState : Source::State {
+  std::string problem = {};  ///< in words; empty: nothing is known against it
 };
 
 /// Source of a shared scene.
 struct SharedSource {
   [[nodiscard]] std::string name() const { return source->name(); }
   [[nodiscard]] Eigen::Matrix4d pose() const { return source->pose().matrix(); }
-  void set_pose(const Eigen::Matrix4d& T_world_sensor);
+  void set_pose(const Eigen::MatrixXd& T_world_sensor);
   [[nodiscard]] Prepared::Report report() const { return source->report(); }
-  [[nodiscard]] Source::State state() const { return source->state(); }
+  [[nodiscard]] SourceState state() const;
+  void tell(std::string problem);
   void keep();
 
   std::shared_ptr<SharedScene> scene;
   Source* source = nullptr;
+  std::size_t index = 0;  ///< in the scene
   std::mutex mutex = {};  ///< of those who push
 };
 
@@ -37,6 +48,7 @@ struct CloudStream : SharedSource {};
 /// A depth camera.
 struct Camera : SharedSource {
   CameraModel model = {};
+  DepthFilterOptions range = {};                             ///< nearest and farthest
   double unit = 1e-3;                                        ///< metres a step of its 16-bit images
   DepthFrame frame = {};                                     ///< memory of the last image
   double newest = -std::numeric_limits<double>::infinity();  ///< stamp of an image, s

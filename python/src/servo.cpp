@@ -70,7 +70,7 @@ Trajectory trajectory_of(const py::object& hand, double dt) {
 
 std::unique_ptr<ServoHandle> new_servo(const std::shared_ptr<SharedScene>& scene,
                                        const std::string& device, const py::object& hand, double dt,
-                                       const Eigen::Matrix4d& pose, double scale,
+                                       const Eigen::MatrixXd& pose, double scale,
                                        const py::kwargs& given) {
   if (!(scale > 0))
     throw Error(fmt::format("a servo's scale cannot be {}; give one above 0", scale));

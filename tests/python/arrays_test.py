@@ -38,6 +38,20 @@ class Refused(unittest.TestCase):
         self.refused(array, "x[:, :3]")
         self.field.value(array[:, :3])
 
+    def test_structured_arrays_of_other_fields(self):
+        """The advice is NumPy's own, and does what it says."""
+        from numpy.lib import recfunctions
+        array = np.zeros(4, [("lon", "f4"), ("lat", "f4"), ("height", "f8")])
+        with self.assertRaises(TypeError) as caught:
+            self.field.value(array)
+        self.assertIn("('lon', 'lat', 'height')", str(caught.exception))
+        self.assertIn("numpy.lib.recfunctions.structured_to_unstructured(x[[...]])", str(caught.exception))
+        self.field.value(recfunctions.structured_to_unstructured(array[["lon", "lat", "height"]]))
+        colors = np.zeros(4, [("r", "u1"), ("g", "u1"), ("b", "u1")])
+        with self.assertRaisesRegex(TypeError, "structured_to_unstructured"):
+            pp.PointCloud(np.zeros((4, 3)), colors=colors)
+        pp.PointCloud(np.zeros((4, 3)), colors=recfunctions.structured_to_unstructured(colors[["r", "g", "b"]]))
+
     def test_no_array(self):
         for thing in ([[0, 0, 0]], None, 3, "points", ball()):
             self.refused(thing, "np.asarray(x, dtype=np.float64)")
@@ -60,7 +74,8 @@ class Refused(unittest.TestCase):
 
     def test_poses(self):
         for pose, words in ((np.diag([1, 1, -1, 1.0]), "mirrors"), (np.diag([2, 2, 2, 1.0]), "scales"),
-                            (np.zeros((4, 4)), "last row"), (np.diag([0, 0, 0, 1.0]), "scales")):
+                            (np.zeros((4, 4)), "last row"), (np.diag([0, 0, 0, 1.0]), "scales"),
+                            (np.eye(3), r"shape \(3, 3\); give a \(4, 4\)"), (np.diag([1, 1, -1, 1.0])[:3], "mirrors")):
             with self.assertRaisesRegex(pp.Error, words):
                 pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48), pose=pose)
             with self.assertRaisesRegex(pp.Error, words):
@@ -106,6 +121,37 @@ class Taken(unittest.TestCase):
         for name in ("float16", "longdouble", "int8", "int64", "uint16", ">f8", ">f4", ">i4"):
             self.same(rows.astype(name))
 
+    def test_structured_arrays(self):
+        """As sensor_msgs_py and ros2_numpy (x, y, z among other fields, in any order) and pyrealsense2 (f0, f1, f2) give them."""
+        random = np.random.default_rng(9)
+        for kind in ([(name, "<f4") for name in ("x", "y", "z", "intensity", "rgb")], [(name, "<f4") for name in ("f0", "f1", "f2")],
+                     {"names": ["z", "ring", "x", "y"], "formats": ["f8", "u2", "f8", "f8"], "offsets": [16, 24, 0, 8], "itemsize": 32},
+                     [("x", ">f4"), ("y", ">f4"), ("z", ">f4")], [("x", "i4"), ("y", "i4"), ("z", "i4")]):
+            for shape in (12, (3, 4), (1, 12)):  # organised clouds are read row by row
+                array = np.zeros(shape, kind)
+                names = ("f0", "f1", "f2") if "f0" in array.dtype.names else ("x", "y", "z")
+                for name in array.dtype.names:
+                    array[name] = random.normal(size=shape) * 10
+                plain = np.stack([array[name].ravel() for name in names], axis=1)
+                np.testing.assert_array_equal(pp.PointCloud(array).points, pp.PointCloud(plain).points)
+                np.testing.assert_array_equal(pp.Sphere(0.05).value(array), pp.Sphere(0.05).value(plain))
+        with self.assertRaisesRegex(TypeError, "structured_to_unstructured"):
+            pp.PointCloud(np.ma.masked_array(np.zeros(3, [("x", "f4"), ("y", "f4"), ("z", "f4")])))
+
+    def test_poses_of_three_rows(self):
+        random = np.random.default_rng(10)
+        points = random.normal(size=(50, 3)) * 0.02
+        for _ in range(10):
+            pose = np.eye(4)
+            pose[:3, :3], pose[:3, 3] = np.linalg.qr(random.normal(size=(3, 3)))[0], random.normal(size=3)
+            pose[:3, 0] *= np.linalg.det(pose[:3, :3])
+            scene = pp.Scene()
+            np.testing.assert_array_equal(scene.add("whole", points, pose=pose).pose, pose)
+            source = scene.add("rows", points, pose=pose[:3])
+            np.testing.assert_array_equal(source.pose, pose)
+            source.set_pose(pose[:3].tolist())
+            np.testing.assert_array_equal(source.pose, pose)
+
     def test_not_aligned(self):
         memory = b"." + np.arange(12.0).tobytes()
         self.same(np.frombuffer(memory, np.uint8)[1:].view(np.float64).reshape(4, 3))
@@ -123,6 +169,24 @@ class Taken(unittest.TestCase):
         wanted = self.pushed(depth[:48])
         for image in (depth[::2], np.full((64, 48), 800, np.uint16).T, depth[:48].astype(">u2"), np.full((48, 64), 0.8)):
             np.testing.assert_allclose(self.pushed(image), wanted, atol=1e-6)
+
+    def test_depth_in_other_units_says_so(self):
+        """The state says why an image is no surface, and what it says makes it one."""
+        for image, words, mended, unit in ((np.full((48, 64), 700, np.float32), "depth * np.float32(0.001)", np.float32(0.001), 1e-3),
+                                           (np.full((48, 64), 60000, np.uint16), "another unit= to add_camera() than 0.001 m a step", 1, 1e-5),
+                                           (np.full((48, 64), 90, np.uint16), "nearer than 0.1 m", 1, 0.01)):
+            scene = pp.Scene()
+            camera = scene.add_camera("desk", K=(500, 500, 32, 24), size=(64, 48))
+            camera.push(image, 0.0)
+            for state in (camera.state(), scene.state(0)):
+                self.assertIn(words, state.problem)
+                self.assertIn("median", repr(state))
+            camera = pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48), unit=unit)
+            camera.push(image * mended, 0.0)
+            self.assertEqual(camera.state().problem, "")
+            self.assertGreater(len(camera.points().points), 100)
+        camera.push(np.zeros((48, 64), np.uint16), 1.0)
+        self.assertEqual(camera.state().problem, "", "nothing was measured: a covered lens is no unit")
 
     def pushed(self, image):
         camera = pp.Scene().add_camera("desk", K=(500, 500, 32, 24), size=(64, 48))
