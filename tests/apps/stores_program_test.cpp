@@ -1,9 +1,15 @@
 // What the program makes of clouds that stay on disk.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/program.hpp"
 
@@ -44,6 +50,50 @@ TEST(Stores, ThatFitAreReadAsAWhole) {
   const nlohmann::json source = nlohmann::json::parse(site.shell.read("run.json"))["sources"][0];
   EXPECT_FALSE(source.contains("points_stored"));
   EXPECT_EQ(source["points_read"], 200'000);
+}
+
+// What a log says of the hand's way and of forces.
+struct Log {
+  explicit Log(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      std::vector<std::string> cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      if (cells.size() < 10) continue;
+      way += fmt::format("{},{},{},{}\n", cells[0], cells[1], cells[2], cells[3]);
+      if (cells[7] == "fx") continue;
+      forces.emplace_back(std::stod(cells[7]), std::stod(cells[8]), std::stod(cells[9]));
+    }
+  }
+
+  std::string way;
+  std::vector<Eigen::Vector3d> forces;  // N
+};
+
+TEST(Stores, AreFeltInPartsAsAsAWholeWithTheSameRadiusAndVoxel) {
+  Site site;
+  const auto log = [&](const std::string& options) {
+    const Outcome run = site.shell.run("touch site --log log.csv " + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return std::pair(run.out, Log(site.shell.read("log.csv")));
+  };
+  site.shell.write("way.csv", log("--duration 1").second.way);
+  const std::string both = "--trajectory way.csv --simulated-time --radius 0.4 --voxel 0.2 ";
+  const auto [told, parts] = log(both + "--cache 8M");
+  const Log whole = log(both).second;
+  EXPECT_THAT(told, testing::Not(HasSubstr("--voxel make it")));
+  ASSERT_EQ(parts.forces.size(), whole.forces.size());
+  double largest = 0;
+  double difference = 0;
+  for (std::size_t i = 0; i < whole.forces.size(); ++i) {
+    largest = std::max(largest, whole.forces[i].norm());
+    difference = std::max(difference, (whole.forces[i] - parts.forces[i]).norm());
+  }
+  EXPECT_GT(largest, 1);
+  EXPECT_LT(difference, 1e-6 * largest);
+  const auto alone = log("--trajectory way.csv --simulated-time --radius 0.4 --cache 8M").first;
+  EXPECT_THAT(alone, HasSubstr("--radius and --voxel make it as the same points in memory"));
 }
 
 TEST(Stores, SayWhatNeedsTheWhole) {

@@ -49,6 +49,14 @@ Report file_report(const LoadedSource& source) {
   return report;
 }
 
+void add_stored(Report& report, const LoadedSource& store) {
+  const PrepareOptions& prepare = store.plan.options.prepare;
+  report.row("stored",
+             "{points_stored} points on disk, of which what is around tools was read"
+             "[{?}; --radius and --voxel make it as the same points in memory with them]",
+             store.declared, !prepare.radius || !prepare.voxel);
+}
+
 Report cloud_report(const LoadedSource& cloud) {
   const Prepared::Report& r = cloud.prepared;
   Report report = file_report(cloud);
@@ -57,10 +65,7 @@ Report cloud_report(const LoadedSource& cloud) {
     add_splats(report, *cloud.splats, cloud.declared, cloud.dropped, r.points_in);
   }
   if (cloud.mesh) add_mesh(report, *cloud.mesh, r.points_in);
-  if (cloud.paged) {
-    report.row("stored", "{points_stored} points on disk, of which what is around tools was read",
-               cloud.declared);
-  }
+  if (cloud.paged) add_stored(report, cloud);
   report.row("points",
              "{points_read} read, {points_felt} felt[, {points_duplicate} duplicates]"
              "[, {points_speckle} dropped as speckle][, {points_invalid} invalid]",
