@@ -166,6 +166,26 @@ TEST(Streams, BrokenImageIsReportedAndTheRestIsFelt) {
   EXPECT_EQ(source["drops"]["garbage"], 1);
 }
 
+TEST(Streams, DepthUnitIsCorrectedWhereTheMessageSays) {
+  Shell shell;
+  write_wall(shell, 6);
+  const auto run = [&] {
+    const Outcome outcome =
+        shell.run("touch wall=sequence:wall --simulated-time --duration 0.5 --json r.json");
+    return outcome.out + outcome.err;
+  };
+  const std::string lens =
+      R"({"width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "fps": 30, )";
+  shell.write("wall/sequence.json", lens + R"("depth_unit_m": 0.5})");
+  const std::string said = run();
+  EXPECT_NE(said.find("correct the metres a step, depth_unit_m in its sequence.json"),
+            std::string::npos)
+      << said;
+  shell.write("wall/sequence.json", lens + R"("depth_unit_m": 0.001})");
+  EXPECT_EQ(run().find("depth_unit_m"), std::string::npos);
+  EXPECT_EQ(Json::parse(shell.read("r.json"))["sources"][0]["frames_touchable"], 6);
+}
+
 TEST(Streams, AFrameWithoutAPoseIsCountedAsSuch) {
   Shell shell;
   write_wall(shell, 6);

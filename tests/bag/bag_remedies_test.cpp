@@ -155,6 +155,16 @@ TEST_F(BagRemedies, UnitIsGivenAsTheMessageSays) {
   expect_plane("bag:run.mcap,unit=1e-5");
 }
 
+TEST_F(BagRemedies, UnitIsGivenBehindTheNameWhereAnOptionOfFilesIsRefused) {
+  record<message::Image>({{"/cam/depth", grey(1e-5, "16UC1")}});
+  for (const char* option : {"--depth-unit 1e-5", "--scale 0.01"}) {
+    const Outcome refused = shell_.run(fmt::format("touch bag:run.mcap {}", option));
+    EXPECT_EQ(refused.code, 2) << option;
+    EXPECT_TRUE(contains(refused.err, ",unit=METRES behind their names")) << refused.err;
+  }
+  expect_plane("bag:run.mcap,unit=1e-5");
+}
+
 TEST_F(BagRemedies, UnitIsGivenBehindATopic) {
   message::Image millimetres = message::image_of(plane());
   for (std::size_t i = 0; i < millimetres.data.size(); i += sizeof(float)) {

@@ -9,6 +9,7 @@
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 
 namespace palpate {
@@ -81,6 +82,16 @@ TEST(RosCamera, GivesFramesInMetresOnTheStreamsClock) {
   EXPECT_FALSE(frame.T_world_sensor);
   EXPECT_LE(frame.stamp, clock.now());
   EXPECT_GT(frame.stamp, begin - 1) << "the clocks are read one after the other";
+}
+
+TEST(RosCamera, GivesFramesInTheUnitThatIsGiven) {
+  Node node;
+  const auto camera = open_camera("ros:/cam/image,unit=0.001");
+  DepthFrame frame;
+  ASSERT_TRUE(gets_frame(*camera, frame, [&] { node.send(now()); })) << camera->reason();
+  EXPECT_FLOAT_EQ(frame.depth.front(), 0.0015F);
+  EXPECT_THAT([] { static_cast<void>(open_camera("ros:/cam/image,unit=mm")); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("ros:/cam/image,unit=METRES")));
 }
 
 TEST(RosCamera, TakesTheTimeOfArrivalOfAnotherClocksStamps) {

@@ -16,7 +16,11 @@ constexpr Scope kStream{&RunFacts::stream,
                         "applies only to cameras and sequences; no source is one"};
 constexpr Scope kImage{&RunFacts::image,
                        "applies only to depth images; clouds do not need it, cameras report their "
-                       "own, and sequences store it in sequence.json"};
+                       "own, sequences store it in sequence.json, and bags in their CameraInfo"};
+constexpr Scope kDepthUnit{&RunFacts::image,
+                           "applies only to depth images; clouds take --scale, cameras report "
+                           "their own, sequences store it in sequence.json, and bags and topics "
+                           "take ,unit=METRES behind their names"};
 constexpr Scope kFiltered{&RunFacts::filtered,
                           "applies only to the depth filter; no source uses it"};
 constexpr Scope kFilteredFrames{
@@ -136,8 +140,8 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
       .add("--scale", o.scale, "FACTOR", positive(),
            "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
       .only_for({&RunFacts::is_static,
-                 "applies only to files; cameras report their own, and sequences store it in "
-                 "sequence.json"});
+                 "applies only to files; cameras report their own, sequences store it in "
+                 "sequence.json, and bags and topics take ,unit=METRES behind their names"});
   table
       .add("--length", o.length, "METRES", positive(),
            "length of the cloud's longest side, instead of --scale; splats have no unit of their "
@@ -157,7 +161,7 @@ void add_reading_options(OptionTable& table, ReadOptions& o) {
   table
       .add("--depth-unit", o.depth_unit, "METRES", positive(),
            "metres per unit of a depth image's pixel values (0.001)")
-      .only_for(kImage);
+      .only_for(kDepthUnit);
 }
 
 namespace {
