@@ -224,6 +224,19 @@ TEST_F(BagRemedies, FileOfAFolderIsNamed) {
   EXPECT_TRUE(contains(one.out, "/cam/depth")) << one.out;
 }
 
+TEST_F(BagRemedies, CameraIsRecordedBesideImagesThatLackIt) {
+  {
+    McapWriter writer(shell_.path("run.mcap"));
+    const auto images = writer.add_topic<message::Image>("/cam/depth");
+    writer.write(images, {kNoon, kNoon}, grey(1e-3, "16UC1"));
+  }
+  const std::string said = refusal("bag:run.mcap");
+  EXPECT_TRUE(contains(said, "/cam/camera_info: there is no CameraInfo; record it with /cam/depth"))
+      << said;
+  record<message::Image>({{"/cam/depth", grey(1e-3, "16UC1")}});
+  expect_plane("bag:run.mcap");
+}
+
 TEST_F(BagRemedies, CutBagIsRecovered) {
   record<message::Image>({{"/cam/depth", grey(1e-3, "16UC1")}});
   std::filesystem::resize_file(shell_.path("run.mcap"),
