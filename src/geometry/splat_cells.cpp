@@ -5,25 +5,16 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "geometry/parallel.hpp"
-#include "palpate/geometry/spacing.hpp"
 
 namespace palpate::detail {
 namespace {
 
-constexpr float kReach = 2;             // sigmas that a splat is sampled to (judgement)
-constexpr float kFaintest = 1.F / 255;  // opacity; renderers pass over less (format)
-constexpr float kMostOpaque = 0.99F;    // opacity; renderers clamp to it (format)
-constexpr int kMostSteps = 35;          // from a splat's middle: 71 x 71 samples (judgement)
-constexpr double kUsualSamples = 400;   // a splat, on the mean; more would fill memory (judgement)
-constexpr double kMostSamples = 2e8;    // of all splats: 3 GB as shares (judgement)
-constexpr std::size_t kMostCells = 8'000'000;  // 1.5 GB with all that is found of them (judgement)
-constexpr double kCoarser = 1.25;              // edges are tried in steps of this (judgement)
-constexpr float kSureShare = 0.5F;  // of the trace, by which l3 has to exceed l2 (measured)
+constexpr float kReach = 2;                  // sigmas that a splat is sampled to (judgement)
+constexpr float kSureShare = 0.5F;           // of the trace, by which l3 exceeds l2 (measured)
 constexpr std::size_t kSplatsAtOnce = 4096;  // that one thread samples (judgement)
 
 // A splat's sampling: a lattice in the plane of its two long axes.
@@ -40,16 +31,9 @@ struct Lattice {
   [[nodiscard]] int size() const { return (2 * long_steps + 1) * (2 * short_steps + 1); }
 };
 
-// Axes of a splat, the shortest first.
-std::array<int, 3> sorted_axes(const Splat& splat) {
-  std::array<int, 3> axes{0, 1, 2};
-  std::ranges::stable_sort(axes, {}, [&](int axis) { return splat.sigma[axis]; });
-  return axes;
-}
-
-int steps_for(float sigma, float edge) {
-  if (2 * kReach * sigma <= edge) return 0;
-  return static_cast<int>(std::min(std::ceil(kReach * sigma / edge), float{kMostSteps}));
+// Steps from the middle of a splat to where it ends.
+float steps_for(float sigma, float edge) {
+  return 2 * kReach * sigma <= edge ? 0 : std::ceil(kReach * sigma / edge);
 }
 
 Lattice lattice_of(const Splat& splat, float edge) {
@@ -59,8 +43,8 @@ Lattice lattice_of(const Splat& splat, float edge) {
   lattice.middle = splat.position;
   lattice.normal = axes.col(a);
   lattice.flatness = splat.sigma[b] > 0 ? 1 - splat.sigma[a] / splat.sigma[b] : 0;
-  lattice.long_steps = steps_for(splat.sigma[c], edge);
-  lattice.short_steps = steps_for(splat.sigma[b], edge);
+  lattice.long_steps = static_cast<int>(steps_for(splat.sigma[c], edge));
+  lattice.short_steps = static_cast<int>(steps_for(splat.sigma[b], edge));
   const auto step = [&](int axis, int steps) -> Eigen::Vector3f {
     return axes.col(axis) * (kReach * splat.sigma[axis] / static_cast<float>(std::max(steps, 1)));
   };
@@ -87,17 +71,6 @@ Sample sample_of(const Lattice& lattice, int k) {
   return sample;
 }
 
-// A splat in a cell, by its strongest sample there.
-struct Share {
-  std::uint64_t key = 0;
-  std::uint32_t splat = 0;
-  std::uint32_t sample = 0;
-
-  [[nodiscard]] bool operator<(const Share& other) const {
-    return std::tie(key, splat) < std::tie(other.key, other.splat);
-  }
-};
-
 struct Candidate {
   std::uint64_t key = 0;
   float opacity = 0;
@@ -105,7 +78,7 @@ struct Candidate {
 };
 
 void add_shares(const Lattice& lattice, const SplatGrid& grid, std::uint32_t splat,
-                std::vector<Candidate>& candidates, std::vector<Share>& shares) {
+                std::vector<Candidate>& candidates, std::vector<SplatShare>& shares) {
   candidates.clear();
   for (int k = 0; k < lattice.size(); ++k) {
     const Sample sample = sample_of(lattice, k);
@@ -124,30 +97,6 @@ void add_shares(const Lattice& lattice, const SplatGrid& grid, std::uint32_t spl
   }
 }
 
-// Every splat's shares, sorted by cell.
-std::vector<Share> shares_of(std::span<const Splat> splats, const SplatGrid& grid) {
-  std::vector<std::vector<Share>> parts((splats.size() + kSplatsAtOnce - 1) / kSplatsAtOnce);
-  parallel_each(parts.size(), 1, [&](std::size_t part) {
-    std::vector<Candidate> candidates;
-    const std::size_t end = std::min(splats.size(), (part + 1) * kSplatsAtOnce);
-    for (std::size_t i = part * kSplatsAtOnce; i < end; ++i) {
-      if (splats[i].opacity < kFaintest) continue;
-      add_shares(lattice_of(splats[i], grid.edge), grid, static_cast<std::uint32_t>(i), candidates,
-                 parts[part]);
-    }
-  });
-  std::vector<Share> shares;
-  shares.reserve(std::accumulate(
-      parts.begin(), parts.end(), std::size_t{0},
-      [](std::size_t sum, const std::vector<Share>& part) { return sum + part.size(); }));
-  for (std::vector<Share>& part : parts) {
-    shares.insert(shares.end(), part.begin(), part.end());
-    part = {};
-  }
-  tbb::parallel_sort(shares.begin(), shares.end());
-  return shares;
-}
-
 // Takes the main direction of the sum of n n^T.
 void set_normal(const Eigen::Matrix3f& sum, SplatCell& cell) {
   const float trace = sum.trace();
@@ -157,14 +106,14 @@ void set_normal(const Eigen::Matrix3f& sum, SplatCell& cell) {
   cell.sure = solved.eigenvalues()[2] - solved.eigenvalues()[1] > kSureShare;
 }
 
-SplatCell cell_of(std::span<const Share> shares, std::span<const Splat> splats,
+SplatCell cell_of(std::span<const SplatShare> shares, std::span<const Splat> splats,
                   const SplatGrid& grid) {
   SplatCell cell;
   cell.key = shares.front().key;
   Eigen::Vector3f offset = Eigen::Vector3f::Zero();  // from the first sample, which keeps digits
   Eigen::Vector3f first = Eigen::Vector3f::Zero();
   Eigen::Matrix3f normals = Eigen::Matrix3f::Zero();
-  for (const Share& share : shares) {
+  for (const SplatShare& share : shares) {
     const Splat& splat = splats[share.splat];
     const Lattice lattice = lattice_of(splat, grid.edge);
     const Sample sample = sample_of(lattice, static_cast<int>(share.sample));
@@ -181,50 +130,8 @@ SplatCell cell_of(std::span<const Share> shares, std::span<const Splat> splats,
   return cell;
 }
 
-// The size such that splats of half the opacity are smaller, m; 0 of none.
-float typical_size(std::span<const Splat> splats) {
-  std::vector<std::pair<float, float>> sizes;  // and opacities
-  double all = 0;
-  for (const Splat& splat : splats) {
-    if (splat.opacity < kLeastOpacity) continue;
-    const auto [a, b, c] = sorted_axes(splat);
-    sizes.emplace_back(std::sqrt(splat.sigma[b] * splat.sigma[c]), splat.opacity);
-    all += static_cast<double>(splat.opacity);
-  }
-  std::ranges::sort(sizes);
-  double sum = 0;
-  for (const auto& [size, opacity] : sizes) {
-    sum += static_cast<double>(opacity);
-    if (2 * sum >= all) return size;
-  }
-  return 0;
-}
-
-// Samples of splats whose two long sigmas these are, m.
-double samples_at(std::span<const std::array<float, 2>> sigmas, float edge) {
-  double sum = 0;
-  for (const auto& [b, c] : sigmas) {
-    sum += (2 * steps_for(b, edge) + 1) * (2 * steps_for(c, edge) + 1);
-  }
-  return sum;
-}
-
-// The smallest edge, in steps from `edge`, at which samples do not fill memory, m.
-float bounded_edge(std::span<const Splat> splats, float edge) {
-  const auto count = static_cast<double>(splats.size());
-  const double most = std::min(kUsualSamples * (count + 1000), std::max(kMostSamples, 2 * count));
-  std::vector<std::array<float, 2>> sigmas;
-  sigmas.reserve(splats.size());
-  for (const Splat& splat : splats) {
-    const auto [a, b, c] = sorted_axes(splat);
-    sigmas.push_back({splat.sigma[b], splat.sigma[c]});
-  }
-  while (samples_at(sigmas, edge) > most) edge *= static_cast<float>(kCoarser);
-  return edge;
-}
-
 // Where each cell begins among sorted shares.
-std::vector<std::size_t> begins_of(std::span<const Share> shares) {
+std::vector<std::size_t> begins_of(std::span<const SplatShare> shares) {
   std::vector<std::size_t> begins;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     if (i == 0 || shares[i].key != shares[i - 1].key) begins.push_back(i);
@@ -234,34 +141,49 @@ std::vector<std::size_t> begins_of(std::span<const Share> shares) {
 
 }  // namespace
 
-SplatGrid grid_for(std::span<const Splat> splats) {
-  SplatGrid grid;
-  grid.edge = typical_size(splats);
-  if (!(grid.edge > 0)) return grid;
-  grid.edge = bounded_edge(splats, grid.edge);
-  std::vector<float> values(splats.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::ranges::transform(splats, values.begin(),
-                           [&](const Splat& s) { return s.position[axis]; });
-    grid.middle[axis] = static_cast<float>(median(values));
-  }
-  return grid;
+std::array<int, 3> sorted_axes(const Splat& splat) {
+  std::array<int, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(axes, {}, [&](int axis) { return splat.sigma[axis]; });
+  return axes;
 }
 
-std::vector<SplatCell> cells_of(std::span<const Splat> splats, SplatGrid& grid) {
-  std::vector<Share> shares = shares_of(splats, grid);
-  std::vector<std::size_t> begins = begins_of(shares);
-  while (begins.size() > kMostCells) {
-    grid.edge *= static_cast<float>(kCoarser);
-    shares = {};  // both would fill memory
-    shares = shares_of(splats, grid);
-    begins = begins_of(shares);
+double samples_of(const Splat& splat, float edge) {
+  const auto [a, b, c] = sorted_axes(splat);
+  const auto wide = [&](int axis) {
+    return 2 * static_cast<double>(steps_for(splat.sigma[axis], edge)) + 1;
+  };
+  return wide(b) * wide(c);
+}
+
+std::vector<SplatShare> shares_of(std::span<const Splat> splats, const SplatGrid& grid) {
+  std::vector<std::vector<SplatShare>> parts((splats.size() + kSplatsAtOnce - 1) / kSplatsAtOnce);
+  parallel_each(parts.size(), 1, [&](std::size_t part) {
+    std::vector<Candidate> candidates;
+    const std::size_t end = std::min(splats.size(), (part + 1) * kSplatsAtOnce);
+    for (std::size_t i = part * kSplatsAtOnce; i < end; ++i) {
+      add_shares(lattice_of(splats[i], grid.edge), grid, static_cast<std::uint32_t>(i), candidates,
+                 parts[part]);
+    }
+  });
+  std::vector<SplatShare> shares;
+  shares.reserve(std::accumulate(
+      parts.begin(), parts.end(), std::size_t{0},
+      [](std::size_t sum, const std::vector<SplatShare>& part) { return sum + part.size(); }));
+  for (std::vector<SplatShare>& part : parts) {
+    shares.insert(shares.end(), part.begin(), part.end());
+    part = {};
   }
+  tbb::parallel_sort(shares.begin(), shares.end());
+  return shares;
+}
+
+std::vector<SplatCell> cells_of(std::span<const SplatShare> shares, std::span<const Splat> splats,
+                                const SplatGrid& grid) {
+  const std::vector<std::size_t> begins = begins_of(shares);
   std::vector<SplatCell> cells(begins.size());
   parallel_each(cells.size(), 256, [&](std::size_t c) {
     const std::size_t end = c + 1 < begins.size() ? begins[c + 1] : shares.size();
-    const std::span<const Share> own(shares.data() + begins[c], end - begins[c]);
-    cells[c] = cell_of(own, splats, grid);
+    cells[c] = cell_of(shares.subspan(begins[c], end - begins[c]), splats, grid);
   });
   return cells;
 }

@@ -16,7 +16,7 @@ namespace palpate::detail {
 /// A grid of cubes, numbered from 0 to kMost along each axis. Neighbours of a cell's key differ
 /// from it by a number that is the same for every cell, and keys sort by x, then y, then z.
 struct SplatGrid {
-  static constexpr int kBits = 20;                         // an axis; two keys make a line's name
+  static constexpr int kBits = 15;  // an axis: two and their signs are a record's key (derived)
   static constexpr std::int64_t kHalf = 1 << (kBits - 1);  // cells from the middle to an end
 
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();  ///< m
@@ -54,14 +54,38 @@ struct SplatCell {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, of any sign; zero: none
   Eigen::Vector3f color = Eigen::Vector3f::Zero();     ///< red, green, blue, 0 to 255
   float depth = 0;    ///< optical depth: light that passes is exp(-depth)
+  float behind = 0;   ///< share of the light that comes from behind the normal
+  float height = 0;   ///< above the position, of where half of the light is gone, m; NaN: nowhere
   bool sure = false;  ///< do its splats agree on the normal?
 };
 
-/// The grid whose cells suit the splats. Its edge is 0 where no splat is opaque or has an extent.
-[[nodiscard]] SplatGrid grid_for(std::span<const Splat> splats);
+/// A splat in a cell, by its strongest sample there.
+struct SplatShare {
+  std::uint64_t key = 0;
+  std::uint32_t splat = 0;
+  std::uint32_t sample = 0;
 
-/// The cells that splats show in, sorted by key. Makes the grid coarser where they would fill
-/// memory.
-[[nodiscard]] std::vector<SplatCell> cells_of(std::span<const Splat> splats, SplatGrid& grid);
+  [[nodiscard]] bool operator<(const SplatShare& other) const {
+    return key != other.key ? key < other.key : splat < other.splat;
+  }
+};
+
+/// Opacity below which renderers pass over a splat.
+inline constexpr float kFaintest = 1.F / 255;
+inline constexpr float kMostOpaque = 0.99F;  ///< renderers clamp opacities to it
+
+/// Axes of a splat, the shortest first.
+[[nodiscard]] std::array<int, 3> sorted_axes(const Splat& splat);
+
+/// Samples that a splat takes in cells of this edge, m. Infinite where no number tells.
+[[nodiscard]] double samples_of(const Splat& splat, float edge);
+
+/// Every splat's shares, sorted by cell.
+[[nodiscard]] std::vector<SplatShare> shares_of(std::span<const Splat> splats,
+                                                const SplatGrid& grid);
+
+/// The cells that the shares are in, sorted by key.
+[[nodiscard]] std::vector<SplatCell> cells_of(std::span<const SplatShare> shares,
+                                              std::span<const Splat> splats, const SplatGrid& grid);
 
 }  // namespace palpate::detail

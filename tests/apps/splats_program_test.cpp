@@ -37,6 +37,21 @@ TEST(SplatsProgram, InfoSaysWhatBecameOfThemAndThatTheyHaveNoUnit) {
   EXPECT_THAT(told.out, testing::Not(HasSubstr("give --length")));
 }
 
+TEST(SplatsProgram, InfoSaysHowManyAreLeftOut) {
+  Shell shell;
+  std::vector<Splat> splats = ball();
+  for (std::size_t i = 0; i < 12; ++i) splats[i].sigma.setConstant(1000);
+  for (std::size_t i = 12; i < 15; ++i) splats[i].position.setConstant(1e9F);
+  for (std::size_t i = 0; i < 15; ++i) splats[i].opacity = 0.5F;
+  shell.write("room.ply", test::splat_ply(splats));
+  const Outcome outcome = shell.run("info room.ply --json i.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("left out: 3 too far away; left out: 12 too large"));
+  const auto info = nlohmann::json::parse(shell.read("i.json"))[0];
+  EXPECT_EQ(info["splats"]["far"], 3);
+  EXPECT_EQ(info["splats"]["huge"], 12);
+}
+
 TEST(SplatsProgram, WrittenPointsAreFeltAsTheSplatsAreBitForBit) {
   Shell shell;
   shell.write("ball.spz", test::spz(ball(), 4));

@@ -213,6 +213,19 @@ TEST(Splats, OfCompressedPlyNeedTheirChunks) {
   EXPECT_THAT(refusal(bytes, "a.ply"), HasSubstr("without an element \"chunk\""));
 }
 
+// max_scale_x of the first of four chunks: 256 splats of 900 become giants.
+TEST(Splats, OfAChunkWithADamagedBoundAreLeftOutAndTold) {
+  std::string bytes = test::compressed_splat_ply(some_splats(900));
+  const CloudFile whole = read_text(bytes, "a.ply");
+  EXPECT_EQ(whole.splats->huge + whole.splats->far, 0u);
+  const std::size_t scale = bytes.find("end_header\n") + 11 + 9 * sizeof(float);
+  overwrite(bytes, scale, 60.F);
+  const CloudFile file = read_text(bytes, "a.ply");
+  EXPECT_GT(file.splats->huge, 50u);  // others are not even finite
+  EXPECT_LE(file.splats->huge + file.dropped, 256u);
+  EXPECT_GT(file.cloud.size(), whole.cloud.size() / 2);
+}
+
 TEST(Splats, OfOtherKindsAreRefusedWithTheirRemedy) {
   EXPECT_THAT(refusal("PK\3\4", "x.sog"), HasSubstr("npx @playcanvas/splat-transform x.sog"));
   EXPECT_THAT(refusal("anything", "x.ksplat"), HasSubstr(".ksplat are not read"));

@@ -207,11 +207,12 @@ void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, 
                 std::size_t points) {
   report.row("splats",
              "{splats/read} read[, {splats/invalid} invalid], {splats/visible} of opacity 0.02 and "
-             "more; shell {splats/points} points, {splats/spacing_m} apart[; "
+             "more[; left out: {splats/far} too far away][; left out: {splats/huge} too large]; "
+             "shell {splats/points} points, {splats/spacing_m} apart[; "
              "{splats/unsure_share} without a normal of their own][; {splats/pieces} pieces of "
              "less than 60 cells dropped]",
-             declared, dropped, splats.visible, points, splats.spacing, splats.unsure,
-             splats.pieces);
+             declared, dropped, splats.visible, splats.far, splats.huge, points, splats.spacing,
+             splats.unsure, splats.pieces);
 }
 
 void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points) {

@@ -89,6 +89,8 @@ CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   file.splats = {.visible = shell.visible,
                  .spacing = shell.spacing,
                  .unsure = shell.unsure,
+                 .far = shell.far,
+                 .huge = shell.huge,
                  .pieces = shell.pieces};
   return file;
 }
