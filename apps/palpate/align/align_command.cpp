@@ -219,7 +219,7 @@ void align_sources(const CLI::App& command, const AlignOptions& options) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
     Eigen::Isometry3d& pose = sources[i].options.T_world_sensor;
     pose = aligned[i].T_aligned_rough * pose;
-    const Report part = report_of(sources[i], aligned[i]);
+    Report part = report_of(sources[i], aligned[i]);
     part.print(out);
     report.push_back(part.data);
   }

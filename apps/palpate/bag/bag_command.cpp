@@ -132,7 +132,7 @@ void tell(const BagCommand& command) {
   }
   bag::Contents contents = reader.contents();
   if (command.check) bag::check(bag::RandomFile(path), contents);
-  const Report report = report_of(path, contents, command.check);
+  Report report = report_of(path, contents, command.check);
   report.print(command.json == "-" ? stderr : stdout);
   write_whole(json, text_of(report.data));
 }

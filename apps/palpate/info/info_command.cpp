@@ -159,20 +159,15 @@ void print_map(const PointCloud& cloud, std::FILE* out) {
              grouped(largest), draw(map, style.colored()));
 }
 
-InfoReport study(const CloudArgument& argument, const ReadOptions& options,
-                 const std::string& write, TrustPicture* picture) {
+InfoReport measure_cloud(const CloudArgument& argument, const ReadOptions& options,
+                         const std::string& write) {
   InfoReport report;
   report.loaded = load(argument, options);
   if (!write.empty()) write_cloud(write, report.loaded.file.cloud);
   const PointCloud& cloud = report.loaded.file.cloud;
-  const Waiting waiting("studying " + argument.name);
   report.bounds = bounds_of(cloud);
   report.core = core_of(cloud);
   report.units = units_of(report.loaded.file, report.core, options);
-  report.spacing = measure_spacing(CellGrid(cloud.positions));
-  const Prepared prepared = prepare(cloud);
-  report.prepared = prepared.report;
-  report.rim = rim_share(prepared.points);
   report.organised = depth_frame_of(cloud);
   if (report.organised.frame) {
     Source felt(argument.name, {});
@@ -180,8 +175,18 @@ InfoReport study(const CloudArgument& argument, const ReadOptions& options,
     report.image = felt.state();
     report.image_radius = felt.points()->radius;
   }
-  if (picture != nullptr) picture->take(argument.name, prepared, report.core);
   return report;
+}
+
+void study(InfoReport& report, TrustPicture* picture) {
+  const PointCloud& cloud = report.loaded.file.cloud;
+  const std::string& name = report.loaded.argument.name;
+  const Waiting waiting("studying " + name);
+  report.spacing = measure_spacing(CellGrid(cloud.positions));
+  const Prepared prepared = prepare(cloud);
+  report.prepared = prepared.report;
+  report.rim = rim_share(prepared.points);
+  if (picture != nullptr) picture->take(name, prepared, report.core);
 }
 
 // Takes each scan of a file by itself, as touch does, unless there are too many.
@@ -256,14 +261,16 @@ void info(const InfoOptions& options) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const CloudArgument& argument = arguments[i];
     if (lives(argument.path)) {
-      const Report report = report_of(study_live(argument));
+      Report report = report_of(study_live(argument));
       report.print(out);
       clouds.push_back(report.data);
       continue;
     }
-    const InfoReport info = study(argument, options.reading, numbered_path(options.write, i),
-                                  pictures.empty() ? nullptr : &pictures[i]);
-    const Report report = report_of(info);
+    InfoReport info = measure_cloud(argument, options.reading, numbered_path(options.write, i));
+    Report report = report_of(info);
+    report.print(out);
+    study(info, pictures.empty() ? nullptr : &pictures[i]);
+    add_study(report, info);
     report.print(out);
     advice_of(info).print(out);
     print_map(info.loaded.file.cloud, out);

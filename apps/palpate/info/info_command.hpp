@@ -53,22 +53,27 @@ struct DensityMap {
 /// The map as lines of text, denser is darker; in colours when `colored`.
 [[nodiscard]] std::string draw(const DensityMap& map, bool colored);
 
-/// Everything that `palpate info` tells of one cloud.
+/// Everything that `palpate info` tells of one cloud: what is measured at once, and what a study
+/// adds.
 struct InfoReport {
   LoadedCloud loaded;
   Box bounds;
   Box core;  ///< without stray points
   UnitsGuess units;
-  SpacingFacts spacing;
-  Prepared::Report prepared;  ///< with the defaults: the advice
-  double rim = 0;             ///< share of points at a border or a hole
-
   OrganisedFrame organised;  ///< of a cloud with rows and columns
   Source::State image;       ///< felt as that frame; depth 0: it is not
   double image_radius = 0;   ///< R then, median, m
+
+  SpacingFacts spacing;
+  Prepared::Report prepared;  ///< with the defaults: the advice
+  double rim = 0;             ///< share of points at a border or a hole
 };
 
+/// What is measured at once: points, bounds, units.
 [[nodiscard]] Report report_of(const InfoReport& report);
+
+/// Adds what a study found.
+void add_study(Report& report, const InfoReport& info);
 
 /// What touch() would do unless told otherwise, in the words of its options.
 [[nodiscard]] Report advice_of(const InfoReport& report);

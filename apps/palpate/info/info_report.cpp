@@ -144,19 +144,22 @@ void add_depths(Report& report, const LiveFacts& facts) {
 Report report_of(const InfoReport& info) {
   const CloudArgument& argument = info.loaded.argument;
   const std::string& format = info.loaded.file.format;
-  const Prepared::Report& r = info.prepared;
   Report report(argument.name, fmt::format("{} ({}), read in {}", argument.path, format,
                                            duration(info.loaded.seconds)));
   report.data = {{"name", argument.name}, {"file", argument.path}, {"format", format}};
   add_points(report, info);
   add_bounds(report, info);
+  return report;
+}
+
+void add_study(Report& report, const InfoReport& info) {
+  const Prepared::Report& r = info.prepared;
   add_surface(report, info);
   report.data["advice"] = {{"voxel_m", r.voxel},
                            {"radius_m", r.radius},
                            {"radius_smallest_m", r.radius_smallest},
                            {"radius_largest_m", r.radius_largest},
                            {"points_felt", r.points_out}};
-  return report;
 }
 
 Report advice_of(const InfoReport& info) {

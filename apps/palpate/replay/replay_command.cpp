@@ -115,7 +115,7 @@ int replay(const ReplayCommand& command) {
   bool exact = true;
   for (std::size_t hand = 0; hand < run.hands(); ++hand) {
     const ForceDifference found = replay_hand(run, hand, command.log);
-    const Report report = report_of(found);
+    Report report = report_of(found);
     report.print(command.json == "-" || command.log == "-" ? stderr : stdout);
     hands.push_back(report.data);
     exact = exact && found.exact();

@@ -120,16 +120,21 @@ void Report::write(Json& object, const Label& label, std::string_view pattern,
   if (!text.empty()) note(label, std::move(text));
 }
 
-void Report::print(std::FILE* out) const {
+void Report::print(std::FILE* out) {
   const Style style(out);
-  fmt::print(out, "{}{}{}\n", style.heading(without_controls(title_)), rest_.empty() ? "" : " ",
-             without_controls(rest_));
-  for (const Line& line : lines_) {
+  if (!printed_) {
+    fmt::print(out, "{}{}{}\n", style.heading(without_controls(title_)), rest_.empty() ? "" : " ",
+               without_controls(rest_));
+  }
+  for (std::size_t i = printed_.value_or(0); i < lines_.size(); ++i) {
+    const Line& line = lines_[i];
     std::string label = fmt::format("{:<10}", line.label.text);
     if (line.label.mark == Mark::warning) label = style.warning(label);
     if (line.label.mark == Mark::error) label = style.error(label);
     fmt::print(out, "  {} {}\n", label, without_controls(line.text));
   }
+  printed_ = lines_.size();
+  std::fflush(out);
 }
 
 }  // namespace palpate::app

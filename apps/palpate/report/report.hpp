@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,7 +56,8 @@ class Report {
   /// A line without data.
   void note(const Label& label, std::string text) { lines_.push_back({label, std::move(text)}); }
 
-  void print(std::FILE* out) const;
+  /// Prints the lines that were added since the last call, after the title with the first one.
+  void print(std::FILE* out);
 
   Json data = Json::object();  ///< SI units, named in the keys
 
@@ -71,6 +73,7 @@ class Report {
   std::string title_;
   std::string rest_;
   std::vector<Line> lines_;
+  std::optional<std::size_t> printed_ = {};  // lines; unset: the title, neither
 };
 
 }  // namespace palpate::app

@@ -183,7 +183,7 @@ std::string in_words(const RosBridge::RobotState& robot) {
 }
 
 Json report_on(const TouchReport& report, std::FILE* stream) {
-  const auto printed = [stream](const Report& part) {
+  const auto printed = [stream](Report part) {
     part.print(stream);
     return part.data;
   };
