@@ -16,44 +16,56 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::pair<std::string_view, Role> kRoleNames[] = {
-    {"x", Role::x},
-    {"y", Role::y},
-    {"z", Role::z},
-    {"nx", Role::normal_x},
-    {"ny", Role::normal_y},
-    {"nz", Role::normal_z},
-    {"normal_x", Role::normal_x},
-    {"normal_y", Role::normal_y},
-    {"normal_z", Role::normal_z},
-    {"normalx", Role::normal_x},
-    {"normaly", Role::normal_y},
-    {"normalz", Role::normal_z},
-    {"red", Role::red},
-    {"green", Role::green},
-    {"blue", Role::blue},
-    {"r", Role::red},
-    {"g", Role::green},
-    {"b", Role::blue},
-    {"diffuse_red", Role::red},
-    {"diffuse_green", Role::green},
-    {"diffuse_blue", Role::blue},
-    {"intensity", Role::intensity},
-    {"scalar_intensity", Role::intensity},
-    {"i", Role::intensity},
-    {"reflectance", Role::intensity},
-    {"reflectivity", Role::intensity},
-    {"quality", Role::intensity},
-    {"scalar", Role::intensity},
+struct Triple {
+  Role first;
+  std::array<std::string_view, 3> names;
 };
+
+constexpr Triple kTriples[] = {
+    {Role::x, {"x", "y", "z"}},
+    {Role::normal_x, {"nx", "ny", "nz"}},
+    {Role::normal_x, {"normal_x", "normal_y", "normal_z"}},
+    {Role::normal_x, {"normalx", "normaly", "normalz"}},
+    {Role::red, {"red", "green", "blue"}},
+    {Role::red, {"r", "g", "b"}},
+    {Role::red, {"diffuse_red", "diffuse_green", "diffuse_blue"}},
+    {Role::intensity, {"intensity", "scalar_intensity", "i"}},
+    {Role::intensity, {"reflectance", "reflectivity", "quality"}},
+    {Role::intensity, {"scalar", {}, {}}},
+};
+
+// Names of x, y and z that count where no columns are called so.
+constexpr Triple kPlaces[] = {
+    {Role::x, {"points:0", "points:1", "points:2"}},
+    {Role::x, {"points_0", "points_1", "points_2"}},
+    {Role::x, {"easting", "northing", "height"}},
+    {Role::x, {"east", "north", "up"}},
+    {Role::x, {"e", "n", "h"}},
+    {Role::x, {"longitude", "latitude", "elevation"}},
+    {Role::x, {"lon", "lat", "altitude"}},
+    {Role::x, {"lng", "lat", "alt"}},
+};
+
+std::optional<Role> role_in(std::span<const Triple> triples, std::string_view name) {
+  const std::string lower = lower_case(name);
+  for (const Triple& triple : triples) {
+    const auto* found = std::ranges::find(triple.names, lower);
+    if (name.empty() || found == triple.names.end()) continue;
+    const std::size_t more = triple.first == Role::intensity ? 0 : found - triple.names.begin();
+    return static_cast<Role>(index_of(triple.first) + more);
+  }
+  return {};
+}
 
 }  // namespace
 
 std::optional<Role> role_of(std::string_view name) {
-  const std::string lower = lower_case(name);
-  const auto* found = std::find_if(std::begin(kRoleNames), std::end(kRoleNames),
-                                   [&](const auto& entry) { return entry.first == lower; });
-  return found == std::end(kRoleNames) ? std::nullopt : std::optional{found->second};
+  return role_in(kTriples, name);
+}
+
+std::optional<Role> place_of(std::string_view name) {
+  const std::optional<Role> place = role_in(kPlaces, name);
+  return place ? place : role_of(name);
 }
 
 void Roles::add(std::optional<Role> role) {

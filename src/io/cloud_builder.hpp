@@ -37,6 +37,9 @@ struct Columns {
 /// x, nx, normal_x, red, r, diffuse_red, intensity, scalar_intensity, quality, ...
 [[nodiscard]] std::optional<Role> role_of(std::string_view name);
 
+/// The same where no columns are called x, y and z: easting, northing and height, Points:0 ...
+[[nodiscard]] std::optional<Role> place_of(std::string_view name);
+
 /// The roles of a file's columns, in their order.
 class Roles {
  public:

@@ -169,8 +169,6 @@ class PgmHeaderParser {
   [[nodiscard]] std::size_t data_offset() const { return offset_ + 1; }
 
  private:
-  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
   const Input& input_;
   std::size_t offset_;  // at first behind "P5"
 };

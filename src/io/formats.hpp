@@ -183,13 +183,14 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// @throws Error for compressed (Draco, meshopt) and sparse data.
 [[nodiscard]] CloudFile read_gltf(const Input& input);
 
-/// A point a line, numbers separated by blanks, tabs, commas or semicolons. Lines that start with
-/// #, // or % are comments; a first line of one whole number announces a count (PTS).
+/// A point a line. How lines divide into cells, and whether commas are within numbers, is found
+/// from the first rows and holds for all. Lines that start with #, // or % are comments; lines of
+/// one whole number announce as many points each (PTS, scan by scan).
 ///
-/// A header line names the columns. Without one their number decides: 3 x y z; 4 and an
-/// intensity; 6 and a normal if the last three have unit length in the first lines, else a colour;
-/// 7 intensity and colour; 9 and a normal and a colour, in the order in which unit length is found.
-/// With any other number the first three columns are used.
+/// A header line, or a comment, names the columns; easting, northing and height mean x, y and z
+/// where no columns are called so. Without names guess_roles() tells them, but for a first column
+/// that counts the rows.
+/// @throws Error for columns of longitude and latitude, too.
 [[nodiscard]] CloudFile read_xyz(const Input& input);
 
 /// PTX: the points of all scans, in the world that their matrices lead to, with intensities, and
@@ -199,6 +200,11 @@ inline constexpr std::size_t kDecodingShare = 4;
 
 /// Is it named as PTX, or do its first lines have the numbers of values that those of PTX have?
 [[nodiscard]] bool is_ptx(const Input& input);
+
+/// NumPy's .npy, an array of numbers in rows of x y z and what guess_roles() tells; or points of
+/// four floats without a header, as KITTI's scanner has them: x y z and an intensity.
+/// @throws Error for bytes that cannot be such.
+[[nodiscard]] CloudFile read_array(const Input& input);
 
 }  // namespace palpate::io
 

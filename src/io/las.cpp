@@ -43,16 +43,14 @@ bool has_more_behind(const Input& input, const LasHeader& header) {
   return header.minor_version >= 4 && load_as<std::uint32_t>(data + kRecords14) != 0;
 }
 
-// Tells of records behind as many as the header declares, if whole ones fill the file from there.
-std::string points_behind(const Input& input, const LasHeader& header) {
+// Records behind as many as the header declares, if whole ones fill the file from there.
+std::size_t points_behind(const Input& input, const LasHeader& header) {
   const std::size_t size = input.bytes.size();
   const std::size_t begin = std::min(header.points_offset, size);
   const std::size_t bytes = size - begin;
-  if (header.compressed || bytes % header.record_size != 0) return {};
+  if (header.compressed || bytes % header.record_size != 0) return 0;
   const std::size_t present = bytes / header.record_size;
-  if (present <= header.points || has_more_behind(input, header)) return {};
-  return fmt::format(", of whose {} points {} are not used, as its header declares {}", present,
-                     present - header.points, header.points);
+  return has_more_behind(input, header) || present < header.points ? 0 : present - header.points;
 }
 
 // Makes a cloud of points, which `point_at` gives by their number.
@@ -72,7 +70,7 @@ class LasReader {
   CloudFile run() {
     CloudFile file;
     file.format = fmt::format("{}{}{}", header_.name(), stated_unit(input_, header_),
-                              points_behind(input_, header_));
+                              unused(points_behind(input_, header_)));
     file.declared = header_.points;
     file.cloud.origin =
         choose_origin(header_.points, [&](std::size_t i) { return place(point_at_(i)); });

@@ -2,13 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "io/cloud_builder.hpp"
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/table.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
@@ -48,13 +52,6 @@ std::uint32_t color_bits(NumberType type, double value) {
   return fits ? static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) : 0U;
 }
 
-// Numbers in a row of text.
-std::size_t values_of(const PcdHeader& header) {
-  std::size_t sum = 0;
-  for (const PcdField& field : header.fields) sum += field.count;
-  return sum;
-}
-
 class PcdReader {
  public:
   explicit PcdReader(const Input& input)
@@ -80,38 +77,37 @@ class PcdReader {
 
   CloudBuilder read_ascii() {
     CloudBuilder result = builder((data_.size() + 1) / (2 * header_.fields.size()) + 1);
+    const std::vector<std::optional<std::size_t>> places = ascii_places();
     Progress progress(input_.options, input_.bytes.size());
-    TextScanner scanner(input_, header_.size);
+    TableRows rows(input_, header_.size);
+    std::array<double, kRoleCount + 1> values{};
     Row row{};
     for (std::size_t i = 0; i < header_.points; ++i) {
-      scanner.begin_row();
-      const bool complete = read_ascii_row(scanner, row);
-      if (!scanner.row_is_on_a_line() || (complete && !scanner.at_line_end())) {
-        fail_at_row(input_, {scanner.row().begin, values_of(header_)});
+      if (!rows.next() || !rows.read(places, values)) fail_cut(i);
+      std::copy_n(values.begin(), kRoleCount, row.begin());
+      if (uses_.rgb) {
+        set_packed_color(row, color_bits(header_.fields[*uses_.rgb].type, values[kRoleCount]));
       }
-      if (!complete) fail_cut(i);
       result.add(row);
-      progress.at(scanner.offset());
+      progress.at(rows.offset());
     }
-    unused_ = rows_from(input_, scanner.offset());
+    unused_ = rows_from(input_, rows.offset());
     return result;
   }
 
-  bool read_ascii_row(TextScanner& scanner, Row& row) {
-    for (std::size_t k = 0; k < header_.fields.size(); ++k) {
-      for (std::size_t j = 0; j < header_.fields[k].count; ++j) {
-        const std::optional<Role> role = uses_.roles[k];
-        if (j > 0 || !(role || uses_.rgb == k)) {
-          if (scanner.next_token().empty()) return false;
-          continue;
-        }
-        const std::optional<double> value = scanner.next_number();
-        if (!value) return false;
-        if (role) row[index_of(*role)] = *value;
-        if (uses_.rgb == k) set_packed_color(row, color_bits(header_.fields[k].type, *value));
-      }
+  // Where each number of a row of text goes; a packed colour goes behind the roles.
+  std::vector<std::optional<std::size_t>> ascii_places() const {
+    std::vector<std::optional<std::size_t>> places;
+    for (std::size_t k = 0; header_.points > 0 && k < header_.fields.size(); ++k) {
+      const std::size_t count = header_.fields[k].count;
+      if (count > data_.size() - places.size()) fail_cut(0);
+      places.resize(places.size() + count);
+      if (count == 0) continue;
+      std::optional<std::size_t>& first = places[places.size() - count];
+      if (const auto role = uses_.roles[k]) first = index_of(*role);
+      if (uses_.rgb == k) first = kRoleCount;
     }
-    return true;
+    return places;
   }
 
   CloudBuilder read_binary() {

@@ -22,20 +22,6 @@ std::vector<std::string_view> words_of(std::string_view rest) {
   }
 }
 
-std::optional<NumberType> number_type(std::string_view letter, std::size_t size) {
-  constexpr std::pair<std::string_view, NumberType> kTypes[] = {
-      {"I1", NumberType::int8},    {"U1", NumberType::uint8},  {"I2", NumberType::int16},
-      {"U2", NumberType::uint16},  {"I4", NumberType::int32},  {"U4", NumberType::uint32},
-      {"I8", NumberType::int64},   {"U8", NumberType::uint64}, {"F4", NumberType::float32},
-      {"F8", NumberType::float64},
-  };
-  const std::string wanted = fmt::format("{}{}", letter, size);
-  for (const auto& [name, type] : kTypes) {
-    if (name == wanted) return type;
-  }
-  return {};
-}
-
 class PcdHeaderParser {
  public:
   explicit PcdHeaderParser(const Input& input) : input_(input), scanner_(input) {}

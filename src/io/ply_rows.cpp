@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "io/table.hpp"
 #include "io/text_scanner.hpp"
 #include "palpate/base/error.hpp"
 

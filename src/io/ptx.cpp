@@ -11,6 +11,7 @@
 #include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/table.hpp"
 #include "io/text_scanner.hpp"
 
 namespace palpate::io {
@@ -24,21 +25,16 @@ constexpr std::size_t kMatrixBegin = 6;  // lines before those of the matrix
 // Values of a point: x y z intensity, and red green blue.
 constexpr std::size_t kPlain = 4;
 constexpr std::size_t kColored = 7;
-
-std::size_t words_in(std::string_view line) {
-  std::size_t count = 0;
-  while (!take_word(line).empty()) ++count;
-  return count;
-}
+constexpr std::array<std::optional<std::size_t>, kColored> kInOrder{0, 1, 2, 3, 4, 5, 6};
 
 class PtxReader {
  public:
   explicit PtxReader(const Input& input)
-      : input_(input), scanner_(input), progress_(input.options, input.bytes.size()) {}
+      : input_(input), rows_(input, 0), progress_(input.options, input.bytes.size()) {}
 
   CloudFile run() {
     std::size_t scans = 0;
-    for (scanner_.begin_row(); !scanner_.at_end(); scanner_.begin_row(), ++scans) read_scan();
+    for (; rows_.next(); ++scans) read_scan();
     if (!builder_) fail(input_, "this PTX file holds no points", "Export it again");
     CloudFile file = builder_->finish("PTX");
     const Eigen::Vector3d stand = input_.options.scale * matrix_.row(3).head<3>().transpose();
@@ -50,11 +46,14 @@ class PtxReader {
   using Values = std::array<double, kColored>;
 
   void read_scan() {
-    const std::size_t begin = scanner_.offset();
+    const std::size_t begin = rows_.begin();
     std::array<double, 2> size{};
     for (std::size_t line = 0; line < kPtxHead.size(); ++line) {
       Values values{};
-      if (!read_row(std::span(values).first(kPtxHead[line]))) fail_cut("its header", begin);
+      const bool there = line == 0 || rows_.next();
+      if (!there || !rows_.read(std::span(kInOrder).first(kPtxHead[line]), values)) {
+        fail_cut("its header", begin);
+      }
       if (line < size.size()) size[line] = values[0];
       if (line < kMatrixBegin) continue;
       for (int k = 0; k < 4; ++k)
@@ -70,9 +69,12 @@ class PtxReader {
   }
 
   void read_point(std::size_t scan) {
-    if (!builder_) begin_points();
     Values values{};
-    if (!read_row(std::span(values).first(values_))) fail_cut("the points that it declares", scan);
+    const bool there = rows_.next();
+    if (there && !builder_) begin_points();
+    if (!there || !rows_.read(std::span(kInOrder).first(values_), values)) {
+      fail_cut("the points that it declares", scan);
+    }
     const Eigen::RowVector4d place(values[0], values[1], values[2], 1);
     // A scanner writes zeros where nothing came back.
     const bool seen = !place.head<3>().isZero(0);
@@ -84,34 +86,17 @@ class PtxReader {
     }
     row[index_of(Role::intensity)] = values[3];
     builder_->add(row);
-    progress_.at(scanner_.offset());
+    progress_.at(rows_.offset());
   }
 
   // The first point tells whether there are colours.
   void begin_points() {
-    scanner_.begin_row();
-    const std::size_t begin = scanner_.offset();
-    const bool colors = words_in(scanner_.next_line()) == kColored;
-    scanner_.move_to(begin);
+    const bool colors = count_cells(rows_.line()) == kColored;
     values_ = colors ? kColored : kPlain;
-    const std::size_t room = (input_.bytes.size() - begin) / (2 * values_) + 1;  // a digit, a space
+    // A value takes a digit and a space.
+    const std::size_t room = (input_.bytes.size() - rows_.begin()) / (2 * values_) + 1;
     builder_.emplace(input_, Columns{.colors = colors, .intensities = true}, ColorScale::byte,
                      room);
-  }
-
-  // The values of the next row; false if the file ends within it.
-  bool read_row(std::span<double> values) {
-    scanner_.begin_row();
-    bool complete = true;
-    for (double& value : values) {
-      const std::optional<double> number = complete ? scanner_.next_number() : std::nullopt;
-      complete = number.has_value();
-      value = number.value_or(0);
-    }
-    if (!scanner_.row_is_on_a_line() || (complete && !scanner_.at_line_end())) {
-      fail_at_row(input_, {scanner_.row().begin, values.size()});
-    }
-    return complete;
   }
 
   [[noreturn]] void fail_cut(std::string_view where, std::size_t scan) const {
@@ -121,7 +106,7 @@ class PtxReader {
   }
 
   const Input& input_;
-  TextScanner scanner_;
+  TableRows rows_;
   Progress progress_;
   std::optional<CloudBuilder> builder_;
   std::size_t values_ = kPlain;
@@ -134,7 +119,7 @@ bool is_ptx(const Input& input) {
   if (extension(input.name) == ".ptx") return true;
   TextScanner scanner(input);
   for (const std::size_t values : kPtxHead) {
-    if (words_in(scanner.next_line()) != values) return false;
+    if (count_cells(scanner.next_line()) != values) return false;
   }
   return true;
 }

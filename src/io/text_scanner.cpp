@@ -5,8 +5,24 @@
 
 #include <charconv>
 #include <limits>
+#include <string>
+#include <utility>
 
 namespace palpate::io {
+
+std::optional<NumberType> number_type(std::string_view letter, std::size_t size) {
+  constexpr std::pair<std::string_view, NumberType> kTypes[] = {
+      {"i1", NumberType::int8},    {"u1", NumberType::uint8},  {"i2", NumberType::int16},
+      {"u2", NumberType::uint16},  {"i4", NumberType::int32},  {"u4", NumberType::uint32},
+      {"i8", NumberType::int64},   {"u8", NumberType::uint64}, {"f4", NumberType::float32},
+      {"f8", NumberType::float64},
+  };
+  const std::string wanted = fmt::format("{}{}", lower_case(letter), size);
+  for (const auto& [name, type] : kTypes) {
+    if (name == wanted) return type;
+  }
+  return {};
+}
 
 double load_number(NumberType type, const std::byte* bytes, std::endian order) {
   switch (type) {
@@ -36,10 +52,6 @@ double load_number(NumberType type, const std::byte* bytes, std::endian order) {
 
 namespace {
 
-constexpr bool is_space(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
 // from_chars says only "out of range"; the sign of the exponent tells which way.
 double out_of_range_value(std::string_view token) {
   const bool tiny = token.find("e-") != std::string_view::npos ||
@@ -54,6 +66,15 @@ bool is_not_finite(std::string_view token) {
   if (token.starts_with('-')) token.remove_prefix(1);
   token = token.substr(0, token.find_last_not_of('0') + 1);
   return token == "1.#QNAN" || token == "1.#SNAN" || token == "1.#IND" || token == "1.#INF";
+}
+
+// A token whose first `size` characters alone are a number: Fortran's exponents begin with a D.
+std::optional<double> number_in_parts(std::string_view token, std::size_t size) {
+  if (is_not_finite(token)) return std::numeric_limits<double>::quiet_NaN();
+  if (token[size] != 'D' && token[size] != 'd') return {};
+  std::string usual(token);
+  usual[size] = 'e';
+  return parse_number(usual);
 }
 
 }  // namespace
@@ -71,8 +92,7 @@ std::optional<double> parse_number(std::string_view token) {
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (token.empty()) return {};
   if (end != token.data() + token.size()) {
-    return is_not_finite(token) ? std::optional{std::numeric_limits<double>::quiet_NaN()}
-                                : std::nullopt;
+    return number_in_parts(token, static_cast<std::size_t>(end - token.data()));
   }
   if (error == std::errc::result_out_of_range) return out_of_range_value(token);
   return error == std::errc{} ? std::optional{value} : std::nullopt;
@@ -145,11 +165,6 @@ bool TextScanner::at_line_end() const {
   return at == text_.size() || text_[at] == '\n' || text_[at] == '\r';
 }
 
-bool TextScanner::row_is_on_a_line() const {
-  const std::string_view row = trim(text_.substr(row_.begin, offset_ - row_.begin));
-  return row.find(line_end_) == std::string_view::npos;
-}
-
 std::size_t rows_from(const Input& input, std::size_t offset) {
   TextScanner scanner(input, offset);
   std::size_t rows = 0;
@@ -162,18 +177,6 @@ std::size_t rows_from(const Input& input, std::size_t offset) {
 std::string unused(std::size_t count) {
   if (count == 0) return {};
   return fmt::format(", {} more than its header declares, which are not used", count);
-}
-
-void fail_at_row(const Input& input, const TextRow& row) {
-  const std::string_view rest = input.text().substr(row.begin);
-  std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
-  const std::string shown = excerpt(line);
-  std::size_t found = 0;
-  while (!take_word(line).empty()) ++found;
-  fail_at_line(input, row.begin,
-               fmt::format("{} values in a row, but the header declares {}: \"{}\"", found,
-                           row.values, shown),
-               "Correct this row, or what the header declares, or export the file again");
 }
 
 bool is_blank_or_comment(std::string_view line) {

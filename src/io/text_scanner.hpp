@@ -38,6 +38,10 @@ enum class NumberType {
   return type == NumberType::float32 || type == NumberType::float64;
 }
 
+/// The type of a number of so many bytes: "I" signed, "U" unsigned, "F" with fractions; of either
+/// case. None: there is no such type.
+[[nodiscard]] std::optional<NumberType> number_type(std::string_view letter, std::size_t size);
+
 /// A T read from unaligned bytes of the given byte order.
 template <class T>
 [[nodiscard]] T load_as(const std::byte* bytes, std::endian order = std::endian::little) {
@@ -97,9 +101,6 @@ class TextScanner {
   /// Does the line hold no further value?
   [[nodiscard]] bool at_line_end() const;
 
-  /// Do the values since begin_row() lie on one line?
-  [[nodiscard]] bool row_is_on_a_line() const;
-
  private:
   void skip_space();
 
@@ -117,16 +118,19 @@ class TextScanner {
 /// none.
 [[nodiscard]] std::string unused(std::size_t count);
 
-/// Throws Error for a row whose line has another number of values than the header declares.
-[[noreturn]] void fail_at_row(const Input& input, const TextRow& row);
-
 /// A whole token as a number, in the C locale whatever the user's is; "nan" and "inf" count, a
-/// leading plus too, and "1.#QNAN", "-1.#IND" and "1.#INF" of Microsoft's, which are all not
-/// finite. What is too large for a double becomes infinite, what is too small zero.
+/// leading plus too, Fortran's "1.5D+03", and "1.#QNAN", "-1.#IND" and "1.#INF" of Microsoft's,
+/// which are all not finite. What is too large for a double becomes infinite, what is too small
+/// zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
 
 /// A whole token as a count.
 [[nodiscard]] std::optional<std::size_t> parse_count(std::string_view token);
+
+/// White space of the C locale.
+[[nodiscard]] constexpr bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 /// `text` without white space (and CR) around it.
 [[nodiscard]] std::string_view trim(std::string_view text);

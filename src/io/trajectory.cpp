@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/table.hpp"
 #include "io/text_scanner.hpp"
 #include "io/time_unit.hpp"
 #include "palpate/base/error.hpp"
@@ -25,21 +26,10 @@ constexpr std::array<std::string_view, 7> kColumns = {"t",  "hip_x", "hip_y", "h
                                                       "fx", "fy",    "fz"};
 constexpr std::size_t kNeeded = 4;
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\"";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view line, char separator) {
+std::vector<std::string_view> split(std::string_view line, std::string_view separator) {
   std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t end = line.find(separator);
-    cells.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return cells;
-    line.remove_prefix(end + 1);
-  }
+  while (const auto cell = io::take_cell(line, separator)) cells.push_back(*cell);
+  return cells;
 }
 
 // Values between blanks, commas and semicolons, up to a comment.
@@ -60,11 +50,11 @@ bool is_text(std::string_view line) {
                               [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r'; });
 }
 
-char separator_of(std::string_view header) {
-  for (const char candidate : {',', ';', '\t'}) {
+std::string_view separator_of(std::string_view header) {
+  for (const std::string_view candidate : {",", ";", "\t"}) {
     if (header.find(candidate) != std::string_view::npos) return candidate;
   }
-  return ',';
+  return ",";
 }
 
 std::optional<double> number(std::string_view text) {
@@ -109,7 +99,7 @@ class Reader {
       if (!cells.empty()) row(cells);
       return;
     }
-    const std::string_view text = trimmed(line);
+    const std::string_view text = io::trim(line);
     if (text.empty() || text.front() == '#') return;
     if (places_.empty()) {
       separator_ = separator_of(text);
@@ -171,7 +161,7 @@ class Reader {
   std::string name_;
   std::size_t line_ = 0;
   const TrajectoryOptions& options_;
-  char separator_ = ',';
+  std::string_view separator_ = ",";
   std::vector<std::size_t>
       places_;  // of kColumns, in a row; without those of a force if it has none
   Trajectory rows_;

@@ -1,128 +1,35 @@
-// Reads text clouds: finds which column is what, by names or by the numbers themselves.
+// Reads text clouds: finds how lines divide into cells, and which column is what, by names or by
+// the numbers themselves.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "io/cloud_builder.hpp"
 #include "io/formats.hpp"
-#include "io/input.hpp"
-#include "io/text_scanner.hpp"
+#include "io/table.hpp"
 
 namespace palpate::io {
 namespace {
 
-// Columns of a text cloud that are looked at; more are refused.
-constexpr std::size_t kMostTextColumns = 64;
-
-// The cells of one line.
-struct TextCells {
-  std::array<std::string_view, kMostTextColumns> cells;
-  std::size_t count = 0;
-  bool too_many = false;
+struct TextTable {
+  Dialect dialect{};
+  Roles roles{};
+  std::vector<std::optional<std::size_t>> places{};  // of each column's value in a Row
+  bool named = false;
+  bool degrees = false;
+  bool counted = false;  // the first column counts the rows
 };
 
-constexpr std::string_view kMarks = ",;";
-
-// The next cell and the rest of the line behind it and its separator.
-std::string_view take_cell(std::string_view& rest, bool marked) {
-  if (!marked) {
-    const std::string_view word = take_word(rest);
-    rest = trim(rest);
-    return word;
-  }
-  const std::size_t end = std::min(rest.find_first_of(kMarks), rest.size());
-  const std::string_view cell = trim(rest.substr(0, end));
-  rest.remove_prefix(end);
-  return cell;
-}
-
-// Cuts at commas and semicolons where the line has any, blanks around the cells left out; two in a
-// row enclose an empty cell. Otherwise cuts at blanks and tabs, several counting as one.
-TextCells split_cells(std::string_view line) {
-  TextCells result;
-  std::string_view rest = trim(line);
-  const bool marked = rest.find_first_of(kMarks) != std::string_view::npos;
-  bool more = !rest.empty();
-  while (more) {
-    if (result.count == kMostTextColumns) {
-      result.too_many = true;
-      break;
-    }
-    result.cells[result.count++] = take_cell(rest, marked);
-    more = !rest.empty();
-    if (more && marked) rest.remove_prefix(1);
-  }
-  return result;
-}
-
-// "1,5;2,0": commas inside the cells of a semicolon list.
-bool has_decimal_commas(std::string_view line) {
-  return line.find(';') != std::string_view::npos && line.find(',') != std::string_view::npos;
-}
-
-// "5 2", a cell of "1,5 2,5": two numbers that a blank divides.
-bool is_of_decimal_commas(std::string_view cell) {
-  return parse_number(take_word(cell)).has_value() && parse_number(trim(cell)).has_value();
-}
-
-using Rows = std::vector<std::array<double, kMostTextColumns>>;
-
-// "X[m]", "\"x\"", "//X" all mean x.
-std::string_view bare_name(std::string_view name) {
-  constexpr std::string_view kQuotes = "\"'/#";
-  while (!name.empty() && kQuotes.find(name.front()) != std::string_view::npos) {
-    name.remove_prefix(1);
-  }
-  return trim(name.substr(0, name.find_first_of("[(\"'")));
-}
-
-bool are_unit(const Rows& rows, std::size_t first) {
-  if (rows.empty()) return false;
-  std::size_t unit = 0;
-  for (const auto& row : rows) {
-    const double length = std::hypot(row[first], row[first + 1], row[first + 2]);
-    if (std::abs(length - 1) < 0.01) ++unit;
-  }
-  return 2 * unit > rows.size();
-}
-
-// Roles that a header line names.
-Roles roles_from_names(const TextCells& names) {
-  Roles roles;
-  for (std::size_t i = 0; i < names.count; ++i) roles.add(role_of(bare_name(names.cells[i])));
-  return roles;
-}
-
-// Guesses the columns after x, y and z from their number and the first few rows.
-std::vector<Role> roles_behind(std::size_t count, const Rows& rows) {
-  using enum Role;
-  switch (count) {
-    case 4:
-      return {intensity};
-    case 6:
-      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z};
-      return {red, green, blue};
-    case 7:
-      return {intensity, red, green, blue};
-    case 9:
-      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z, red, green, blue};
-      return {red, green, blue, normal_x, normal_y, normal_z};
-    default:
-      return {};
-  }
-}
-
-Roles roles_from_rows(std::size_t count, const Rows& rows) {
-  Roles roles;
-  for (const Role role : {Role::x, Role::y, Role::z}) roles.add(role);
-  for (const Role role : roles_behind(count, rows)) roles.add(role);
-  while (roles.size() < count) roles.add(std::nullopt);
-  return roles;
+bool begins_with_number(std::string_view line) {
+  line = trim(line);
+  line.remove_prefix(line.starts_with('"') ? 1 : 0);
+  return parse_number(trim(line.substr(0, line.find_first_of(" \t,;\"")))).has_value();
 }
 
 constexpr std::string_view kRemedy =
@@ -131,163 +38,226 @@ constexpr std::string_view kRemedy =
 
 class XyzReader {
  public:
-  explicit XyzReader(const Input& input) : input_(input), scanner_(input) {}
+  explicit XyzReader(const Input& input) : input_(input) {}
 
   CloudFile run() {
-    const std::optional<std::size_t> announced = read_count();
-    find_columns();
-    // A column takes two characters at least.
-    const std::size_t room = (input_.bytes.size() - scanner_.offset()) / (2 * roles_.size()) + 1;
-    CloudBuilder builder(input_, roles_.columns(), ColorScale::guess, std::min(room, expected()));
+    find_rows();
+    take_sample();
+    for (const std::string_view separator : kSeparators) {
+      for (const char decimal : {'.', ','}) try_dialect(separator, decimal);
+    }
+    if (fitting_ == 0) refuse();
+    TableRows rows(input_, begin_, table_.dialect);
+    // A row is about as long as the first one; a column takes two characters at least.
+    const std::size_t least = std::max(2 * table_.places.size(), sample_[0].size() / 2);
+    CloudBuilder builder(input_, table_.roles.columns(), ColorScale::guess,
+                         (input_.bytes.size() - begin_) / least + 1);
     Progress progress(input_.options, input_.bytes.size());
     Row row{};
-    std::size_t rows = 0;
-    while (read_row(row)) {
+    while (rows.next()) {
+      if (scans_ && begins_scan(rows)) continue;
+      if (!rows.read(table_.places, row)) {
+        fail_at_row(input_, {rows.begin(), table_.places.size()}, table_.dialect);
+      }
+      if (table_.degrees) to_metres(rows, row);
       builder.add(row);
-      ++rows;
-      progress.at(scanner_.offset());
+      ++count_;
+      progress.at(rows.offset());
     }
-    if (announced && rows < *announced) fail_cut(rows, *announced);
-    return builder.finish(has_names_ ? "text, columns named" : "text");
+    end_scan();
+    return builder.finish(format());
   }
 
  private:
-  // On to the next line that is neither blank nor a comment; false at the end.
-  bool next_cells() {
-    while (!scanner_.at_end()) {
-      line_begin_ = scanner_.offset();
-      line_ = scanner_.next_line();
-      if (is_blank_or_comment(line_)) continue;
-      cells_ = split_cells(line_);
-      refuse_too_many();
-      return true;
-    }
-    return false;
-  }
-
-  std::optional<std::size_t> read_count() {
-    const std::size_t begin = scanner_.offset();
-    if (!next_cells()) return {};
-    if (cells_.count == 1) {
-      if (const auto count = parse_count(cells_.cells[0])) return count;
-    }
-    scanner_.move_to(begin);
-    return {};
-  }
-
-  // CloudCompare writes the names in a comment: "//X Y Z R G B".
-  void find_columns() {
-    const std::size_t begin = scanner_.offset();
-    while (!scanner_.at_end()) {
-      line_begin_ = scanner_.offset();
-      line_ = scanner_.next_line();
-      if (trim(line_).empty()) continue;
-      cells_ = split_cells(line_);
-      const bool comment = is_blank_or_comment(line_);
-      if (comment && !named_in_comment()) continue;
-      if (!comment && is_number_line()) break;
-      return take_names();
-    }
-    scanner_.move_to(begin);
-    guess_columns();
-    scanner_.move_to(begin);
-  }
-
-  bool named_in_comment() const {
-    const std::string_view text = trim(line_);
-    return text.substr(0, 2) == "//" && roles_from_names(cells_).has_point();
-  }
-
-  bool is_number_line() const {
-    return cells_.count > 0 && parse_number(cells_.cells[0]).has_value();
-  }
-
-  void take_names() {
-    refuse_too_many();
-    roles_ = roles_from_names(cells_);
-    if (!roles_.has_point()) {
-      fail_at_line(input_, line_begin_,
-                   fmt::format("\"{}\" is neither a point nor a header with the columns x, y and z",
-                               excerpt(line_)),
-                   kRemedy);
-    }
-    has_names_ = true;
-  }
-
-  void guess_columns() {
-    constexpr std::size_t kSample = 100;
-    Rows rows;
-    std::size_t count = 0;
-    while (rows.size() < kSample && next_cells()) {
-      if (count == 0) refuse_decimal_commas(has_decimal_commas(line_));
-      if (count == 0) count = cells_.count;
-      if (cells_.count != count) break;  // told with its line when it is read
-      rows.emplace_back();
-      for (std::size_t i = 0; i < count; ++i) {
-        rows.back()[i] = parse_number(cells_.cells[i]).value_or(0);
+  // Up to the first row, or to the number of a scan's points.
+  void find_rows() {
+    TextScanner scanner(input_);
+    for (begin_ = scanner.offset(); !scanner.at_end(); begin_ = scanner.offset()) {
+      const std::string_view line = scanner.next_line();
+      if (is_blank_or_comment(line)) {
+        if (find_names(line, 0)) comment_ = line;  // CloudCompare: "//X Y Z"
+      } else if (!header_.empty() || begins_with_number(line)) {
+        return;
+      } else if (find_names(line, 0)) {
+        header_ = line;
+      } else if (lower_case(line.substr(0, 4)) != "sep=") {  // for spreadsheets
+        fail_at_line(input_, begin_,
+                     fmt::format("\"{}\" is neither a point nor a header with the columns x, y "
+                                 "and z",
+                                 excerpt(line)),
+                     kRemedy);
       }
     }
-    if (count == 0) fail(input_, "no line holds numbers", kRemedy);
-    if (count < 3) fail(input_, fmt::format("{} columns, but x y z need 3", count), kRemedy);
-    roles_ = roles_from_rows(count, rows);
   }
 
-  bool read_row(Row& row) {
-    if (!next_cells()) return false;
-    if (cells_.count != roles_.size()) {
-      refuse_decimal_commas(has_decimal_commas(line_));
-      fail_at_line(input_, line_begin_,
-                   fmt::format("{} columns, but the first line has {}: \"{}\"", cells_.count,
-                               roles_.size(), excerpt(line_)),
-                   kRemedy);
+  void take_sample() {
+    constexpr std::size_t kSample = 100;  // rows that tell what a table is (judgement)
+    TableRows rows(input_, begin_, {.comments = true});
+    while (sample_.size() < kSample && rows.next()) {
+      const bool count = parse_count(trim(rows.line())).has_value();
+      scans_ = scans_ || (count && sample_.empty() && header_.empty());
+      if (count && scans_) continue;
+      if (sample_.empty()) first_ = rows.begin();
+      sample_.push_back(rows.line());
     }
-    for (std::size_t i = 0; i < roles_.size(); ++i) {
-      if (const auto role = roles_[i]) row[index_of(*role)] = cell_number(cells_.cells[i]);
+    if (!sample_.empty()) return;
+    if (!header_.empty()) check_not_empty(input_, 0, 0);
+    fail(input_, "no line holds numbers", kRemedy);
+  }
+
+  // Takes the table that this makes of the rows if it fits more of them than those before did.
+  void try_dialect(std::string_view separator, char decimal) {
+    const std::size_t columns = count_cells(sample_[0], separator);
+    if (columns < 3 || columns > kMostTextColumns) return;
+    TextTable table{.dialect = {separator, decimal, true, "the first row has"}};
+    if (const auto names = find_names(header_.empty() ? comment_ : header_, columns)) {
+      table.named = true;
+      table.dialect.declarer = "the header names";
+      table.degrees = names->degrees;
+      table.roles = names->roles;
+    } else if (header_.empty()) {
+      guess(table, columns);
     }
+    if (!table.roles.has_point()) return;
+    table.places.resize(columns);
+    for (std::size_t k = 0; k < table.roles.size(); ++k) {
+      if (table.roles[k]) table.places[k] = index_of(*table.roles[k]);
+    }
+    const auto odd =
+        std::ranges::find_if_not(sample_, [&](std::string_view line) { return fits(line, table); });
+    const auto fitting = static_cast<std::size_t>(odd - sample_.begin());
+    if (fitting <= fitting_) return;
+    fitting_ = fitting;
+    table_ = std::move(table);
+  }
+
+  static bool fits(std::string_view line, const TextTable& table) {
+    for (const auto& place : table.places) {
+      const auto cell = take_cell(line, table.dialect.separator);
+      if (!cell || (place && !parse_cell(*cell, table.dialect.decimal))) return false;
+      // Commas may be in numbers, too: no whole number begins with a zero.
+      const bool zero = cell->size() > 1 && cell->starts_with('0') && parse_count(*cell);
+      if (zero && table.dialect.separator == ",") return false;
+    }
+    return !take_cell(line, table.dialect.separator);
+  }
+
+  // Tells the roles of columns without names. All but the last one have to hold something, or tabs
+  // that line columns up would make empty ones.
+  void guess(TextTable& table, std::size_t columns) const {
+    table.counted = columns > 3 && first_counts(table.dialect);
+    if (table.counted) table.roles.add(std::nullopt);
+    const std::size_t first = table.roles.size();
+    std::vector<FirstNumbers> rows(sample_.size());
+    std::vector<bool> filled(columns);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      std::string_view rest = sample_[i];
+      for (std::size_t k = 0; k < columns; ++k) {
+        const std::string_view cell = take_cell(rest, table.dialect.separator).value_or("");
+        filled[k] = filled[k] || !cell.empty();
+        if (k < first || k - first >= rows[i].size()) continue;
+        rows[i][k - first] = parse_cell(cell, table.dialect.decimal).value_or(0);
+      }
+    }
+    if (!filled.back()) --columns;
+    if (static_cast<std::size_t>(std::ranges::count(filled, true)) < columns) return;
+    const Roles guessed = guess_roles(columns - first, rows);
+    for (std::size_t k = 0; k < guessed.size(); ++k) table.roles.add(guessed[k]);
+  }
+
+  // Does the first column count all rows, from 0 or 1 on? Points at x = 0, 1, 2 ... of a surface
+  // come back to the same x.
+  bool first_counts(const Dialect& dialect) const {
+    constexpr double kFewestRows = 4;  // rows: three points may well lie so
+    TableRows rows(input_, begin_, dialect);
+    double begin = 0;
+    double count = 0;
+    for (; rows.next(); ++count) {
+      std::string_view line = rows.line();
+      const double number = parse_cell(*take_cell(line, dialect.separator), '.').value_or(-1);
+      if (count == 0) begin = number;
+      if (number != begin + count || (begin != 0 && begin != 1)) return false;
+    }
+    return count >= kFewestRows;
+  }
+
+  // Says why not even the first row is one.
+  [[noreturn]] void refuse() const {
+    const std::string_view line = sample_[0];
+    const auto* separator = std::ranges::find_if(
+        kSeparators, [&](std::string_view mark) { return line.find(mark) != line.npos; });
+    if (separator == std::end(kSeparators)) --separator;
+    const std::size_t columns = count_cells(line, *separator);
+    const auto names = find_names(header_, 0);
+    if (names && names->roles.size() != columns) {
+      fail_at_row(input_, {first_, names->roles.size()},
+                  {.separator = *separator, .declarer = "the header names"});
+    }
+    std::string what = "commas seem to be both within numbers and between them";
+    if (columns < 3) what = fmt::format("{} columns, but x y z need 3", columns);
+    if (columns > kMostTextColumns) what = fmt::format("more than {} columns", kMostTextColumns);
+    for (std::string_view rest = line; const auto cell = take_cell(rest, *separator);) {
+      if (!parse_cell(*cell, '.')) what = fmt::format("\"{}\" is not a number", excerpt(*cell));
+    }
+    fail_at_line(input_, first_, fmt::format("{}: \"{}\"", what, excerpt(line)), kRemedy);
+  }
+
+  // Is the line the number of a scan's points?
+  bool begins_scan(const TableRows& rows) {
+    const std::optional<std::size_t> count = parse_count(trim(rows.line()));
+    if (!count) return false;
+    end_scan();
+    announced_ = *count;
+    first_ = rows.begin();
+    count_ = 0;
     return true;
   }
 
-  void refuse_too_many() const {
-    if (!cells_.too_many) return;
-    fail_at_line(input_, line_begin_,
-                 fmt::format("more than {} columns: \"{}\"", kMostTextColumns, excerpt(line_)),
-                 "Export fewer: x y z and, if it has them, normals, colours or intensities");
+  void end_scan() const {
+    if (!scans_ || count_ == announced_) return;
+    fail_at_line(input_, first_,
+                 fmt::format("{} points follow, but this line declares {}", count_, announced_),
+                 fmt::format("Download it again; to use the points that are present, write {} here",
+                             count_));
   }
 
-  void refuse_decimal_commas(bool there_are) const {
-    if (!there_are) return;
-    fail_at_line(input_, line_begin_, "commas inside numbers",
-                 "Use decimal points: sed 's/,/./g' does this if no commas separate the columns");
+  // Degrees of longitude and latitude become metres to the east and north of the first point.
+  void to_metres(const TableRows& rows, Row& row) {
+    const auto [longitude, latitude] = std::pair(row[0], row[1]);
+    if (std::abs(longitude) > 360 || std::abs(latitude) > 90) {
+      fail_at_line(input_, rows.begin(),
+                   fmt::format("a longitude of {} and a latitude of {}", longitude, latitude),
+                   "If they are no degrees, name these columns x and y");
+    }
+    if (!zero_ && std::isfinite(longitude + latitude)) zero_ = {longitude, latitude};
+    if (!zero_) return;
+    const double turn = zero_->second * std::numbers::pi / 180;
+    // m a degree on the ellipsoid WGS 84. The builder scales what is a length in the file.
+    const double east = 111412.84 * std::cos(turn) - 93.5 * std::cos(3 * turn);
+    const double north = 111132.92 - 559.82 * std::cos(2 * turn);
+    row[0] = std::remainder(longitude - zero_->first, 360) * east / input_.options.scale;
+    row[1] = (latitude - zero_->second) * north / input_.options.scale;
   }
 
-  // An empty cell is a missing value.
-  double cell_number(std::string_view cell) const {
-    if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
-    if (const std::optional<double> number = parse_number(cell)) return *number;
-    refuse_decimal_commas(is_of_decimal_commas(cell));
-    fail_at_line(input_, line_begin_, fmt::format("\"{}\" is not a number", excerpt(cell)),
-                 kRemedy);
-  }
-
-  std::size_t expected() const {
-    const std::size_t rest = input_.bytes.size() - scanner_.offset();
-    return rest / std::max<std::size_t>(line_.size() / 2, 1) + 1;
-  }
-
-  [[noreturn]] void fail_cut(std::size_t present, std::size_t announced) const {
-    fail(input_, fmt::format("has {} points, but its first line declares {}", present, announced),
-         fmt::format(
-             "Download it again; to use the points that are present, write {} in its first line",
-             present));
+  std::string format() const {
+    return fmt::format("text{}{}{}{}", table_.named ? ", columns named" : "",
+                       table_.dialect.decimal == ',' ? ", decimal commas" : "",
+                       table_.counted ? ", whose first column counts the rows" : "",
+                       table_.degrees ? ", degrees made metres" : "");
   }
 
   const Input& input_;
-  TextScanner scanner_;
-  Roles roles_;
-  TextCells cells_;
-  std::string_view line_;
-  std::size_t line_begin_ = 0;
-  bool has_names_ = false;
+  std::size_t begin_ = 0;       // of the first row, or of the number of a scan's points, bytes
+  std::size_t first_ = 0;       // of the first row; then of the last number of a scan's points
+  std::string_view header_{};   // the line of text before the rows
+  std::string_view comment_{};  // one that names a point
+  std::vector<std::string_view> sample_{};
+  std::size_t fitting_ = 0;  // rows of the sample, from the first on, that fit the table
+  TextTable table_{};
+  bool scans_ = false;
+  std::size_t announced_ = 0;                        // points of this scan
+  std::size_t count_ = 0;                            // that came
+  std::optional<std::pair<double, double>> zero_{};  // degrees, of the first point
 };
 
 }  // namespace

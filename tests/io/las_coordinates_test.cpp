@@ -97,11 +97,11 @@ TEST(LasCount, TellsOfPointsBehindAsManyAsAreDeclared) {
   overwrite<std::uint32_t>(bytes, 107, 2);
   const CloudFile file = read_text(bytes, "a.las");
   EXPECT_EQ(file.cloud.size(), 2U);
-  EXPECT_THAT(file.format, EndsWith("of whose 3 points 1 are not used, as its header declares 2"));
+  EXPECT_THAT(file.format, EndsWith(", 1 more than its header declares, which are not used"));
   EXPECT_THAT(read_text(bytes + "other data", "a.las").format, EndsWith("format 0"));
   std::string records = las_bytes(4, 0, las_points());
   overwrite<std::uint64_t>(records, 247, 2);
-  EXPECT_THAT(read_text(records, "a.las").format, HasSubstr("1 are not used"));
+  EXPECT_THAT(read_text(records, "a.las").format, HasSubstr("1 more than its header declares"));
   overwrite<std::uint32_t>(records, 243, 1);
   EXPECT_THAT(read_text(records, "a.las").format, EndsWith("format 0")) << "records follow";
 }

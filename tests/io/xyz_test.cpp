@@ -14,7 +14,8 @@ using Color = std::array<std::uint8_t, 3>;
 
 TEST(Xyz, ReadsEverySeparator) {
   for (const std::string_view row :
-       {"1 2 3", "1\t2\t3", "1,2,3", "1;2;3", " 1 , 2 ,\t3 ", "1, 2, 3\r"}) {
+       {"1 2 3", "1\t2\t3", "1\t\t2\t3", "1,2,3", "1;2;3", " 1 , 2 ,\t3 ", "1, 2, 3\r",
+        "\"1\",\"2.0\",\"3\"", "1;2;3;", "1D0 20.0d-1 0.3D+01"}) {
     EXPECT_EQ(first_point(read_text(std::string(row) + "\n")), Eigen::Vector3f(1, 2, 3)) << row;
   }
 }
@@ -50,10 +51,14 @@ TEST(Xyz, TellsColumnsFromTheirNumber) {
   EXPECT_EQ(first_point(five), Eigen::Vector3f(1, 2, 3));
 }
 
-TEST(Xyz, ReadsTheCountOfPts) {
+TEST(Xyz, ReadsScansOfPtsByTheirCounts) {
   EXPECT_EQ(read_text("2\n1 2 3\n4 5 6\n", "a.pts").cloud.size(), 2u);
+  EXPECT_EQ(read_text("2\n1 2 3\n4 5 6\n1\r\n7 8 9\n0\n", "a.pts").cloud.size(), 3u);
   EXPECT_THAT(refusal("3\n1 2 3\n4 5 6\n"),
-              HasSubstr("has 2 points, but its first line declares 3"));
+              HasSubstr("line 1: 2 points follow, but this line declares 3"));
+  EXPECT_THAT(refusal("1\n1 2 3\n4 5 6\n1\n7 8 9\n"), HasSubstr("line 1: 2 points follow"));
+  EXPECT_THAT(refusal("1\n1 2 3\n2\n7 8 9\n"), HasSubstr("line 3: 1 points follow"));
+  EXPECT_THAT(refusal("1 2 3\n4\n7 8 9\n"), HasSubstr("line 2: 1 values in a row"));
 }
 
 TEST(Xyz, DropsWhatMicrosoftsRuntimeWritesAsNotFinite) {
@@ -65,9 +70,21 @@ TEST(Xyz, DropsWhatMicrosoftsRuntimeWritesAsNotFinite) {
 }
 
 TEST(Xyz, DropsRowsWithMissingValues) {
-  const CloudFile file = read_text("x,y,z\n1,,3\n4,5,6\nnan,0,0\n");
-  EXPECT_EQ(file.cloud.size(), 1u);
-  EXPECT_EQ(file.dropped, 2u);
+  for (const char* text : {"x,y,z\n1,,3\n4,5,6\nnan,0,0\n", "4\t5\t6\n1\t\t3\n\t2\t3\n",
+                           "x\ty\tz\n1\t\t3\n4\t5\t6\n1\t2\t\n"}) {
+    const CloudFile file = read_text(text);
+    EXPECT_EQ(file.cloud.size(), 1u) << text;
+    EXPECT_EQ(first_point(file), Eigen::Vector3f(4, 5, 6)) << text;
+    EXPECT_EQ(file.dropped, 2u) << text;
+  }
+}
+
+TEST(Xyz, AMissingValueShiftsNone) {
+  const CloudFile file = read_text("1\t2\t3\t7\n4\t5\t6\t8\n1\t\t3\t9\n");
+  EXPECT_EQ(file.cloud.size(), 2u);
+  EXPECT_EQ(file.dropped, 1u);
+  EXPECT_THAT(refusal("1 2 3 7\n4 5 6 8\n1  3 9\n"), HasSubstr("line 3: 3 values in a row"));
+  EXPECT_THAT(refusal("1,,3\n4,,6\n"), HasSubstr("line 1"));
 }
 
 TEST(Xyz, LeavesOutAByteOrderMark) {
@@ -79,11 +96,13 @@ TEST(Xyz, LeavesOutAByteOrderMark) {
 
 TEST(Xyz, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(refusal("1 2 3\n4 5 6\n7 8\n"),
-              HasSubstr("line 3: 2 columns, but the first line has 3"));
+              HasSubstr("line 3: 2 values in a row, but the first row has 3"));
+  EXPECT_THAT(refusal("x y z i\n7 8 9\n"),
+              HasSubstr("line 2: 3 values in a row, but the header names 4"));
   EXPECT_THAT(refusal("1 2 3\n4 fünf 6\n"), HasSubstr("line 2: \"f??nf\" is not a number"));
   std::string wide;
-  for (int i = 0; i < 65; ++i) wide += "1 ";
-  EXPECT_THAT(refusal(wide), HasSubstr("line 1: more than 64 columns"));
+  for (int i = 0; i < 4097; ++i) wide += "1 ";
+  EXPECT_THAT(refusal(wide), HasSubstr("line 1: more than 4096 columns"));
   EXPECT_THAT(refusal("1 2\n"), HasSubstr("2 columns, but x y z need 3"));
   EXPECT_THAT(refusal("a,b,c\n1,2,3\n"), HasSubstr("neither a point nor a header"));
   EXPECT_THAT(refusal("# nothing\n"), HasSubstr("no line holds numbers"));
@@ -98,9 +117,57 @@ TEST(Xyz, LinesWithCommasMayEndInOne) {
 }
 
 TEST(Xyz, DecimalCommasAreNotTakenForSeparators) {
-  EXPECT_THAT(refusal("1,5;2,5;3,5\n1,5;2,5;3,5\n"), HasSubstr("commas inside numbers"));
-  EXPECT_THAT(refusal("1,5 2,5 3,5\n1,5 2,5 3,5\n"), HasSubstr("commas inside numbers"));
-  EXPECT_THAT(refusal("1,5\t2,5\t3,5\n"), HasSubstr("commas inside numbers"));
+  for (const char* text : {"1,5;2;-3,25\n", "1,5 2 -3,25\n", "1,5\t2\t-3,25\n", "1,5, 2, -3,25\n",
+                           "\"1,5\",\"2\",\"-3,25\"\n", "x, y, z\n1,5, 2,0, -3,25\n"}) {
+    EXPECT_EQ(first_point(read_text(text)), Eigen::Vector3f(1.5F, 2, -3.25F)) << text;
+    EXPECT_THAT(read_text(text).format, HasSubstr("decimal commas")) << text;
+  }
+  EXPECT_THAT(refusal("1,05,2,50,3,25\n1,15,2,50,3,25\n"), HasSubstr("within numbers and between"));
+  EXPECT_THAT(refusal("x,y,z\n1,5,2,5,3,5\n"),
+              HasSubstr("6 values in a row, but the header names 3"));
+  EXPECT_THAT(refusal("1,5;2.5;3,5\n"), HasSubstr("is not a number"));
+  EXPECT_THAT(refusal("1.000,5;2;3,5\n"), HasSubstr("is not a number"));
+}
+
+TEST(Xyz, PlacesHaveManyNames) {
+  for (const char* names :
+       {"Points:0,Points:1,Points:2", "\"Points:0\",\"Points:1\",\"Points:2\"",
+        "EASTING,Northing,h", "Easting [m],Northing [m],Height [m]",
+        "Easting (m) Northing (m) Height (m)", "E;N;Up", "X,Y,Elevation", "// X Y Z", "# x y z",
+        "sep=,\nx,y,z", "\"X [m]\"\t\"Y [m]\"\t\"Z [m]\""}) {
+    EXPECT_EQ(first_point(read_text(std::string(names) + "\n1,2,3\n")), Eigen::Vector3f(1, 2, 3))
+        << names;
+  }
+  EXPECT_EQ(first_point(read_text("Height,x,y,z\n9,1,2,3\n")), Eigen::Vector3f(1, 2, 3));
+  EXPECT_EQ(first_point(read_text("# x y z are in metres\n1 2 3\n")), Eigen::Vector3f(1, 2, 3));
+}
+
+TEST(Xyz, AFirstColumnThatCountsTheRowsIsNoCoordinate) {
+  for (const char* text : {"0 1 2 3\n1 1 2 4\n2 1 2 5\n3 1 2 6\n",
+                           "1,1,2,3,50\n2,1,2,4,60\n3,1,2,5,70\n4,1,2,6,80\n"}) {
+    const CloudFile file = read_text(text);
+    EXPECT_EQ(first_point(file), Eigen::Vector3f(1, 2, 3)) << text;
+    EXPECT_EQ(file.cloud.intensities.empty(), text[0] == '0') << text;
+    EXPECT_THAT(file.format, HasSubstr("counts the rows"));
+  }
+  for (const char* text : {"0 1 2 3\n1 1 2 4\n2 1 2 5\n3 1 2 6\n0 1 2 6\n",
+                           "0 1 2\n1 1 2\n2 1 2\n3 1 2\n", "0 1 2 3\n1 1 2 4\n2 1 2 5\n"}) {
+    EXPECT_EQ(read_text(text).format, "text") << text;
+    EXPECT_EQ(first_point(read_text(text)), Eigen::Vector3f(0, 1, 2)) << text;
+  }
+  EXPECT_THAT(refusal(",0,1,2\n0,1,2,3\n1,1,2,4\n"), HasSubstr("line 1"));
+}
+
+TEST(Xyz, DegreesBecomeMetresAroundTheFirstPoint) {
+  const CloudFile file =
+      read_text("lat,lon,alt\n60,10,5\n60.001,10,5\n60,10.001,6\n,10,5\n", "a.csv", {.scale = 0.5});
+  ASSERT_EQ(file.cloud.size(), 3u);
+  EXPECT_LT((file.cloud.point(0) - Eigen::Vector3d(0, 0, 2.5)).norm(), 1e-3);
+  EXPECT_LT((file.cloud.point(1) - Eigen::Vector3d(0, 111.412, 2.5)).norm(), 1e-2);
+  EXPECT_LT((file.cloud.point(2) - Eigen::Vector3d(55.800, 0, 3)).norm(), 1e-2);
+  EXPECT_THAT(file.format, HasSubstr("degrees made metres"));
+  EXPECT_THAT(refusal("lat,lon,alt\n60,10,5\n5000,10,5\n"),
+              HasSubstr("line 3: a longitude of 10 and a latitude of 5000"));
 }
 
 TEST(Xyz, DoesNotDependOnTheLocale) {

@@ -1,0 +1,176 @@
+// Divides lines of text into cells, and reads their numbers.
+#include "io/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace palpate::io {
+namespace {
+
+// Where the cell that a text begins with ends, which is not before `from`.
+std::size_t cell_end(std::string_view text, std::size_t from, std::string_view separator) {
+  if (separator == " ") {
+    while (from < text.size() && !is_space(text[from])) ++from;
+    return from;
+  }
+  std::size_t end = text.find(separator.front(), from);
+  if (separator.size() > 1) {
+    while (end < text.size() && end + 1 < text.size() && !is_space(text[end + 1])) {
+      end = text.find(separator.front(), end + 1);
+    }
+  }
+  return std::min(end, text.size());
+}
+
+// Just behind the quote that ends what a quote begins; 0: no quote begins the text.
+std::size_t quoted_size(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos || text[first] != '"') return 0;
+  return text.find('"', first + 1) + 1;
+}
+
+}  // namespace
+
+std::optional<std::string_view> take_cell(std::string_view& rest, std::string_view separator) {
+  if (separator == " ") {
+    while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
+    if (rest.empty()) return {};
+  }
+  if (rest.data() == nullptr) return {};
+  const std::size_t end = cell_end(rest, quoted_size(rest), separator);
+  std::string_view cell = trim(rest.substr(0, end));
+  rest = end < rest.size() ? rest.substr(end + 1) : std::string_view();
+  if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+    cell = trim(cell.substr(1, cell.size() - 2));
+  }
+  return cell;
+}
+
+std::size_t count_cells(std::string_view line, std::string_view separator) {
+  std::size_t count = 0;
+  while (take_cell(line, separator)) ++count;
+  return count;
+}
+
+std::optional<double> parse_cell(std::string_view cell, char decimal) {
+  if (cell.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (decimal == '.') return parse_number(cell);
+  if (cell.find('.') != std::string_view::npos) return {};
+  std::string pointed(cell);
+  std::ranges::replace(pointed, decimal, '.');
+  return parse_number(pointed);
+}
+
+void fail_at_row(const Input& input, const TextRow& row, const Dialect& dialect) {
+  const std::string_view rest = input.text().substr(row.begin);
+  const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+  fail_at_line(
+      input, row.begin,
+      fmt::format("{} values in a row, but {} {}: \"{}\"", count_cells(line, dialect.separator),
+                  dialect.declarer, row.values, excerpt(line)),
+      "Correct this row, or what declares the columns, or export the file again");
+}
+
+bool TableRows::next() {
+  while (!scanner_.at_end()) {
+    begin_ = scanner_.offset();
+    line_ = scanner_.next_line();
+    if (!(dialect_.comments ? is_blank_or_comment(line_) : trim(line_).empty())) return true;
+  }
+  return false;
+}
+
+bool TableRows::read(std::span<const std::optional<std::size_t>> places,
+                     std::span<double> row) const {
+  std::string_view rest = line_;
+  for (const std::optional<std::size_t>& place : places) {
+    const std::optional<std::string_view> cell = take_cell(rest, dialect_.separator);
+    if (!cell && scanner_.at_end()) return false;
+    if (!cell) fail_at_row(input_, {begin_, places.size()}, dialect_);
+    if (!place) continue;
+    const std::optional<double> number = parse_cell(*cell, dialect_.decimal);
+    if (!number) {
+      fail_at_line(input_, begin_, fmt::format("\"{}\" is not a number", excerpt(*cell)),
+                   "Correct this line, or export the file again");
+    }
+    row[*place] = *number;
+  }
+  if (take_cell(rest, dialect_.separator)) fail_at_row(input_, {begin_, places.size()}, dialect_);
+  return true;
+}
+
+namespace {
+
+// "X[m]", "\"x\"", "//X" all mean x.
+std::string bare_name(std::string_view name) {
+  name.remove_prefix(std::min(name.find_first_not_of("\"'/#"), name.size()));
+  return lower_case(trim(name.substr(0, name.find_first_of("[(\"',;"))));
+}
+
+}  // namespace
+
+std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns) {
+  line.remove_prefix(std::min(line.find_first_not_of("/#% "), line.size()));
+  for (const std::string_view separator : kSeparators) {
+    ColumnNames plain;
+    ColumnNames places;
+    std::string_view rest = line;
+    while (plain.roles.size() <= kMostTextColumns) {
+      const auto cell = take_cell(rest, separator);
+      if (!cell) break;
+      if (separator == " " && (cell->starts_with('[') || cell->starts_with('('))) continue;  // unit
+      const std::string name = bare_name(*cell);
+      plain.roles.add(role_of(name));
+      places.roles.add(place_of(name));
+      const auto place = places.roles[places.roles.size() - 1];
+      places.degrees = places.degrees || (name.starts_with("lat") && place == Role::y);
+    }
+    const ColumnNames& names = plain.roles.has_point() ? plain : places;
+    if (!names.roles.has_point()) continue;
+    if (columns == 0 || names.roles.size() == columns) return names;
+  }
+  return {};
+}
+
+namespace {
+
+bool are_unit(std::span<const FirstNumbers> rows, std::size_t first) {
+  const auto unit = std::ranges::count_if(rows, [&](const FirstNumbers& row) {
+    return std::abs(std::hypot(row[first], row[first + 1], row[first + 2]) - 1) < 0.01;
+  });
+  return 2 * static_cast<std::size_t>(unit) > rows.size();
+}
+
+// The roles after x, y and z.
+std::vector<Role> roles_behind(std::size_t columns, std::span<const FirstNumbers> rows) {
+  using enum Role;
+  switch (columns) {
+    case 4:
+      return {intensity};
+    case 6:
+      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z};
+      return {red, green, blue};
+    case 7:
+      return {intensity, red, green, blue};
+    case 9:
+      if (are_unit(rows, 3)) return {normal_x, normal_y, normal_z, red, green, blue};
+      return {red, green, blue, normal_x, normal_y, normal_z};
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+Roles guess_roles(std::size_t columns, std::span<const FirstNumbers> rows) {
+  Roles roles;
+  for (const Role role : {Role::x, Role::y, Role::z}) roles.add(role);
+  for (const Role role : roles_behind(columns, rows)) roles.add(role);
+  return roles;
+}
+
+}  // namespace palpate::io
