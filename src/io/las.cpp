@@ -124,9 +124,12 @@ class LasReader {
 void check_size(const Input& input, const LasHeader& header) {
   const std::size_t begin = std::min(header.points_offset, input.bytes.size());
   const std::size_t present = (input.bytes.size() - begin) / header.record_size;
-  if (present >= header.points) return;
+  const bool uncounted = header.points == 0 && points_behind(input, header) > 0;
+  if (present >= header.points && !uncounted) return;
   fail_at_byte(input, input.bytes.size(),
-               fmt::format("the file ends after {} of {} points", present, header.points),
+               uncounted
+                   ? fmt::format("the header declares no points, but {} are there", present)
+                   : fmt::format("the file ends after {} of {} points", present, header.points),
                "Download or copy it again; \"lasinfo -repair_counters\" (LAStools) makes the "
                "present points usable");
 }

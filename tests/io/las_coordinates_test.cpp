@@ -104,6 +104,9 @@ TEST(LasCount, TellsOfPointsBehindAsManyAsAreDeclared) {
   EXPECT_THAT(read_text(records, "a.las").format, HasSubstr("1 more than its header declares"));
   overwrite<std::uint32_t>(records, 243, 1);
   EXPECT_THAT(read_text(records, "a.las").format, EndsWith("format 0")) << "records follow";
+  overwrite<std::uint32_t>(bytes, 107, 0);
+  EXPECT_THAT(refusal(bytes, "a.las"), HasSubstr("declares no points, but 3 are there"));
+  EXPECT_THAT(refusal(bytes.substr(0, 230), "a.las"), HasSubstr("holds no points"));
 }
 
 }  // namespace
