@@ -93,6 +93,9 @@ bool TableRows::read(std::span<const std::optional<std::size_t>> places,
     if (!cell) fail_at_row(input_, {begin_, places.size()}, dialect_);
     if (!place) continue;
     const std::optional<double> number = parse_cell(*cell, dialect_.decimal);
+    if (!number && count_cells(line_, dialect_.separator) != places.size()) {
+      fail_at_row(input_, {begin_, places.size()}, dialect_);
+    }
     if (!number) {
       fail_at_line(input_, begin_, fmt::format("\"{}\" is not a number", excerpt(*cell)),
                    "Correct this line, or export the file again");

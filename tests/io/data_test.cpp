@@ -46,8 +46,8 @@ const std::vector<Expected> kTable{
     {"pdal_small/lone-star.*laz", 518862, ""},
     {"autzen_10m/autzen.las.xz", 0, "xz -dk"},
     {".*\\.json", 0, "JSON"},
-    {".*(trajectory|odometry)\\.log", 0, "4 columns, but the first line has 3"},
-    {".*cam\\.info\\.txt", 0, "line 16: 4 columns, but the first line has 3"},
+    {".*(trajectory|odometry)\\.log", 0, "values in a row, but the first row has 3"},
+    {".*cam\\.info\\.txt", 0, "line 16: 5 values in a row, but the first row has 4"},
     {".*(SOURCE\\.txt|LICENSE.*|README.*|bun\\.conf)", 0, "neither a point nor a header"},
 };
 
