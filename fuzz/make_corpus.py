@@ -21,7 +21,7 @@ def seed(target, name, data):
     folder.mkdir(parents=True, exist_ok=True)
     data = data.encode() if isinstance(data, str) else data
     (folder / name).write_bytes(data)
-    if target not in ("any", "cdr", "client_message", "depth", "e57", "frame_list", "haply_frame", "mcap", "poses",
+    if target not in ("any", "array", "cdr", "client_message", "depth", "e57", "frame_list", "haply_frame", "mcap", "poses",
                       "potree", "remote_frame", "remote_state", "sequence", "trajectory"):
         seed("any", f"{target}-{name}", data)
 
@@ -223,6 +223,12 @@ def text():
                                       for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
     seed("xyz", "normals_colors", "".join(f"{x};{y};{z};0;0;1;{r};{g};{b}\n"
                                           for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
+    seed("xyz", "tabs", "\t".join("xyz") + "\n" + "".join(f"{x}\t\t{z}\n{x}\t{y}\t{z}\n" for x, y, z in POINTS))
+    seed("xyz", "decimal_commas", "sep=;\n" + "".join(f'"{x}";{y};{z}\n'.replace(".", ",") for x, y, z in POINTS))
+    seed("xyz", "commas_and_blanks", "".join(f"{x}, {y}, {z}\n".replace(".", ",") for x, y, z in POINTS))
+    seed("xyz", "counted", "".join(f"{i} {x} {y} {z}D0\n" for i, (x, y, z) in enumerate(POINTS)))
+    seed("xyz", "degrees", "lat,lon,alt\n" + "".join(f"{x + 60},{y + 9},{z}\n" for x, y, z in POINTS))
+    seed("xyz", "scans", "".join(f"2\n{x} {y} {z} 1\n{y} {x} {z} 2\n" for x, y, z in POINTS))
     seed("any", "ptx-scan", "1\n5\n9 8 7\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n9 8 7 1\n"
          + "0 0 0 0 0 0 0\n" + "".join(f"{x} {y} {z} 0.5 {r} {g} {b}\n"
                                        for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
@@ -232,6 +238,15 @@ def text():
                                   for (x, y, z), (r, g, b) in zip(POINTS, COLORS)))
     seed("obj", "faces", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0.5\nf 1/1 2/2/1 3//1 4\nf -1 -2 -4\nf 1 1 2\n")
     seed("trajectory", "plain", "t,hip_x,hip_y,hip_z,more\n0,0,0,0.1,a\n0.001,0,0,0.099,b\n")
+
+
+def arrays():
+    for version, size in ((1, "<H"), (2, "<I")):
+        for order in ("False", "True"):
+            head = f"{{'descr': '<f4', 'fortran_order': {order}, 'shape': (4, 3), }}\n".encode()
+            seed("array", f"version{version}_{order.lower()}", b"\x93NUMPY" + bytes([version, 0])
+                 + struct.pack(size, len(head)) + head + b"".join(struct.pack("<3f", *p) for p in POINTS))
+    seed("array", "kitti", b"".join(struct.pack("<4f", *p, 0.5) for p in POINTS))
 
 
 def stl():
@@ -596,6 +611,6 @@ def brotli_stored(data):
     return (len(data) - 1 << 4 | 1 << 20).to_bytes(3, "little") + data + b"\x03"
 
 
-for make in (ply, pcd, las, laz, depth, text, stl, gltf, packed, e57, sequences, remote, client_messages, haply, mcap,
+for make in (ply, pcd, las, laz, depth, text, arrays, stl, gltf, packed, e57, sequences, remote, client_messages, haply, mcap,
              messages, splats, potree):
     make()

@@ -31,10 +31,11 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr auto kNames = std::to_array<std::string_view>(
-    {"any",      "cdr",         "copc",      "depth", "e57",    "frame_list",   "gltf",
-     "gzip",     "haply_frame", "las",       "laz",   "mcap",   "obj",          "pcd",
-     "pgm",      "ply",         "png",       "poses", "potree", "remote_frame", "remote_state",
-     "sequence", "splat",       "splat_ply", "spz",   "stl",    "trajectory",   "xyz"});
+    {"any",        "array",  "cdr",          "copc",         "depth",    "e57",
+     "frame_list", "gltf",   "gzip",         "haply_frame",  "las",      "laz",
+     "mcap",       "obj",    "pcd",          "pgm",          "ply",      "png",
+     "poses",      "potree", "remote_frame", "remote_state", "sequence", "splat",
+     "splat_ply",  "spz",    "stl",          "trajectory",   "xyz"});
 
 void check_promises(const CloudFile& file) {
   const PointCloud& cloud = file.cloud;
@@ -181,6 +182,7 @@ bool run_sequence_target(std::string_view name, const io::Input& input) {
 }
 
 CloudFile read_as(std::string_view name, const io::Input& input) {
+  if (name == "array") return io::read_array(input);
   if (name == "gltf") return io::read_gltf(input);
   if (name == "las" || name == "laz") {
     check_pieces(input.bytes);

@@ -39,10 +39,12 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return read_stl(input);
     case FileKind::gltf:
       return read_gltf(input);
-    case FileKind::text:
+    case FileKind::xyz:
       return read_xyz(input);
     case FileKind::ptx:
       return read_ptx(input);
+    case FileKind::npy:
+      return read_array(input);
     case FileKind::png:
       return cloud_of(input, read_png(input));
     case FileKind::pgm:
@@ -51,7 +53,7 @@ CloudFile read_kind(const Input& input, FileKind kind) {
       return shell_file(input, read_spz);
     case FileKind::splat:
       return shell_file(input, read_dot_splat);
-    case FileKind::gzip:
+    case FileKind::gz:
       break;
   }
   fail(input, "compressed with gzip twice", "Unpack it once with gunzip");
@@ -94,7 +96,8 @@ void fit_length(const Input& input, CloudFile& file) {
 Input without_mark(const Input& input) {
   Input result = input;
   const bool marked = input.text().starts_with(kByteOrderMark);
-  if (marked && extension(input.name) != ".splat" && !is_stl(input)) {
+  const std::string ending = extension(input.name);
+  if (marked && ending != ".splat" && ending != ".bin" && !is_stl(input)) {
     result.bytes = input.bytes.subspan(kByteOrderMark.size());
   }
   return result;
@@ -114,7 +117,7 @@ CloudFile read_input(const Input& given) {
   check_options(input);
   try {
     const FileKind kind = kind_of(input);
-    CloudFile file = kind == FileKind::gzip ? read_packed(input) : read_kind(input, kind);
+    CloudFile file = kind == FileKind::gz ? read_packed(input) : read_kind(input, kind);
     fit_length(input, file);
     if (input.options.progress) input.options.progress(1.0);
     return file;
@@ -194,7 +197,7 @@ DepthImage read_image_of(const Input& input, FileKind kind) {
 
 DepthImage read_image(const Input& input) {
   const FileKind kind = kind_of(input);
-  if (kind != FileKind::gzip) return read_image_of(input, kind);
+  if (kind != FileKind::gz) return read_image_of(input, kind);
   const Bytes unpacked = unpack(input, input.name);
   const Input inside{unpacked.span(), input.name, input.options};
   return read_image_of(inside, kind_of(inside));

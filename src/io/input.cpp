@@ -62,8 +62,9 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kReadable =
-    "Supported are PLY, PCD, XYZ/TXT/CSV, PTX, OBJ, STL, glTF, GLB, LAS, LAZ, E57, SPZ, .splat, "
-    "16-bit depth PNG and PGM, optionally gzipped";
+    "Supported are PLY, PCD, XYZ/TXT/CSV, PTX, OBJ, STL, glTF, GLB, LAS, LAZ, E57, NPY, KITTI's "
+    ".bin, "
+    "SPZ, .splat, 16-bit depth PNG and PGM, optionally gzipped";
 
 struct Known {
   std::string_view start;
@@ -73,8 +74,8 @@ struct Known {
 constexpr Known kKnown[] = {
     {"ply\n", FileKind::ply},  {"ply\r", FileKind::ply},    {"ply ", FileKind::ply},
     {"LASF", FileKind::las},   {"ASTM-E57", FileKind::e57}, {"\x89PNG\r\n\x1a\n", FileKind::png},
-    {"P5", FileKind::pgm},     {"NGSP", FileKind::spz},     {"\x1f\x8b", FileKind::gzip},
-    {"# .PCD", FileKind::pcd}, {"glTF", FileKind::gltf},
+    {"P5", FileKind::pgm},     {"NGSP", FileKind::spz},     {"\x1f\x8b", FileKind::gz},
+    {"# .PCD", FileKind::pcd}, {"glTF", FileKind::gltf},    {"\x93NUMPY", FileKind::npy},
 };
 
 struct Refused {
@@ -100,6 +101,13 @@ constexpr Refused kRefused[] = {
     {"II*\0"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
     {"MM\0*"sv, "a TIFF picture", "Convert depth images to 16-bit grey PNG"},
     {"P6", "a colour picture (PPM)", "Give the 16-bit depth image of the camera"},
+    {"Pf\n", "a picture of floats (PFM)",
+     "Make a 16-bit PGM of millimetres of it: python3 -c \"import numpy as np; "
+     "f = open('IN.pfm', 'rb'); f.readline(); w, h = f.readline().split(); "
+     "t = '<f4' if float(f.readline()) < 0 else '>f4'; "
+     "a = 1000 * np.frombuffer(f.read(), t).reshape(int(h), -1)[::-1]; "
+     "a = np.nan_to_num(a, posinf=0).clip(0, 65534).round().astype('>u2'); "
+     "open('OUT.pgm', 'wb').write(b'P5 %d %d 65535\\n' % a.shape[::-1] + a.tobytes())\""},
     {"P2", "a PGM written as text", "Convert it to binary PGM (P5) or to 16-bit PNG"},
     {"\x89HDF", "an HDF5 file", "Export the points as PLY or text"},
     {"OFF", "an OFF model", kExport},
@@ -149,7 +157,7 @@ FileKind text_kind(const Input& input, std::string_view word) {
   const bool is_obj =
       std::find(std::begin(kObjWords), std::end(kObjWords), word) != std::end(kObjWords);
   if (is_obj || extension(input.name) == ".obj") return FileKind::obj;
-  return is_ptx(input) ? FileKind::ptx : FileKind::text;
+  return is_ptx(input) ? FileKind::ptx : FileKind::xyz;
 }
 
 void refuse_known(const Input& input) {
@@ -189,7 +197,9 @@ FileKind kind_of(const Input& input) {
     fail(input, "the file is empty", "Download or export it again");
   }
   refuse_splats(input);
-  if (extension(input.name) == ".splat") return FileKind::splat;
+  const std::string ending = extension(input.name);
+  if (ending == ".splat") return FileKind::splat;
+  if (ending == ".bin" && !looks_like_text(input.text())) return FileKind::npy;
   for (const Known& entry : kKnown) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }

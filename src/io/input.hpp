@@ -87,7 +87,7 @@ class Progress {
   std::size_t next_;
 };
 
-enum class FileKind { ply, pcd, las, e57, obj, stl, gltf, text, ptx, png, pgm, spz, splat, gzip };
+enum class FileKind { ply, pcd, las, e57, obj, stl, gltf, xyz, ptx, npy, png, pgm, spz, splat, gz };
 
 /// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
 /// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, JSON,

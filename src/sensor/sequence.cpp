@@ -61,7 +61,7 @@ SequenceDescription describe(const fs::path& folder) {
   }
   throw Error(fmt::format(
       "{}: contains no sequence. Add a sequence.json (docs/sequences.md), the depth.txt "
-      "or associations.txt of a TUM RGB-D sequence, or clouds (PCD, PLY).",
+      "or associations.txt of a TUM RGB-D sequence, or clouds (PCD, PLY, NPY, BIN).",
       folder.string()));
 }
 
@@ -196,7 +196,7 @@ double rate_of(const SequenceDescription& description, const std::vector<Sequenc
 
 bool is_cloud(const fs::path& frame) {
   const std::string ending = io::extension(frame.string());
-  return ending == ".pcd" || ending == ".ply";
+  return ending == ".pcd" || ending == ".ply" || ending == ".npy" || ending == ".bin";
 }
 
 Sequence read_sequence(const fs::path& folder) {

@@ -22,7 +22,7 @@ TEST(FileKind, GoesByTheBytesBeforeTheName) {
   EXPECT_EQ(kind("# a comment\nVERSION 0.7\n"), io::FileKind::pcd);
   EXPECT_EQ(kind("v 1 2 3\n", "a.txt"), io::FileKind::obj);
   EXPECT_EQ(kind("1 2 3\n", "a.obj"), io::FileKind::obj);
-  EXPECT_EQ(kind("1 2 3\n", "a.ply"), io::FileKind::text);
+  EXPECT_EQ(kind("1 2 3\n", "a.ply"), io::FileKind::xyz);
   EXPECT_EQ(kind("solid cube\n", "a.txt"), io::FileKind::stl);
   EXPECT_EQ(kind("1 2 3\n", "A.STL"), io::FileKind::stl);
   EXPECT_EQ(kind("glTF", "a.txt"), io::FileKind::gltf);
@@ -63,8 +63,8 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
 }
 
 TEST(FileKind, ShowsTheFirstBytesOfWhatItDoesNotKnow) {
-  EXPECT_THAT(refusal(std::string("\x01\x02\x00\xff", 4), "a.bin"),
-              HasSubstr("a.bin: unknown file type (it starts with 01 02 00 ff)"));
+  EXPECT_THAT(refusal(std::string("\x01\x02\x00\xff", 4), "a.dat"),
+              HasSubstr("a.dat: unknown file type (it starts with 01 02 00 ff)"));
   EXPECT_THAT(refusal(""), HasSubstr("the file is empty"));
 }
 

@@ -55,6 +55,24 @@ TEST(CloudSequence, PlaysAFolderOfCloudsByTheTimesInTheirNames) {
   }
 }
 
+TEST(CloudSequence, PlaysTheScansOfKitti) {
+  const Folder folder;
+  for (int k = 0; k < 3; ++k) {
+    std::string bytes;
+    for (const float number : {0.F, 1.F, static_cast<float>(k), 0.5F}) {
+      bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+    }
+    folder.write("000000000" + std::to_string(k) + ".bin", bytes);
+  }
+  const auto camera = open_sequence(read_sequence(folder.path()));
+  DepthFrame frame;
+  for (int k = 0; k < 3; ++k) {
+    ASSERT_EQ(camera->read(frame, 0), DepthCamera::Status::frame) << camera->reason();
+    ASSERT_TRUE(frame.cloud);
+    EXPECT_EQ(frame.cloud->point(0), Eigen::Vector3d(0, 1, k));
+  }
+}
+
 TEST(CloudSequence, PlaysImagesAloneWhereThereAreAny) {
   const Folder folder;
   folder.write("sequence.json", kCamera);
