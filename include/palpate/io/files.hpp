@@ -57,11 +57,11 @@ struct CloudFile {
   std::optional<MeshFacts> mesh{};     ///< of a file with faces
 };
 
-/// Reads PLY, PCD, XYZ/TXT/CSV, PTX, OBJ, STL, glTF, GLB, LAS, LAZ (COPC too), E57, 16-bit depth
-/// PNG and PGM; gzip around any of them. The kind is told from the bytes first and from the name
-/// second;
-/// "-" is standard input. Points that are not finite are dropped and counted; pixels without a
-/// depth, and those beyond ten times the image's median depth, too.
+/// Reads PLY, PCD, XYZ/TXT/CSV, PTS, PTX, OBJ, STL, glTF, GLB, LAS, LAZ (COPC too), E57, NumPy's
+/// .npy, KITTI's .bin, 16-bit depth PNG and PGM; gzip around any of them. The kind is told from the
+/// bytes first and from the name second; "-" is standard input. Points that are not finite are
+/// dropped and counted; pixels without a depth, and those beyond ten times the image's median
+/// depth, too.
 ///
 /// A folder with the metadata.json of a Potree 2.0 store (or that file) is read whole.
 ///
