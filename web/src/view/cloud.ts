@@ -6,15 +6,17 @@ import {
   Vector3, ZeroFactor, type Texture,
 } from "three";
 import type { CloudMessage } from "../protocol/decode";
-import { kCloudLayer } from "./backdrop";
 import { kCloudFragment, kCloudVertex } from "./cloud_shader";
 import { screenColour, sourceColour } from "./colours";
+import { kCloudLayer } from "./layers";
 
 export const kColourings = ["source", "height", "normal", "age", "own", "trust"] as const;
 export type Colouring = (typeof kColourings)[number];
 
 const kStale = 1; // s, the age that shows as stale
 const kTint = 0.4; // of a source's colour in clay (judgement)
+
+export const kTall = { value: 1 }; // pixels, the height of the picture that is drawn
 
 function makeMaterial(ramps: Texture): ShaderMaterial {
   return new ShaderMaterial({
@@ -36,7 +38,8 @@ function makeMaterial(ramps: Texture): ShaderMaterial {
       heights: { value: new Vector2(0, 1) },
       up: { value: new Vector3(0, 0, 1) },
       disc: { value: 1 },
-      pixels: { value: 1000 },
+      wider: { value: 1 },
+      tall: kTall,
       ramps: { value: ramps },
     },
   });
@@ -47,6 +50,8 @@ export class Cloud {
   stamp = NaN;
   count = 0;
   whole = 0; // points that are felt; 0: not known
+  private every = 1; // that `some` are
+  private some: BufferAttribute | undefined;
   private ownTint = [0, 0, 0];
   private clay = [0, 0, 0];
   private even = 0.002; // m, between points that lie evenly
@@ -84,7 +89,7 @@ export class Cloud {
     this.fill("position", message.places);
     if (message.colours !== undefined) this.fill("own", message.colours);
     if (message.normals !== undefined) this.fill("bend", message.normals);
-    if (message.trust !== undefined) this.fill("trust", message.trust);
+    this.fill("trust", message.trust ?? new Uint8Array(message.count).fill(255));
     this.fill("wide", message.radii ?? new Uint8Array(message.count)); // none: as small as can be
     const [x, y, z] = message.extent;
     this.points.position.set(...message.lower);
@@ -116,15 +121,34 @@ export class Cloud {
   }
 
   /** disc: radius of what a point is drawn as, in R. */
-  scale(disc: number, pixels: number): void {
+  scale(disc: number): void {
     this.points.material.uniforms["disc"]!.value = disc;
-    this.points.material.uniforms["pixels"]!.value = pixels;
+  }
+
+  /** One of so many points, so much wider: they are in the order of a curve that fills space, so what is left covers all. */
+  drawEvery(every: number): void {
+    const { geometry, material } = this.points;
+    material.uniforms["wider"]!.value = Math.sqrt(every);
+    if (every === 1) {
+      geometry.setIndex(null);
+      this.drawPart(0, this.count);
+      return;
+    }
+    if (this.every !== every) this.some = new BufferAttribute(Uint32Array.from({ length: Math.ceil(this.capacity / every) }, (_, i) => i * every), 1);
+    this.every = every;
+    geometry.setIndex(this.some!);
+    this.drawPart(0, Math.ceil(this.count / every));
+  }
+
+  drawPart(from: number, count: number): void {
+    this.points.geometry.setDrawRange(from, count);
   }
 
   private grow(count: number): void {
     this.capacity = Math.ceil(count * 1.25);
     const geometry = this.points.geometry;
     geometry.dispose();
+    this.every = 1;
     geometry.setAttribute("position", new BufferAttribute(new Uint16Array(3 * this.capacity), 3, true));
     geometry.setAttribute("own", new BufferAttribute(new Uint8Array(3 * this.capacity), 3, true));
     geometry.setAttribute("bend", new BufferAttribute(new Int8Array(2 * this.capacity), 2, true));

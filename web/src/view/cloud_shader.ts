@@ -10,7 +10,8 @@ export const kCloudVertex = /* glsl */ `
   uniform vec2 heights;     // low, high
   uniform vec3 up;
   uniform float disc;       // radius of a point's disc, in R
-  uniform float pixels;     // pixels per unit of size over depth
+  uniform float wider;      // where some points stand for all
+  uniform float tall;       // the picture, pixels
   uniform sampler2D ramps;
   in vec2 bend;      // octahedral normal
   in vec3 own;
@@ -31,11 +32,12 @@ export const kCloudVertex = /* glsl */ `
     vec4 world = modelMatrix * vec4(position, 1.0);
     vec4 seen = viewMatrix * world;
     gl_Position = projectionMatrix * seen;
-    radius = disc * exp2((wide - 160.0) / 8.0);
-    gl_PointSize = max(2.0 * radius * pixels / -seen.z, 1.5);
+    radius = disc * wider * exp2((wide - 160.0) / 8.0);
+    gl_PointSize = max(radius * tall * projectionMatrix[1][1] / -seen.z, 1.5);
     deep = vec3(seen.z, projectionMatrix[2][2], projectionMatrix[3][2]);
 
-    vec3 normal = hasNormals ? unbend(bend) : up;
+    bool isSurface = hasNormals && trust > 0.5; // others have no direction of their own
+    vec3 normal = isSurface ? unbend(bend) : up;
     if (mode == 1) {
       float h = (dot(world.xyz, up) - heights.x) / max(heights.y - heights.x, 1e-9);
       colour = texture(ramps, vec2(clamp(h, 0.0, 1.0) * 0.996 + 0.002, 0.5 / 3.0)).rgb;
@@ -61,6 +63,7 @@ export const kCloudVertex = /* glsl */ `
       float shade = 0.6 + 0.48 * dot(facing, light); // as of a sky: no face is black
       colour *= mode == 2 || mode == 4 ? mix(1.0, shade, 0.35) : shade;
     }
+    if (!isSurface) facing = vec3(0.0, 0.0, 1.0);
   }
 `;
 

@@ -1,5 +1,5 @@
 // Renderer, camera and light; draws when something asked for it. Sharpness gives way where the
-// graphics card cannot follow.
+// graphics card cannot follow; where there is none, it comes once the eye stands still.
 
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
@@ -8,14 +8,16 @@ import { Backdrop, type Caster } from "./backdrop";
 import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
+import type { Cloud } from "./cloud";
 import type { ScaleBar } from "./scale_bar";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
-const kPatience = 40; // slow pictures before sharpness gives way; where the processor draws:
-const kPatienceSoftware = 8;
+const kPatience = 40; // slow pictures before sharpness gives way
 const kRest = 300; // ms between two pictures of clouds that change, where drawing is slow (judgement)
-const kLeastSharpness = 0.5; // pixels drawn for one of the style sheet, where the processor draws
+const kPeriod = 100; // elsewhere: the program sends no more
+const kMost = 40_000; // points of a picture while the eye moves, where the processor draws: 0.8 us each (measured)
+const kQuickSharpness = 0.5; // pixels drawn for one of the style sheet while the eye moves, where the processor draws
 const kSamples = 4; // of a pixel, where a graphics card draws
 
 export class Stage {
@@ -25,13 +27,16 @@ export class Stage {
   frameTime = NaN; // ms between pictures, smoothed
   width = 1;
   height = 1;
+  shown: readonly Cloud[] = [];
   clouds = ""; // changes with what is seen of them
   grain = 0; // size of their points' disks, m
   readonly up = new Vector3(0, 0, 1);
   casters: Caster[] = []; // throw shadows down on clouds
   private readonly backdrop: Backdrop;
   readonly software: boolean;
-  private sharpness: number;
+  private readonly finest: number; // pixels drawn for one of the style sheet, once the eye stands still;
+  private sharpness: number; // while it moves
+  private drawn = 0; // in the canvas
   private wanted = true;
   private last = 0;
   private slowPictures = 0;
@@ -40,11 +45,12 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement, graphics: Graphics) {
     this.software = graphics.software;
-    this.sharpness = this.software ? 1 : Math.min(devicePixelRatio, 2);
+    this.finest = this.software ? 1 : Math.min(devicePixelRatio, 2);
+    this.sharpness = this.software ? kQuickSharpness : this.finest;
     this.renderer = new WebGLRenderer({
       canvas, antialias: !this.software, powerPreference: "high-performance",
     });
-    this.backdrop = new Backdrop(this.software ? 0 : kSamples);
+    this.backdrop = new Backdrop(this.software ? 0 : kSamples, this.software ? kMost : Infinity);
     this.scene.add(this.backdrop.screen);
     const lamp = new DirectionalLight(0xffffff, 2.0);
     lamp.position.set(0.35, 0.55, 0.75);
@@ -83,11 +89,6 @@ export class Stage {
     return Math.max(-depth, this.camera.near) / this.pixelsPerSlope;
   }
 
-  /** Drawn pixels per metre at a depth of one. */
-  get pixelScale(): number {
-    return this.pixelsPerSlope * this.sharpness;
-  }
-
   /** Style-sheet pixels per metre at a depth of one. */
   get pixelsPerSlope(): number {
     return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
@@ -96,7 +97,7 @@ export class Stage {
   /** What is seen, with a caption. */
   picture(words: string, bar: ScaleBar): Promise<Blob | null> {
     const { sharpness } = this;
-    this.sharpness = Math.max(1, sharpness); // it may be looked at for longer
+    if (!this.backdrop.isSharp) this.sharpness = Math.max(1, sharpness); // it may be looked at for longer
     this.wanted = true; // a canvas keeps its picture only until it is shown
     this.resize();
     const picture = captioned(this.canvas, this.canvas.width / this.width, words, bar);
@@ -109,11 +110,19 @@ export class Stage {
   private resize(): void {
     this.width = Math.max(1, this.canvas.clientWidth);
     this.height = Math.max(1, this.canvas.clientHeight);
-    this.renderer.setPixelRatio(this.sharpness);
-    this.renderer.setSize(this.width, this.height, false);
+    this.drawn = 0;
     this.camera.aspect = this.width / this.height;
     this.camera.updateProjectionMatrix();
     this.draw(performance.now());
+  }
+
+  /** As sharp as what is put into it. */
+  private fitCanvas(): void {
+    const sharpness = this.backdrop.isSharp ? this.finest : this.sharpness;
+    if (sharpness === this.drawn) return;
+    this.drawn = sharpness;
+    this.renderer.setPixelRatio(sharpness);
+    this.renderer.setSize(this.width, this.height, false);
   }
 
   private tick(now: number): void {
@@ -127,8 +136,10 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
-    const { sharpness, clouds, grain } = this;
-    this.backdrop.update(this.renderer, this.scene, this.camera, { sharpness, clouds, grain, rest: this.slow ? kRest : 0 });
+    const { width, height, shown, clouds, grain, sharpness, finest } = this;
+    const more = this.backdrop.update(this.renderer, this.scene, this.camera, { width, height, shown, clouds, grain, sharpness, finest, rest: this.slow ? kRest : kPeriod });
+    this.wanted ||= more;
+    this.fitCanvas();
     this.backdrop.cast(this.camera, this.up, this.casters);
     this.renderer.render(this.scene, this.camera);
   }
@@ -137,10 +148,8 @@ export class Stage {
     if (!(interval > 0) || interval > 1000) return;
     this.frameTime = Number.isNaN(this.frameTime) ? interval : 0.95 * this.frameTime + 0.05 * interval;
     this.slowPictures = interval > kSlow ? this.slowPictures + 1 : Math.max(0, this.slowPictures - 1);
-    const least = this.software ? kLeastSharpness : 1;
-    if (this.slowPictures < (this.software ? kPatienceSoftware : kPatience) || this.sharpness <= least) return;
+    if (this.slowPictures < kPatience || this.sharpness <= 1) return;
     this.slowPictures = 0;
-    this.sharpness = Math.max(least, this.sharpness / 1.4);
-    this.resize();
+    this.sharpness = Math.max(1, this.sharpness / 1.4);
   }
 }

@@ -39,7 +39,7 @@ const kArrowPixels = 80;
 const kAxes = [[0, 0, 1], [0, 1, 0], [0, -1, 0], [1, 0, 0], [-1, 0, 0], [0, 0, -1]].map(([x, y, z]) => new Vector3(x, y, z));
 
 export const kFirstLook: Look = {
-  colouring: "own", disc: 0.5, points: true, surface: true, support: true, cameras: true, trail: true,
+  colouring: "own", disc: 0.6, points: true, surface: true, support: true, cameras: true, trail: true,
 };
 
 export class World {
@@ -225,8 +225,9 @@ export class World {
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
       cloud.shade(colouring, this.clouds.length > 1, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
-      cloud.scale(look.disc, stage.pixelScale);
+      cloud.scale(look.disc);
     });
+    stage.shown = look.points ? this.shownClouds() : [];
     // Whatever else is asked for, the eye and what clouds are made of decide what they look like.
     stage.clouds = [this.changes, colouring, colouring === "age" ? this.time : 0, look.disc, look.points, ...this.visible].join();
     stage.grain = this.lift();

@@ -7,7 +7,7 @@ import { WebSocket } from "ws";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
 import { firstPaint, listen } from "./heard.mjs";
-import { browser, hands, kPhone, kSmall, sent, text, withPage } from "./with_page.mjs";
+import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 
 test("letters act while a switch or a slider has the focus, and not while one writes", () =>
   withPage(kSmall, async (page, program) => {
@@ -124,6 +124,25 @@ test("a page whose tool another takes is told, and holds it no more", () =>
     assert.ok(program.servo.taken, "it is the other's");
     other.close();
   }));
+
+test("drawn in software, the picture of a moving eye is coarse; it becomes sharp once the eye stands still", async () => {
+  const server = await serve({ points: 4000, still: true });
+  const page = await openPage(browser, server.address, kSmall);
+  await ready(page);
+  const sharpness = () => page.evaluate(() => {
+    const view = document.getElementById("view");
+    return view.width / view.clientWidth;
+  });
+  await page.hover("#view");
+  for (let round = 0; round < 2; round += 1) {
+    await until("sharp", async () => (await sharpness()) > 0.99);
+    await page.mouse.wheel(0, 100);
+    await until("coarse", async () => (await sharpness()) < 0.51);
+  }
+  assert.deepEqual(page.troubles, []);
+  await page.context().close();
+  await server.close();
+});
 
 test("scale and ramp stand beside one another on the narrowest phone", async () => {
   for (const width of [320, 390]) {

@@ -1,0 +1,3 @@
+// What three draws together.
+
+export const kCloudLayer = 1; // of what is drawn into the backdrop
