@@ -100,6 +100,7 @@ export class Backdrop {
     this.screen = screen(kShow, {
       colours: { value: null }, depths: { value: null }, range: this.range, slopes: { value: [1, 1] }, up: { value: new Vector3() },
       casters: { value: this.casters }, heats: { value: this.heats }, hot: { value: [0, 0, 0] }, ground: { value: [0, 0, 0] },
+      between: { value: [0, 0] },
       count: { value: 0 },
     });
     this.screen.renderOrder = -1;
@@ -139,13 +140,13 @@ export class Backdrop {
     this.drawn = now;
     this.quick.scissor.set(0, 0, Infinity, Infinity);
     this.progress = { pictures: 0, points: 0, rows: 0 };
-    this.show(this.quick);
     const every = Math.max(1, Math.ceil(countOf(wanted.shown) / this.most));
     for (const cloud of wanted.shown) cloud.drawEvery(every);
     this.resize(this.quick, wanted, wanted.sharpness);
     this.drawPoints(renderer, scene, camera, true);
     for (const cloud of wanted.shown) cloud.drawEvery(1);
     this.drawShade(renderer, camera, wanted, this.quick, 0);
+    this.show(this.quick);
     return true;
   }
 
@@ -184,8 +185,10 @@ export class Backdrop {
     this.show(this.sharp);
   }
 
-  private show({ texture, depthTexture }: WebGLRenderTarget): void {
-    Object.assign(this.screen.material.uniforms, { colours: { value: texture }, depths: { value: depthTexture } });
+  /** The quick picture is smoothed: few places are compared for its hollows. */
+  private show({ texture, depthTexture, width, height }: WebGLRenderTarget): void {
+    const between = { value: texture === this.quick.texture ? [0.5 / width, 0.5 / height] : [0, 0] };
+    Object.assign(this.screen.material.uniforms, { colours: { value: texture }, depths: { value: depthTexture }, between });
   }
 
   private resize(to: WebGLRenderTarget, { width, height }: Wanted, sharpness: number): void {

@@ -104,6 +104,7 @@ export const kShow = /* glsl */ `
   uniform float heats[4];
   uniform vec3 hot;
   uniform vec3 ground; // behind all
+  uniform vec2 between; // from a pixel's middle to the mean of four
   uniform int count; // of them
   in vec2 at;
   out vec4 shown;
@@ -121,7 +122,7 @@ export const kShow = /* glsl */ `
   }
 
   void main() {
-    vec4 colour = texture(colours, at);
+    vec4 colour = texture(colours, at + between);
     if (colour.a == 0.0) discard; // nothing there: the canvas keeps its ground
     gl_FragDepth = depth(at);
     vec3 here = seen(at);
