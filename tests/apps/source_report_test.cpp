@@ -15,7 +15,7 @@ LoadedSource fed(double rate, double prepare_ms, bool simulated) {
   return source;
 }
 
-std::string printed(const Report& report) {
+std::string printed(Report report) {
   std::FILE* file = std::tmpfile();
   report.print(file);
   std::rewind(file);
