@@ -17,6 +17,7 @@ const kAbove = 2; // reaches of a pick, where it hovers
 const kBelow = 3; // and where a hand that presses wants to be at least
 const kGive = 6; // times as deep as the surface gives way to the force, as the hand's spring is not much softer
 const kDeepest = 20; // times the least
+const kSunk = 2; // reaches below what is seen, some 20 mm of the hand: a press that goes so deep, and is soft, ends
 const kNear = 0.25; // and from where it pulls with a limited force
 const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
 // ms in which a proxy that something else holds may come free, and a force that contact keeps small grow: a hand that
@@ -35,6 +36,7 @@ export class Stroke {
   content = false; // presses, and feels about the force that is wanted
   led = false; // by a tour, not by a pointer
   private misses = 0; // of a press, which went through what is seen
+  private sunk = false; // too deep in what is soft; until it is out of it
   private there = false; // on the surface or above it: from there alone it presses
   private last: Seen | undefined;
   private good = 0; // ms, when nothing else held the proxy
@@ -90,7 +92,7 @@ export class Stroke {
     this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
     if (!this.pressing || tool.touching) this.misses = 0;
     this.judge(tool, above, felt, now);
-    const height = tool.hipPlace.clone().sub(place).dot(normal);
+    const height = -this.below(tool);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
     if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPlace); // until it is free
     else if (!pressing) this.hand.moveTo(above);
@@ -126,6 +128,8 @@ export class Stroke {
     if (felt) this.there = true;
     else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;
     else if (tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    this.sunk = tool.touching && (this.sunk || (tool.weak && this.below(tool) > kSunk * reach));
+    if (this.sunk) this.there = false;
     if (!tool.touching || !tool.weak || this.content) this.strong = now;
     if (now - this.strong > kPatience) {
       this.there = false;
@@ -140,8 +144,12 @@ export class Stroke {
 
   /** Is the tool below the surface as deep as a press goes where nothing stops it? */
   private missed(tool: Tool): boolean {
-    const { place, normal, reach } = this.last!;
-    return place.clone().sub(tool.hipPlace).dot(normal) > 0.9 * kBelow * reach;
+    return this.below(tool) > 0.9 * kBelow * this.last!.reach;
+  }
+
+  /** How deep the hand is below the surface, m. */
+  private below(tool: Tool): number {
+    return this.last!.place.clone().sub(tool.hipPlace).dot(this.last!.normal);
   }
 
   /** How far it has not gone straight through the surface, m. */

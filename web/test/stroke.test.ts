@@ -1,0 +1,48 @@
+// A press on the surface under the pointer, with a made-up tool.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { PerspectiveCamera, Vector2, Vector3 } from "three";
+import type { Hand } from "../src/input/hand";
+import { Stroke } from "../src/input/stroke";
+import type { World } from "../src/view/world";
+
+const kReach = 0.01; // m
+
+function setUp() {
+  const camera = new PerspectiveCamera();
+  camera.position.set(0, 0, 1);
+  const tool = {
+    hipPlace: new Vector3(0, 0, 2 * kReach), proxyPlace: new Vector3(), normal: new Vector3(0, 0, 1), force: new Vector3(0, 0, 0.1),
+    touching: false, behind: false, weak: false, faulty: false,
+  };
+  const seen = () => ({ place: new Vector3(), normal: new Vector3(0, 0, 1), reach: kReach, inward: new Vector3() });
+  const world = { tools: [tool], stage: { camera }, surfaceAlong: seen } as unknown as World;
+  const aims: number[] = []; // heights that the hand is asked to go to, m
+  const hand = { device: 0, held: true, moveTo: (place: Vector3) => aims.push(place.z) };
+  const stroke = new Stroke(world, hand as unknown as Hand, () => undefined);
+  stroke.aim(new Vector2(0, 0), false);
+  stroke.press(true);
+  const at = (now: number, height: number, touching: boolean, weak: boolean) => {
+    Object.assign(tool, { touching, weak });
+    tool.hipPlace.z = height;
+    stroke.update(now);
+    return aims.at(-1)!;
+  };
+  assert.ok(at(1000, 2 * kReach, false, false) < 0, "from above it presses");
+  return at;
+}
+
+test("a press that is soft and deep is lifted, and presses again once it is out", () => {
+  const at = setUp();
+  assert.ok(at(1016, -kReach, true, true) < 0, "not deep yet");
+  at(1032, -2.5 * kReach, true, true);
+  assert.ok(at(1200, -2.5 * kReach, true, true) > kReach, "up");
+  assert.ok(at(1216, -0.5 * kReach, true, false) > kReach, "all the way up");
+  assert.ok(at(1400, 2 * kReach, false, false) < 0, "and again");
+});
+
+test("a press on what is as stiff as asked for stays", () => {
+  const at = setUp();
+  assert.ok(at(1032, -2.5 * kReach, true, false) < 0);
+});
