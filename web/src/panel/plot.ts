@@ -26,6 +26,7 @@ export interface PlotOptions {
 }
 
 const kLabelHeight = 18; // pixels
+const kLeastDrag = 4; // pixels; less is a press
 
 type Range = [number, number];
 
@@ -113,6 +114,7 @@ export class Plot {
   private readonly box = make("div", { class: "plot" });
   private readonly plot: uPlot;
   private curves: Curve[] = [];
+  private part: Range | undefined; // of x that is shown; undefined: all
 
   constructor(private readonly options: PlotOptions) {
     const { x, least } = options;
@@ -127,14 +129,14 @@ export class Plot {
       height: 100,
       padding: [6, 10, 0, 0],
       legend: { show: false },
-      cursor: { y: false, points: { size: 6 }, drag: { setScale: false } },
+      cursor: { y: false, points: { size: 6 }, drag: { setScale: false }, bind: { dblclick: () => () => this.zoom(undefined) } },
       scales: {
-        x: { time: false, range: () => x },
+        x: { time: false, range: () => this.part ?? x },
         y: { range, ...(options.logarithmic ? { distr: 3 } : {}) },
       },
       axes: [axis(options, 2), axis(options, 3)],
       series: [{}, ...options.curves.map(seriesOf)],
-      hooks: { setCursor: [() => this.showValues()] },
+      hooks: { setCursor: [() => this.showValues()], setSelect: [(plot) => this.zoomTo(plot.select)] },
     }, [[]], this.box));
     this.name(options.curves);
     new ResizeObserver(() => this.resize()).observe(this.box);
@@ -153,6 +155,19 @@ export class Plot {
     for (let i = this.curves.length; i > 0; i -= 1) this.plot.delSeries(i);
     curves.forEach((curve, i) => this.plot.addSeries(seriesOf(curve), i + 1));
     this.name(curves);
+  }
+
+  /** What a drag has marked; a double press shows all again. */
+  private zoomTo({ left, width }: uPlot.Select): void {
+    if (width < kLeastDrag) return;
+    this.zoom([this.plot.posToVal(left, "x"), this.plot.posToVal(left + width, "x")]);
+    this.plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+  }
+
+  private zoom(part: Range | undefined): null {
+    this.part = part;
+    this.plot.setData(this.plot.data);
+    return null;
   }
 
   redraw(): void {
