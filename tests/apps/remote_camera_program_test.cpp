@@ -110,13 +110,13 @@ TEST(RemoteCameraProgram, GoesOnWithTheNextProgram) {
   ASSERT_TRUE(says("no program is connected to 'socket'"));
   {
     const WallSender sender(shell.path("socket"));
-    ASSERT_TRUE(says("| remote-socket ")) << shell.read("stderr");
+    ASSERT_TRUE(says("| remote ")) << shell.read("stderr");
   }
   ASSERT_TRUE(says("STALLED")) << shell.read("stderr");
   const WallSender next(shell.path("socket"));
   ASSERT_TRUE(comes_true([&] {
     const std::string told = shell.read("stderr");
-    return contains(told.substr(told.rfind("STALLED")), "| remote-socket ");
+    return contains(told.substr(told.rfind("STALLED")), "| remote ");
   })) << shell.read("stderr");
   EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
   const Json source = Json::parse(shell.read("run.json"))["sources"][0];

@@ -40,6 +40,7 @@ TEST(Usage, WrongCommandLinesEndWithTwoAndSayWhy) {
        "zwidth"},
       {"touch synthetic:torus --device simulated --trajectory long.csv", "1e+300"},
       {"tuch synthetic:torus", "not expected: tuch synthetic:torus; did you mean touch?"},
+      {"bag cut.mcap", "not expected: cut.mcap; put one of info, recover before it"},
       {"touch", "no source given"},
       {"touch synthetic:torus --colour red", "--colour"},
       {"touch synthetic:torus --field mesh", "'mesh' is not one of balanced, pointset, metaball"},

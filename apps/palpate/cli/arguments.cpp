@@ -33,6 +33,7 @@ std::optional<double> number_in(std::string_view text) {
 
 // "simulated:table,rate=60" is called simulated-table.
 std::string name_of_camera(std::string_view text) {
+  if (text.starts_with("remote:")) return "remote";  // whatever its socket is called
   std::string name;
   for (const char c : text.substr(0, text.find(','))) {
     const bool fits = is_name({&c, 1});

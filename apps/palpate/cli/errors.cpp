@@ -75,6 +75,11 @@ std::string hint(const CLI::App& program) {
                                           option ? options_of(program) : commands_of(program));
     if (!near.empty()) return near;
   }
+  const std::vector<std::string> commands = commands_of(program);
+  const bool inner = program.get_parent() != nullptr && !commands.empty();
+  if (inner && program.get_subcommands().empty() && !program.remaining().empty()) {
+    return fmt::format("; put one of {} before it", fmt::join(commands, ", "));
+  }
   for (const CLI::App* each : program.get_subcommands()) {
     if (const std::string found = hint(*each); !found.empty()) return found;
   }
