@@ -155,7 +155,7 @@ test("scale and ramp stand beside one another on the narrowest phone", async () 
         await page.mouse.move(width / 2, 250);
         await page.mouse.wheel(0, 60);
         await page.waitForTimeout(60);
-        const [scale, ramp] = await Promise.all([".scale", ".ramp"].map((name) => page.locator(name).boundingBox()));
+        const [scale, ramp] = await Promise.all(["#scale", ".ramp"].map((name) => page.locator(name).boundingBox()));
         assert.ok(scale.x + scale.width <= ramp.x, `${width}: ${scale.x + scale.width} and ${ramp.x}`);
         assert.ok(ramp.x + ramp.width <= width, `${width}: the ramp ends at ${ramp.x + ramp.width}`);
       }
