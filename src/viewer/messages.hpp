@@ -97,6 +97,7 @@ struct Notice {
 struct DeviceLabel {
   std::string name;
   bool takeable = false;
+  double scale = 1;  ///< world metres of a metre that the hand moves
 };
 
 struct SourceLabel {

@@ -140,6 +140,8 @@ json json_of(const Setting& setting) {
               {"value", json_of(setting.value)}};
   if (!setting.unit.empty()) result["unit"] = setting.unit;
   if (setting.kind == Setting::Kind::choice) result["choices"] = setting.choices;
+  if (setting.restarts) result["restarts"] = true;
+  if (!setting.question.empty()) result["question"] = setting.question;
   if (setting.kind == Setting::Kind::number) {
     result["least"] = setting.least;
     result["most"] = setting.most;
@@ -203,7 +205,8 @@ std::string welcome_text(const Welcome& welcome) {
   if (welcome.time_line) message["timeline"] = {{"length", *welcome.time_line}};
   json& devices = message["devices"] = json::array();
   for (const DeviceLabel& device : welcome.devices) {
-    devices.push_back({{"name", device.name}, {"takeable", device.takeable}});
+    devices.push_back(
+        {{"name", device.name}, {"takeable", device.takeable}, {"scale", device.scale}});
   }
   json& sources = message["sources"] = json::array();
   for (const SourceLabel& source : welcome.sources) {

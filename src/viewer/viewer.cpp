@@ -97,7 +97,7 @@ std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
   std::vector<DeviceLabel> labels;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     const bool takeable = controls.hand && (!controls.takeable || controls.takeable(i));
-    labels.push_back({names[i], takeable});
+    labels.push_back({names[i], takeable, controls.scale ? controls.scale(i) : 1});
   }
   return labels;
 }

@@ -39,6 +39,22 @@ TEST(CloudFacts, AUnitThatTheFileStatesIsNotAskedFor) {
   EXPECT_EQ(units_of(file, survey, {}).advice, "");
 }
 
+TEST(CloudFacts, AMeshWithoutAUnitIsInMillimetresWhereAPartOfAMachineCouldBe) {
+  const auto unit = [](const char* format, float longest) {
+    CloudFile file;
+    file.format = format;
+    file.cloud.positions = {{0, 0, 0}, {longest, 0, 0}, {0, longest / 2, 0}};
+    return likely_unit(file);
+  };
+  EXPECT_EQ(unit("STL, binary", 20), 0.001);
+  EXPECT_EQ(unit("OBJ", 1), 0.001);
+  EXPECT_EQ(unit("STL, ascii", 2000), 0.001);
+  EXPECT_EQ(unit("STL, binary", 0.9f), 1);
+  EXPECT_EQ(unit("OBJ", 2001), 1);
+  EXPECT_EQ(unit("PLY, ascii", 20), 1);
+  EXPECT_EQ(unit("glTF, binary", 20), 1);
+}
+
 TEST(CloudFacts, PlacesAndLinesHaveNoSurface) {
   const Eigen::Vector3f a(0.5f, 0.1f, -3.f);
   const Eigen::Vector3f way(0.3f, 0.1f, 0.2f);

@@ -42,6 +42,21 @@ TEST(Info, SuspectsMillimetres) {
   EXPECT_NE(outcome.out.find("--scale 0.001"), std::string::npos);
 }
 
+TEST(Info, TakesAMeshWithoutAUnitForMillimetresUnlessToldOtherwise) {
+  Shell shell;
+  shell.write("part.obj",
+              "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const std::string guessed = shell.run("info part.obj").out;
+  EXPECT_NE(guessed.find("taken as millimetres"), std::string::npos) << guessed;
+  EXPECT_NE(guessed.find("20.0 mm long"), std::string::npos) << guessed;
+  EXPECT_NE(guessed.find("--scale: 1 for metres"), std::string::npos) << guessed;
+  const std::string spaced = shell.run("info part.obj --mesh-spacing 0.001").out;
+  EXPECT_NE(spaced.find("1.00 mm apart"), std::string::npos) << spaced;
+  const std::string told = shell.run("info part.obj --scale 1").out;
+  EXPECT_EQ(told.find("millimetres"), std::string::npos) << told;
+  EXPECT_NE(told.find("20.0 m long"), std::string::npos) << told;
+}
+
 TEST(Info, TellsTheCameraOfAnOrganisedCloud) {
   Shell shell;
   for (const bool bent : {false, true}) {

@@ -49,5 +49,29 @@ TEST(OpenedPlan, AFileIsReadAndPreparedAsTheOnlySourceWas) {
   EXPECT_THROW((void)plan_of_file(plan, shell.path("a.oni")), UsageError);
 }
 
+TEST(OpenedPlan, AnotherUnitIsOfItsFileAndNotOfTheNext) {
+  const Shell shell;
+  shell.write("b.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  const TouchPlan before = planned("synthetic:sphere --view --length 2 --friction-dynamic 0.4");
+  const TouchPlan inches = plan_in_unit(before, 0, 0.0254);
+  EXPECT_EQ(inches.sources[0].argument.path, before.sources[0].argument.path);
+  EXPECT_EQ(inches.sources[0].reading.scale, 0.0254);
+  EXPECT_FALSE(inches.sources[0].reading.length);
+  EXPECT_EQ(inches.surface.proxy.friction.dynamic_coefficient, 0.4);
+  const TouchPlan next = plan_of_file(inches, shell.path("b.xyz"));
+  EXPECT_EQ(next.sources[0].reading.scale, 1);
+  EXPECT_EQ(next.sources[0].reading.unit, FileReading::Unit::unsaid);
+}
+
+TEST(OpenedPlan, AnExampleIsPreparedAsByDefault) {
+  const TouchPlan plan = plan_of_sources(
+      planned("synthetic:sphere --view --scale 0.5 --voxel 0.02"), {"desk=camera:simulated:desk"});
+  ASSERT_EQ(plan.sources.size(), 1U);
+  EXPECT_EQ(plan.sources[0].kind, SourceKind::stream);
+  EXPECT_EQ(plan.sources[0].argument.name, "desk");
+  EXPECT_EQ(plan.sources[0].reading.scale, 1);
+  EXPECT_FALSE(plan.sources[0].options.prepare.voxel);
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -4,6 +4,8 @@
 
 #include <future>
 #include <stdexcept>
+#include <string>
+#include <variant>
 
 #include "palpate/base/error.hpp"
 
@@ -11,6 +13,10 @@ namespace palpate::app {
 namespace {
 
 using Kind = Opening::News::Kind;
+
+Opening::Wanted file(const std::string& name, const std::string& bytes) {
+  return {name, Opening::Bytes{bytes}};
+}
 
 // The news of what has come to its end.
 Opening::News end_of(Opening& opening) {
@@ -23,36 +29,36 @@ TEST(Opening, TellsHowFarItIsAndOnceThatItIsDone) {
   std::promise<void> quarter;
   std::promise<void> go_on;
   std::string taken;
-  Opening opening([&](const std::string& name, const std::string& bytes, const auto& told) {
+  Opening opening([&](const Opening::Wanted& wanted, const auto& told) {
     told(0.25);
     quarter.set_value();
     go_on.get_future().wait();
-    taken = name + bytes;
+    taken = wanted.name + std::get<Opening::Bytes>(wanted.what).bytes;
   });
   EXPECT_FALSE(opening.look());
-  opening.begin("a.ply", "xyz");
+  opening.begin(file("a.ply", "xyz"));
   quarter.get_future().wait();
   const auto news = opening.look();
   ASSERT_TRUE(news);
   EXPECT_EQ(news->kind, Kind::prepares);
   EXPECT_EQ(news->share, 0.25);
-  EXPECT_THROW(opening.begin("b.ply", ""), Error);
+  EXPECT_THROW(opening.begin(file("b.ply", "")), Error);
   go_on.set_value();
   EXPECT_EQ(end_of(opening).kind, Kind::prepared);
   EXPECT_EQ(taken, "a.plyxyz");
   EXPECT_FALSE(opening.look());
-  EXPECT_THROW(opening.begin("b.ply", ""), Error) << "another run comes";
+  EXPECT_THROW(opening.begin(file("b.ply", "")), Error) << "another run comes";
 }
 
 TEST(Opening, WhatIsRefusedMakesRoom) {
-  Opening opening([](const std::string& name, const std::string&, const auto&) {
-    if (name == "bad.ply") throw std::runtime_error("no cloud");
+  Opening opening([](const Opening::Wanted& wanted, const auto&) {
+    if (wanted.name == "bad.ply") throw std::runtime_error("no cloud");
   });
-  opening.begin("bad.ply", "");
+  opening.begin(file("bad.ply", ""));
   const Opening::News news = end_of(opening);
   EXPECT_EQ(news.kind, Kind::refused);
   EXPECT_EQ(news.problem, "no cloud");
-  opening.begin("good.ply", "");
+  opening.begin(file("good.ply", ""));
   EXPECT_EQ(end_of(opening).kind, Kind::prepared);
 }
 
@@ -60,7 +66,7 @@ TEST(Opening, WhatNobodyWaitsForIsReadNoFurther) {
   std::promise<void> begun;
   bool given_up = false;
   {
-    Opening opening([&](const std::string&, const std::string&, const auto& told) {
+    Opening opening([&](const Opening::Wanted&, const auto& told) {
       begun.set_value();
       try {
         while (true) told(0.5);
@@ -69,7 +75,7 @@ TEST(Opening, WhatNobodyWaitsForIsReadNoFurther) {
         throw;
       }
     });
-    opening.begin("endless.ply", "");
+    opening.begin(file("endless.ply", ""));
     begun.get_future().wait();
   }
   EXPECT_TRUE(given_up);

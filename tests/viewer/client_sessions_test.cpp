@@ -16,7 +16,7 @@ TEST(ClientSessions, HelloIsAnsweredByWelcome) {
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_EQ(messages[0]["type"], "welcome");
   EXPECT_EQ(messages[0]["version"], 2);
-  EXPECT_EQ(messages[0]["devices"][0], json({{"name", "one"}, {"takeable", true}}));
+  EXPECT_EQ(messages[0]["devices"][0], json({{"name", "one"}, {"takeable", true}, {"scale", 1.0}}));
   EXPECT_EQ(messages[0]["devices"][1]["takeable"], false);
   EXPECT_EQ(messages[0]["settings"][0]["key"], "k");
   EXPECT_EQ(messages[0]["settings"][0]["value"], 20.0);

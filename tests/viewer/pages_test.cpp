@@ -122,5 +122,26 @@ TEST(Viewer, WorkUnderWayIsToldToWhoComesLaterUntilItIsDone) {
   EXPECT_EQ(late->receive_json("notice")["text"], "the next") << "nothing of what is done";
 }
 
+TEST(Pages, WhatBeginsTheRunAnewAndWhatIsAskedIsTold) {
+  ViewerControls controls;
+  controls.settings = [] {
+    ViewerControls::Setting unit{.key = "unit.cube", .label = "Unit of cube"};
+    unit.kind = ViewerControls::Setting::Kind::choice;
+    unit.choices = {"mm", "m"};
+    unit.value = std::string("mm");
+    unit.restarts = true;
+    unit.question = "cube: 20 x 20 x 20 mm?";
+    return std::vector{unit};
+  };
+  controls.scale = [](std::size_t) { return 250.0; };
+  ViewerRig rig({}, controls);
+  const auto client = rig.connect();
+  client->send_text(R"({"type":"hello","token":"secret","points":0})");
+  const auto welcome = client->receive_json("welcome");
+  EXPECT_EQ(welcome["settings"][0]["restarts"], true);
+  EXPECT_EQ(welcome["settings"][0]["question"], "cube: 20 x 20 x 20 mm?");
+  EXPECT_EQ(welcome["devices"][0]["scale"], 250.0);
+}
+
 }  // namespace
 }  // namespace palpate

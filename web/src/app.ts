@@ -13,6 +13,7 @@ import { Devices } from "./panel/devices";
 import { byId, say } from "./panel/dom";
 import { HoldPanel } from "./panel/hold";
 import { LookPanel } from "./panel/look";
+import { NextRun } from "./panel/next_run";
 import { Notices } from "./panel/notices";
 import { Overlay } from "./panel/overlay";
 import type { Panels } from "./panel/panels";
@@ -51,6 +52,7 @@ export class App {
   private readonly plots = new Plots(this.session);
   private readonly sources = new SourcesPanel();
   private readonly settings: SettingsPanel;
+  private readonly nextRun: NextRun;
   private readonly look: LookPanel;
   private readonly status: Status;
   private readonly hand: Hand;
@@ -67,16 +69,16 @@ export class App {
   private plotted = 0;
   private calmUntil = 0; // ms: a start has its own troubles, which pass
   private run: string | undefined;
+  private linked = true; // what the link asks for is still to be set
 
   constructor(private readonly link: Link, graphics: Graphics, private readonly panels: Panels) {
     const send = (message: ToProgram) => this.connection.send(message);
     this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
     this.tags = new Tags(this.world);
-    this.settings = new SettingsPanel(
-      (key, value) => send({ type: "set", key, value }),
-      (name) => send({ type: "preset", name }),
-    );
+    const set = (key: string, value: SettingValue) => void send({ type: "set", key, value });
+    this.settings = new SettingsPanel(set, (name) => send({ type: "preset", name }));
+    this.nextRun = new NextRun(set);
     this.look = new LookPanel(() => this.relook(), () => this.tellPoints());
     this.hand = new Hand(send, () => this.holdChanged());
     this.stroke = new Stroke(this.world, this.hand, () => send({ type: "reset", device: this.hand.device }));
@@ -202,6 +204,7 @@ export class App {
     this.notices.begin();
     this.world.begin(welcome, again);
     this.settings.begin(welcome.settings, welcome.presets);
+    this.nextRun.begin(welcome.settings, welcome.opens !== undefined);
     this.sources.begin(this.session.sources, () => this.relook());
     this.plots.begin();
     this.hold.begin();
@@ -213,10 +216,10 @@ export class App {
     if (again) this.tour.putBack();
     else this.tour.forget();
     if (first) this.calmUntil = performance.now() + kCalm;
-    if (!first) return; // a new connection finds the program as it is
-    if (this.session.recorded) this.panels.show(true);
+    if (first && this.session.recorded) this.panels.show(true);
+    if (again || !this.linked) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
-    applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
+    this.linked = applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
     history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }
 
@@ -238,6 +241,7 @@ export class App {
       this.world.takeState(message);
       if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
+      this.readout.begin(this.session.welcome?.devices[message.device]?.scale ?? 1);
       this.readout.note(tool, now, this.hand.held && !this.stroke.content, this.stroke.nothing);
       this.sound.hear(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
       if (this.hand.held) this.rumble.feel(message, now);

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Backoff } from "../src/protocol/backoff";
-import { readLink, settingFromText, writeLink } from "../src/protocol/link";
+import { applyLink, readLink, settingFromText, writeLink } from "../src/protocol/link";
 import { parseMessage, type Setting } from "../src/protocol/messages";
 
 const kNumber: Setting = { key: "k", label: "Stiffness", kind: "number", least: 0, most: 2000, value: 500 };
@@ -33,6 +33,21 @@ test("a link's text becomes a value of the setting's kind, within its bounds", (
   assert.equal(settingFromText(kChoice, "c"), undefined);
   assert.equal(settingFromText(kSwitch, "true"), true);
   assert.equal(settingFromText(kSwitch, "1"), undefined);
+});
+
+test("what begins the run anew is set first and alone, and once", () => {
+  const settings: Setting[] = [
+    { ...kNumber, value: 500 },
+    { key: "scene", label: "Scene", kind: "choice", choices: ["desk", "cube"], value: "cube", restarts: true },
+    { key: "unit.cube", label: "Unit", kind: "choice", choices: ["mm", "inch"], value: "mm", restarts: true },
+  ];
+  const link = readLink(`#t&${kNumber.key}=700&scene=cube&unit.cube=inch`);
+  const asked: unknown[] = [];
+  const apply = (now: Setting[]) => applyLink(link, now, (key, value) => asked.push([key, value]), (text) => asked.push(text));
+  assert.equal(apply(settings), true, "the rest waits for the next run");
+  assert.deepEqual(asked.splice(0), [["unit.cube", "inch"]]);
+  assert.equal(apply(settings), false, "a run that begins as the one before is not begun again");
+  assert.deepEqual(asked, [[kNumber.key, 700]]);
 });
 
 test("waiting doubles up to its bound, scattered, and begins anew", () => {

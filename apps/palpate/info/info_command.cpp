@@ -159,7 +159,7 @@ void print_map(const PointCloud& cloud, std::FILE* out) {
              grouped(largest), draw(map, style.colored()));
 }
 
-InfoReport measure_cloud(const CloudArgument& argument, const ReadOptions& options,
+InfoReport measure_cloud(const CloudArgument& argument, const FileReading& options,
                          const std::string& write) {
   InfoReport report;
   report.loaded = load(argument, options);

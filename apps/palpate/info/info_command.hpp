@@ -22,7 +22,7 @@ namespace palpate::app {
 /// The command line of `palpate info`.
 struct InfoOptions {
   std::vector<std::string> clouds;
-  ReadOptions reading;
+  FileReading reading;
   std::string json;
   std::string picture;  ///< of several clouds the first one's: numbered_path()
   std::string write;    ///< points as PLY or PCD; of several clouds the first one's, too

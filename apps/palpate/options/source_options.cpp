@@ -134,14 +134,16 @@ std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t 
   return scans;
 }
 
-void add_reading_options(OptionTable& table, ReadOptions& o) {
+void add_reading_options(OptionTable& table, FileReading& o) {
   table.under("Reading", "reading", true);
   table
       .add("--scale", o.scale, "FACTOR", positive(),
-           "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1)")
+           "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1; STL and OBJ "
+           "files that are 1 to 2000 long are taken to be in millimetres)")
       .only_for({&RunFacts::is_static,
                  "applies only to files; cameras report their own, sequences store it in "
-                 "sequence.json, and bags and topics take ,unit=METRES behind their names"});
+                 "sequence.json, and bags and topics take ,unit=METRES behind their names"})
+       .option->each([&o](const std::string& /*text*/) { o.unit = FileReading::Unit::given; });
   table
       .add("--length", o.length, "METRES", positive(),
            "length of the cloud's longest side, instead of --scale; splats have no unit of their "

@@ -16,11 +16,18 @@ class OptionTable;
 /// The kind of a source, from its name and its file's first bytes.
 enum class SourceKind { cloud, depth_image, stream };
 
+/// How a file is read, and where its unit comes from.
+struct FileReading : ReadOptions {
+  /// Who said what the unit is: nobody, an option, or somebody on the page.
+  enum class Unit { unsaid, given, chosen };
+  Unit unit = Unit::unsaid;  ///< of `scale`
+};
+
 /// A source that is to be touched: what it is, how it is read, prepared and treated in time.
 struct SourcePlan {
   CloudArgument argument;
   SourceKind kind = SourceKind::cloud;
-  ReadOptions reading;
+  FileReading reading;
   SourceOptions options;                ///< with its pose
   std::optional<double> farthest = {};  ///< depth, m; unset: chosen by the first frame
   bool as_cloud = false;                ///< depths are taken as points, not by the depth filter
@@ -29,7 +36,7 @@ struct SourcePlan {
 };
 
 /// Registers the options that say how the bytes of a file become points.
-void add_reading_options(OptionTable& table, ReadOptions& options);
+void add_reading_options(OptionTable& table, FileReading& options);
 
 /// Registers the memory for a store, where it may stay on disk.
 void add_cache_option(OptionTable& table, SourcePlan& source);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
@@ -211,6 +212,36 @@ bool can_open_files(const TouchPlan& plan) {
   return plan.page.served && simulated && !writes && !plan.ros.wanted();
 }
 
+namespace {
+
+TouchPlan plan_of_choices(TouchPlan plan, const TouchChoices& choices) {
+  plan.sources.clear();
+  for (const DescribedSource& source : choose_sources(choices, plan.surface)) {
+    plan.sources.push_back(source.plan);
+  }
+  plan.motion.trajectory.clear();
+  for (DevicePlan& device : plan.devices) device.placement.frame.clear();
+  plan.page.wanted = true;  // its hands explore until it is ended
+  return plan;
+}
+
+}  // namespace
+
+TouchPlan plan_of_sources(TouchPlan plan, const std::vector<std::string>& sources) {
+  TouchChoices choices;
+  choices.sources = sources;
+  return plan_of_choices(std::move(plan), choices);
+}
+
+TouchPlan plan_in_unit(TouchPlan plan, std::size_t source, double metres) {
+  FileReading& reading = plan.sources.at(source).reading;
+  reading.scale = metres;
+  reading.unit = FileReading::Unit::chosen;
+  reading.length.reset();
+  plan.page.wanted = true;
+  return plan;
+}
+
 TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
   TouchChoices choices;
   choices.sources = {path};
@@ -220,16 +251,14 @@ TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
     like.options.T_world_sensor.setIdentity();
     if (like.options.prepare.viewpoint) like.options.prepare.orientation = {};
     like.options.prepare.viewpoint.reset();
+    if (like.reading.unit == FileReading::Unit::chosen) {  // of the file before
+      like.reading.unit = FileReading::Unit::unsaid;
+      like.reading.scale = 1;
+    }
   }
-  plan.sources.clear();
-  for (const DescribedSource& source : choose_sources(choices, plan.surface)) {
-    plan.sources.push_back(source.plan);
-  }
+  plan = plan_of_choices(std::move(plan), choices);
   require(plan.sources.front().kind != SourceKind::stream,
           "a page opens clouds and depth images, no recordings");
-  plan.motion.trajectory.clear();
-  for (DevicePlan& device : plan.devices) device.placement.frame.clear();
-  plan.page.wanted = true;  // its hands explore until it is ended
   return plan;
 }
 

@@ -105,6 +105,13 @@ struct TouchPlan {
 /// written or a robot hang on it, it may not.
 [[nodiscard]] bool can_open_files(const TouchPlan& plan);
 
+/// The plan of the run after that of `plan`, by hands that explore `sources`, named as on a command
+/// line, read and prepared as by default.
+[[nodiscard]] TouchPlan plan_of_sources(TouchPlan plan, const std::vector<std::string>& sources);
+
+/// The same run with one of its sources read so that a unit of its file is `metres` long.
+[[nodiscard]] TouchPlan plan_in_unit(TouchPlan plan, std::size_t source, double metres);
+
 /// The plan of the run after that of `plan`, by hands that explore what is in the file at `path`,
 /// read and prepared as the source was, if it was one.
 /// @throws UsageError when that is no source.

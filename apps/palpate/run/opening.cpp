@@ -1,4 +1,4 @@
-// Prepares a file that a page sent, for the next run.
+// Prepares the next run that a page wants.
 #include "apps/palpate/run/opening.hpp"
 
 #include <fmt/format.h>
@@ -27,14 +27,15 @@ Opening::~Opening() {
   work_.wait();
 }
 
-void Opening::begin(const std::string& name, std::string bytes) {
+void Opening::begin(Wanted wanted) {
   const std::lock_guard lock(mutex_);
   if (!name_.empty()) throw Error(name_ + " is being read; try again after it");
   share_ = 0;
-  work_ = std::async(std::launch::async, [this, name, bytes = std::move(bytes)]() mutable {
-    prepare_(name, std::move(bytes), [this](double share) { tell(share); });
+  std::string name = wanted.name;
+  work_ = std::async(std::launch::async, [this, wanted = std::move(wanted)]() mutable {
+    prepare_(std::move(wanted), [this](double share) { tell(share); });
   });
-  name_ = name;
+  name_ = std::move(name);
 }
 
 void Opening::tell(double share) {

@@ -7,17 +7,37 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace palpate::app {
 
-/// A file that a page sent for the next run, prepared on a thread of its own.
+/// The next run that a page wants, prepared on a thread of its own.
 class Opening {
  public:
+  /// A file that the page sent.
+  struct Bytes {
+    std::string bytes;
+  };
+  /// Sources as a command line names them.
+  struct Sources {
+    std::vector<std::string> sources;
+  };
+  /// The present run, with one of its sources read in another unit.
+  struct OtherUnit {
+    std::size_t source = 0;
+    double metres = 1;
+  };
+  struct Wanted {
+    std::string name;  ///< for people; of a file its own
+    std::variant<Bytes, Sources, OtherUnit> what;
+  };
+
   /// Says what share of the file is read, 0 to 1; throws where nobody waits for it any more.
   using Told = std::function<void(double share)>;
 
-  /// Throws what is wrong with the file.
-  using Prepare = std::function<void(const std::string& name, std::string bytes, const Told& told)>;
+  /// Throws what is wrong with it.
+  using Prepare = std::function<void(Wanted wanted, const Told& told)>;
 
   /// How it goes.
   struct News {
@@ -36,7 +56,7 @@ class Opening {
   Opening& operator=(const Opening&) = delete;
 
   /// Any thread; returns at once. @throws Error while there is another one.
-  void begin(const std::string& name, std::string bytes);
+  void begin(Wanted wanted);
 
   /// How the file under way goes, its end once; unset: there is none. After `prepared` no other
   /// begins.

@@ -53,7 +53,8 @@ std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled)
   if (!feet || rescaled) return UnitsGuess{"metres", "the file says what its unit is", ""};
   return UnitsGuess{
       "feet", "the file says so",
-      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large"};
+      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large",
+      0.3048};
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   if (extent > 400) {
     return {"millimetres",
             size + ": too long for a scanned room in metres, plausible in millimetres",
-            "give --scale 0.001, unless it really is that large"};
+            "give --scale 0.001, unless it really is that large", 0.001};
   }
   if (extent > 60) {
     return {"metres or millimetres",
@@ -92,7 +93,24 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   return {"metres", size + ", plausible for an object or a room in metres", ""};
 }
 
+double likely_unit(const CloudFile& file) {
+  constexpr double kShortest = 1;
+  constexpr double kLongest = 2000;
+  const bool unitless = file.format.starts_with("STL") || file.format.starts_with("OBJ");
+  if (!unitless || file.cloud.empty()) return 1;
+  const double extent = core_of(file.cloud).size().maxCoeff();
+  return extent >= kShortest && extent <= kLongest ? 0.001 : 1;
+}
+
 UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
+  if (file.format.ends_with(kTakenAsMillimetres)) {
+    return {"millimetres",
+            fmt::format("the longest side is {:.4g}, and the file says no unit",
+                        1000 * core.size().maxCoeff()),
+            "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 for "
+            "inches, 0.3048 for feet",
+            0.001};
+  }
   const bool rescaled = reading.length || reading.scale != 1;
   const bool near = farthest(core) <= Proxy::kLargestCoordinate;
   if (const auto stated = stated_units(file.format, rescaled); near && stated) return *stated;

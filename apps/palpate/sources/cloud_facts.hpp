@@ -15,7 +15,16 @@ struct UnitsGuess {
   std::string units;
   std::string reason;
   std::string advice;  ///< empty: nothing to do
+  double metres = 0;   ///< a unit, where it is so likely that a person is asked; 0: it is not
 };
+
+/// What likely_unit() adds to the format of a file.
+inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
+
+/// Metres a unit of a file that was read as if it were in metres: 0.001 for STL and OBJ, which
+/// state none, where the longest side is 1 to 2000; else 1. Those who draw meshes for printers and
+/// machines draw in millimetres: shorter is no part, and longer no machine's.
+[[nodiscard]] double likely_unit(const CloudFile& file);
 
 /// Guesses from coordinates as read, in what is taken for metres.
 [[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);

@@ -109,7 +109,7 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.paged = true;
   const Source& source = first_surface(scene, result);
   result.prepared = source.report();
-  if (plan.reading.scale == 1) {
+  if (plan.reading.unit == FileReading::Unit::unsaid) {
     const PointCloud seen = in_file(*source.state().overview, plan.options.T_world_sensor);
     result.units = guess_units(core_of(seen), layout.format);
   }

@@ -18,9 +18,10 @@ struct LoadedCloud {
   double seconds = 0;
 };
 
-/// Reads one cloud, file, standard input or synthetic, with progress on standard error.
+/// Reads one cloud, file, standard input or synthetic, with progress on standard error; where
+/// nobody said what its unit is, in the likely_unit() of its format and size.
 /// @throws Error as read_cloud_file() does, and when it holds no point.
-[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const ReadOptions& options);
+[[nodiscard]] LoadedCloud load(const CloudArgument& argument, const FileReading& options);
 
 /// @throws Error when the points have no intensities, which materials are made of.
 void check_intensities(const LoadedCloud& loaded);

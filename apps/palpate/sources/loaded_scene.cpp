@@ -121,7 +121,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.mesh = loaded.file.mesh;
   result.read_seconds = loaded.seconds;
   result.splats = loaded.file.splats;
-  if (plan.reading.scale == 1 && !plan.reading.length) {
+  if (plan.reading.unit == FileReading::Unit::unsaid && !plan.reading.length) {
     result.units = units_of(loaded.file, core_of(loaded.file.cloud), plan.reading);
   }
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "apps/palpate/cli/errors.hpp"
@@ -185,30 +186,52 @@ struct Start {
   std::vector<Hand> hands;
   std::optional<RealtimeReport::Request> left;
   LoadedScene loaded;
+  std::shared_ptr<TemporaryFolder> folder;  // of a file that a page sent, for as long as it is felt
 };
 
-// What comes after a run of `plan`: of a file that a page sent, which a person knows by its name.
-std::unique_ptr<Start> opened(const TouchPlan& plan, const std::string& name, std::string bytes,
-                              WaitingClock* clock, const Opening::Told& told) {
-  TemporaryFolder folder;
-  const std::string place = folder.file("");
+// Without the folder that a file was put into: a person knows it by its name.
+std::string without_folder(std::string text, const std::shared_ptr<TemporaryFolder>& folder) {
+  if (!folder) return text;
+  const std::string place = folder->file("");
+  for (std::size_t at = 0; (at = text.find(place)) != std::string::npos;) {
+    text.erase(at, place.size());
+  }
+  return text;
+}
+
+// The plan of what a page wants after a run of `plan`. `folder`: where that run's file is; becomes
+// that of the next one's.
+TouchPlan plan_of(const TouchPlan& plan, Opening::Wanted& wanted,
+                  std::shared_ptr<TemporaryFolder>& folder) {
+  if (const auto* unit = std::get_if<Opening::OtherUnit>(&wanted.what)) {
+    return plan_in_unit(plan, unit->source, unit->metres);
+  }
+  folder.reset();
+  if (const auto* named = std::get_if<Opening::Sources>(&wanted.what)) {
+    return plan_of_sources(plan, named->sources);
+  }
+  folder = std::make_shared<TemporaryFolder>();
+  std::string& bytes = std::get<Opening::Bytes>(wanted.what).bytes;
+  return plan_of_file(plan, folder->lend(wanted.name, std::exchange(bytes, {})));
+}
+
+std::unique_ptr<Start> opened(const Start& before, Opening::Wanted wanted, WaitingClock* clock,
+                              const Opening::Told& told) {
+  std::shared_ptr<TemporaryFolder> folder = before.folder;
   try {
-    const std::string file = folder.lend(name, std::exchange(bytes, {}));
-    TouchPlan next = plan_of_file(plan, file);
+    TouchPlan next = plan_of(before.plan, wanted, folder);
     for (SourcePlan& source : next.sources) source.reading.progress = told;
     auto start = std::make_unique<Start>(std::move(next), clock);
+    start->folder = folder;
     for (LoadedSource& source : start->loaded.sources) {
-      source.plan.argument.path.erase(0, place.size());
+      std::string& path = source.plan.argument.path;
+      path = without_folder(path, folder);
     }
     return start;
   } catch (const std::bad_alloc&) {
-    throw Error(name + " is too large for the memory that is left");
+    throw Error(wanted.name + " is too large for the memory that is left");
   } catch (const std::exception& error) {
-    std::string problem = error.what();
-    for (std::size_t at = 0; (at = problem.find(place)) != std::string::npos;) {
-      problem.erase(at, place.size());
-    }
-    throw Error(problem);
+    throw Error(without_folder(error.what(), folder));
   }
 }
 
@@ -227,8 +250,8 @@ void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>
           plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
   std::unique_ptr<Start> prepared;
-  Opening opening([&](const std::string& name, std::string bytes, const Opening::Told& told) {
-    prepared = opened(plan, name, std::move(bytes), clock, told);
+  Opening opening([&](Opening::Wanted wanted, const Opening::Told& told) {
+    prepared = opened(start, std::move(wanted), clock, told);
   });
   if (can_open_files(plan)) run.opening = &opening;
   LiveOutcome outcome = play(run, clock, interruption ? &*interruption : nullptr, outputs);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
+#include "apps/palpate/view/next_run.hpp"
 #include "apps/palpate/view/page_hold.hpp"
 #include "apps/palpate/view/told_progress.hpp"
 #include "palpate/base/clock.hpp"
@@ -95,6 +97,7 @@ struct View::Parts {
         bridge(b),
         initial(initial_settings(r)),
         settings(initial),
+        next(r),
         holds(r.hands.begin(), r.hands.end()),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
@@ -130,8 +133,13 @@ struct View::Parts {
 
   ViewerControls controls() {
     ViewerControls controls;
-    controls.settings = [this] { return list_settings(present(), scope_of(run, servos)); };
+    controls.settings = [this] {
+      std::vector<Setting> list = list_settings(present(), scope_of(run, servos));
+      std::ranges::copy(next.settings(), std::back_inserter(list));
+      return list;
+    };
     controls.set = [this](const std::string& key, const Setting::Value& value) {
+      if (next.set(key, value)) return;
       ViewSettings wanted = present();
       set(wanted, scope_of(run, servos), key, value);
       apply(wanted);
@@ -147,9 +155,10 @@ struct View::Parts {
     controls.recording = run.recorder->recording();
     if (run.opening != nullptr) {
       controls.open = [this](const std::string& name, std::string bytes) {
-        run.opening->begin(name, std::move(bytes));
+        run.opening->begin({name, Opening::Bytes{std::move(bytes)}});
       };
     }
+    controls.scale = [this](std::size_t hand) { return run.hands[hand].workspace.scale; };
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
     controls.hand = [this](std::size_t hand, const TargetSource::Target& target) {
       holds[hand].move(target);
@@ -240,6 +249,7 @@ struct View::Parts {
   std::size_t told = 0;  // problems of the feed
   std::mutex settings_mutex;
   ViewSettings settings;
+  NextRun next;
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
   std::optional<Browser> browser;

@@ -42,7 +42,9 @@ struct ViewerControls {
     double most = 1;
     double step = 0;  ///< that its slider and keys take; 0: any
     std::vector<std::string> choices = {};
-    Value value = 0.0;  ///< the present one, of the kind
+    Value value = 0.0;          ///< the present one, of the kind
+    bool restarts = false;      ///< another value begins the run anew
+    std::string question = {};  ///< that a person is asked, whose answer is a choice; empty: none
   };
 
   /// Settings with their present values.
@@ -96,6 +98,8 @@ struct ViewerControls {
 
   /// Can a page move this device's hand? Empty: where `hand` is there, all.
   std::function<bool(std::size_t device)> takeable = {};
+  /// World metres of a metre that its hand moves; empty: 1.
+  std::function<double(std::size_t device)> scale = {};
   /// Gives a tool the target of a page's hand, world frame.
   std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
   /// The page let go of the tool, or went away.

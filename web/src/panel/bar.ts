@@ -11,6 +11,7 @@ import { whole } from "./numbers";
 import { Opening } from "./opening";
 import type { Panels } from "./panels";
 
+const kCounts = / \(mesh of [^)]*\)/g; // what a scene was made of
 const kKept = 0.95; // of its best rate, below which the servo is late
 
 export class Bar {
@@ -43,7 +44,8 @@ export class Bar {
   }
 
   begin(welcome: Welcome): void {
-    say(byId("scene"), welcome.scene);
+    byId("scene").title = welcome.scene;
+    this.nameScene();
     this.best = 0;
     this.opening.begin(welcome.opens);
     document.title = `${welcome.scene} – palpate`;
@@ -53,6 +55,7 @@ export class Bar {
 
   /** What the program says of itself shows on the buttons: they may be pressed elsewhere. */
   update(): void {
+    this.nameScene();
     const paused = this.session.tool?.has("paused") ?? false;
     this.press("pause", paused, paused ? "play" : "pause", paused ? "Resume" : "Pause");
     const takeable = this.session.welcome?.devices[this.session.device]?.takeable ?? true;
@@ -65,6 +68,11 @@ export class Bar {
     const delay = Number.isNaN(this.delay) ? "" : `; latency ${(1000 * this.delay).toFixed(1)} ms`;
     const late = byId("link-state").classList.contains("late") ? "; the servo does not keep its rate: see palpate doctor" : "";
     byId("link-state").title = `connected${late}${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
+  }
+
+  private nameScene(): void {
+    const scene = this.session.welcome?.scene ?? "";
+    say(byId("scene"), this.panels.all ? scene : scene.replace(kCounts, ""));
   }
 
   private showRate(rate: number): void {

@@ -80,11 +80,10 @@ export class HoldPanel {
     say(byId("hint"), this.hint());
     if (!this.hand.held) say(byId("take-words"), this.session.tool?.has("taken") ? "Take the tool over" : "Take the tool");
     byId("by-itself").hidden = button.disabled || held || this.session.tool?.has("taken") === true;
-    byId("tour-offer").hidden = button.disabled || held || recall("visited", false);
+    byId("tour-offer").hidden = button.disabled || held;
     this.nameDevices();
     if (held === this.held) return;
     this.held = held;
-    remember("visited", true);
     button.setAttribute("aria-pressed", String(held));
     if (held) say(byId("take-words"), "Release");
     byId("depth").hidden = !held;

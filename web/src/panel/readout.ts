@@ -19,7 +19,9 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: st
   notLoaded: ["info", "not loaded: nothing is felt here yet", "The cloud here is still read and prepared, or cannot be read"],
   thinned: ["warning", "points skipped: too many near the tool", "Some were skipped to keep the servo rate"],
 };
+const kInner = new Set<Name>(["slewed", "braked", "thinned"]); // of the servo: nothing that a first visit can act on
 const kLift = "lift the tool to feel full force again"; // where the tool is this page's
+const kLarge = 2; // below it the hand's own depth says little more
 const kFull = 0.95; // of the stiffness
 const kLinger = 700; // ms that a flag stays readable
 const kStale = 1000; // ms without a state
@@ -32,6 +34,7 @@ export class Readout {
   private held = false;
   private nothing = false;
   private height: number | undefined;
+  private scale = 1; // world metres of a metre of the hand
   private readonly parts = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
 
@@ -41,7 +44,8 @@ export class Readout {
       ...this.parts.map((part, i) => make("div", {}, make("dt", {}, names[i]!), part)),
     );
     for (const [name, [level, words, reason]] of Object.entries(kFlagWords)) {
-      const element = make("li", { class: level, title: reason, hidden: true }, words);
+      const inner = kInner.has(name as Name) ? " inner" : "";
+      const element = make("li", { class: level + inner, title: reason, hidden: true }, words);
       this.flags.set(name as Name, { element, until: 0 });
     }
     byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
@@ -53,6 +57,11 @@ export class Readout {
     this.held = held;
     this.nothing = nothing;
     if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.softUntil = now + kLinger;
+  }
+
+  /** Of the device that is shown. */
+  begin(scale: number): void {
+    this.scale = scale;
   }
 
   /** height: of a free hand above the surface, m; stiffness: of the surface, N/m. */
@@ -86,7 +95,8 @@ export class Readout {
     if (tool.has("behind")) return "behind what the camera sees: nothing is felt";
     if (this.nothing && !tool.has("notLoaded")) return "no surface here";
     if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
-    return `touching, ${millimetres(depthOf(state))} deep`;
+    const deep = `touching, ${millimetres(depthOf(state))} deep`;
+    return this.scale < kLarge ? deep : `${deep}, ${millimetres(depthOf(state) / this.scale)} at the hand`;
   }
 }
 

@@ -6,6 +6,7 @@ import { byId, make, say } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
 
 const kSofter = "currently softer: stiffness rises only with motion in contact; lift and touch again";
+const kUnit = "unit."; // of a source
 const kLinger = 700; // ms that it stays readable
 
 export class SettingsPanel {
@@ -28,11 +29,14 @@ export class SettingsPanel {
       this.rows.set(setting.key, fieldRow(setting, (value) => this.set(setting.key, value)));
     }
     this.rows.get("stiffness")?.row.append(this.softer);
-    byId("settings").replaceChildren(...[...this.rows.values()].map(({ row }) => row));
+    const rows = (units: boolean) =>
+      [...this.rows].filter(([key]) => key.startsWith(kUnit) === units).map(([, { row }]) => row);
+    byId("settings").replaceChildren(...rows(false));
+    byId("units").replaceChildren(...rows(true));
     this.buttons.clear();
     for (const name of presets) {
       const choose = () => this.preset((this.asked = name));
-      this.buttons.set(name, make("button", { type: "button", class: "button", "aria-pressed": "false", click: choose }, name));
+      this.buttons.set(name, make("button", { type: "button", class: "button", "aria-pressed": "false", "data-preset": name, click: choose }, name));
     }
     this.asked = this.chosen = undefined;
     byId("presets").replaceChildren(...this.buttons.values());

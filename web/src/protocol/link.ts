@@ -39,17 +39,27 @@ export function settingFromText(setting: Setting, text: string): SettingValue | 
   return value >= least && value <= most ? value : undefined;
 }
 
-/** Sets what a link asks for, and says what it cannot. */
+/** Sets what a link asks for, and says what it cannot. What begins the run anew comes first and alone: true, and the rest
+ * of the link is to be set in that run. */
 export function applyLink(
   link: Link, settings: readonly Setting[],
   set: (key: string, value: SettingValue) => void, warn: (text: string) => void,
-): void {
-  for (const [key, text] of link.values) {
+): boolean {
+  const wanted = [...link.values].map(([key, text]) => {
     const setting = settings.find((one) => one.key === key);
-    const value = setting === undefined ? undefined : settingFromText(setting, text);
+    return { key, text, setting, value: setting === undefined ? undefined : settingFromText(setting, text) };
+  });
+  const anew = wanted.find(({ setting, value }) => setting?.restarts === true && value !== undefined && value !== setting.value);
+  if (anew !== undefined) {
+    link.values.delete(anew.key);
+    set(anew.key, anew.value!);
+    return true;
+  }
+  for (const { key, text, setting, value } of wanted) {
     if (value === undefined) warn(`the link's ${key} = ${text} is not a setting of this run`);
     else if (value !== setting?.value) set(key, value);
   }
+  return false;
 }
 
 function unescapePart(text: string): string {

@@ -16,11 +16,14 @@ export interface Setting {
   step?: number;
   choices?: string[];
   value: SettingValue;
+  restarts?: boolean; // another value begins the run anew
+  question?: string; // which one of the choices answers
 }
 
 export interface DeviceInfo {
   name: string;
   takeable: boolean;
+  scale?: number; // world metres of a metre of its hand
 }
 
 export interface SourceInfo {

@@ -18,9 +18,9 @@ function ball(radius) {
   return rows.join("\n");
 }
 
-/** A cube of 0.1 m as OBJ: eight vertices and six faces. */
-function cube() {
-  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${0.1 * (k & 1)} ${0.05 * (k & 2)} ${0.025 * (k & 4)}`);
+/** A cube as OBJ: eight vertices and six faces. */
+function cube(side) {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `v ${side * (k & 1)} ${(side / 2) * (k & 2)} ${(side / 4) * (k & 4)}`);
   const faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"].map((face) => `f ${face}`);
   return [...corners, ...faces].join("\n");
 }
@@ -44,6 +44,23 @@ async function drag(page, name, text, types) {
 }
 
 const said = (page, words) => until(words, async () => (await page.locator("#notices .warning").allTextContents()).join().includes(words));
+
+/** A cube of 20 is 20 mm, until somebody says otherwise; then an example. */
+async function unitsAndExamples(page, scene, connected) {
+  const unit = (name) => until(`the unit ${name}`, async () => (await page.getByLabel("Unit of part").inputValue().catch(() => "")) === name);
+  await page.setInputFiles("#open-file", { name: "part.obj", mimeType: "text/plain", buffer: Buffer.from(cube(20)) });
+  await unit("mm");
+  await until("its scale", async () => /^\d+ mm$/.test(await page.locator("#scale-label").innerText()));
+  assert.match(await page.locator("#ask").innerText(), /^part: 20 x 20 x 20 mm\?/);
+  await page.locator("#ask").getByRole("button", { name: "m", exact: true }).click();
+  await until("its scale in metres", async () => /^\d+ m$/.test(await page.locator("#scale-label").innerText()));
+  assert.ok(await page.locator("#ask").isHidden(), "it is answered");
+  await unit("m");
+  await connected();
+  await page.getByLabel("Scene").selectOption("desk");
+  await until("the desk", async () => (await scene()) === "desk");
+  assert.equal(await page.locator("#units select").count(), 0, "a camera's unit is its own");
+}
 
 export async function opens(browser) {
   const program = await startProgram(["touch", "table.xyz", "--view", "--port", "0"]);
@@ -75,12 +92,13 @@ export async function opens(browser) {
       const { force, proxy } = await felt(page);
       return force > 0 && Math.hypot(...proxy) < 0.15; // the ball before is larger
     });
-    const others = { "cube.obj": Buffer.from(cube()), "survey.laz": await seed("laz/format_8"), "room.spz": await seed("spz/version3") };
+    const others = { "cube.obj": Buffer.from(cube(0.1)), "survey.laz": await seed("laz/format_8"), "room.spz": await seed("spz/version3") };
     for (const [name, buffer] of Object.entries(others)) {
       await page.setInputFiles("#open-file", { name, mimeType: "application/octet-stream", buffer });
       await until(name, async () => (await scene()).startsWith(name.split(".")[0]));
       await connected();
     }
+    await unitsAndExamples(page, scene, connected);
   } finally {
     await page.context().close();
     assert.equal(await program.stop(), 0);

@@ -55,7 +55,7 @@ test("a first visit sees the simple page: force, tool, presets, and one button f
     assert.equal(await presetsIn(page, ".hold"), await presetsIn(page, "body"), "once, in the picture");
     const { width } = await page.locator("#view").boundingBox();
     assert.equal(width, 1440, "the view has the room");
-    await stayApart(page, 1440, [".readout", ".hold", ".eye", ".measures .scale"]);
+    await stayApart(page, 1440, [".readout", ".hold", ".eye", "#scale"]);
     await picture(page, "simple");
   }));
 
@@ -63,9 +63,9 @@ test("a preset of the simple page reaches the program, and is marked until a val
   firstVisit(kSmall, async (page, program) => {
     const marked = () => page.locator('#presets [aria-pressed="true"]').allInnerTexts();
     assert.deepEqual(await marked(), [], "what was set before is not known");
-    await page.locator("#presets").getByRole("button", { name: "paper" }).click();
-    await until("set", () => sent(program, "preset").at(-1)?.name === "paper");
-    await until("marked", async () => (await marked()).join() === "paper");
+    await page.locator("#presets").getByRole("button", { name: "fur" }).click();
+    await until("set", () => sent(program, "preset").at(-1)?.name === "fur");
+    await until("marked", async () => (await marked()).join() === "fur");
     program.set("stiffness", 700); // as another page may
     program.tellSettings();
     await until("no more", async () => (await marked()).length === 0);
@@ -95,7 +95,7 @@ test("the button and its key bring all panels and take them away, which the brow
 test("on the simple page the focus is never on what is hidden", () =>
   firstVisit(kSmall, async (page) => {
     const reached = new Set(await reachedByTab(page));
-    for (const id of ["view", "take", "tour-offer", "sound", "help", "fit", "panels", "paper"]) assert.ok(reached.has(id), id);
+    for (const id of ["view", "take", "tour-offer", "sound", "help", "fit", "panels", "fur"]) assert.ok(reached.has(id), id);
     for (const id of ["freeze", "record", "device", "follow"]) assert.ok(!reached.has(id), id);
     await page.locator("#presets button").first().focus();
     await page.keyboard.press("a");
@@ -150,6 +150,66 @@ test("Reset is there while a fault needs it, and Pause while the run is paused",
     assert.ok(!program.servo.paused);
   }));
 
+/** A first visit to a run of a mesh whose unit is guessed, and that may be followed by another. */
+async function visitMesh(options, act) {
+  const server = await serve({ points: 4000, anew: true });
+  const page = await openPage(browser, server.address, options, undefined, true);
+  try {
+    await ready(page);
+    await act(page, server.program);
+    assert.deepEqual(page.troubles, []);
+  } finally {
+    await page.context().close();
+    await server.close();
+  }
+}
+
+test("a guessed unit is asked for, once; another one reaches the program", () =>
+  visitMesh(kSmall, async (page, program) => {
+    const ask = page.locator("#ask");
+    assert.match(await ask.innerText(), /^cube: 20 x 20 x 20 mm\?/);
+    assert.equal(await ask.locator('[aria-pressed="true"]').innerText(), "mm");
+    await stayApart(page, 900, [".readout", ".hold", ".eye", "#scale"]);
+    await picture(page, "simple-unit");
+    await ask.getByRole("button", { name: "inch" }).click();
+    await until("set", () => sent(program, "set").some(({ key, value }) => key === "unit.cube" && value === "inch"));
+    assert.ok(await ask.isHidden());
+    await page.click("#panels");
+    assert.equal(await page.locator("#panel-sources").getByLabel("Unit of cube").inputValue(), "inch");
+  }));
+
+test("examples and a file to open are offered while nobody holds the tool", () =>
+  visitMesh(kSmall, async (page, program) => {
+    await page.locator("#ask .close").click();
+    assert.match(await text(page, "#offer"), /^Drop a scan or a mesh, or\s+open\s+or try\s+rabbit\s+desk\s+room$/);
+    const chooser = page.waitForEvent("filechooser");
+    await page.click("#open-here");
+    await chooser;
+    await page.locator("#examples").getByRole("button", { name: "room" }).click();
+    await until("set", () => sent(program, "set").some(({ key, value }) => key === "scene" && value === "room"));
+    await page.focus("#view");
+    await page.keyboard.press("t");
+    await until("out of the way", () => page.locator("#offer").isHidden());
+  }));
+
+test("on a phone the card and the examples cover nothing", () =>
+  visitMesh(kPhone, async (page) => {
+    const parts = [".actions", ".readout", ".hold", ".eye"];
+    await stayApart(page, 390, parts);
+    await page.locator("#ask .close").click();
+    assert.match(await text(page, "#offer"), /^open\s*a scan or a mesh/);
+    await stayApart(page, 390, parts);
+    await picture(page, "simple-phone-examples");
+  }));
+
+test("the paper's preset and words of the servo are for those who ask for all", () =>
+  firstVisit(kSmall, async (page) => {
+    const paper = page.locator('[data-preset="paper"]');
+    assert.ok(await paper.isHidden());
+    await page.click("#panels");
+    assert.ok(await paper.isVisible());
+  }));
+
 test("the tour's words stand above the buttons", () =>
   firstVisit(kPhone, async (page) => {
     await page.tap("#tour-offer");
@@ -167,7 +227,7 @@ for (const standard of [16, 32]) {
           parseFloat(await page.evaluate(() => window.getComputedStyle(document.documentElement).fontSize)) > 0.9 * standard);
         assert.ok(await page.locator(".tabs").isHidden());
         assert.ok(await page.evaluate((most) => document.documentElement.scrollWidth <= most, width), "nothing is wider than the screen");
-        await stayApart(page, width, [".actions", ".readout", "#presets", "#grips", ".eye", ".measures .scale"]);
+        await stayApart(page, width, [".actions", ".readout", "#presets", "#grips", ".eye", "#scale"]);
         const { y, height } = await page.locator("#view").boundingBox();
         assert.ok(y + height > (await page.evaluate(() => window.innerHeight)) - 1, "the view goes to the bottom");
         await picture(page, `simple-phone-${width}-${standard}`);
@@ -180,7 +240,7 @@ for (const [name, options] of [["dark", { ...kSmall, colorScheme: "dark" }], ["f
   test(`the simple page in ${name} colours`, () =>
     firstVisit(options, async (page) => {
       await showsSimple(page);
-      await stayApart(page, 900, [".readout", ".hold", ".eye", ".measures .scale"]);
+      await stayApart(page, 900, [".readout", ".hold", ".eye", "#scale"]);
       await picture(page, `simple-${name}`);
     }));
 }

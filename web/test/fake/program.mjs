@@ -20,6 +20,11 @@ export const settings = () => [
   { key: "wavelength", label: "Wavelength", unit: "mm", kind: "number", least: 0.1, most: 10, step: 0.1, value: 4 },
   { key: "grain", label: "Grain", unit: "", kind: "switch", value: false }, // shakes the force
 ];
+/** What another run begins with: of a mesh whose unit is guessed. */
+export const kAnew = [
+  { key: "scene", label: "Scene", kind: "choice", choices: ["rabbit", "desk", "room", "cube"], value: "cube", restarts: true },
+  { key: "unit.cube", label: "Unit of cube", kind: "choice", choices: ["mm", "cm", "m", "inch", "ft"], value: "mm", restarts: true, question: "cube: 20 x 20 x 20 mm?" },
+];
 /** As palpate has them, of a run that begins with 500 N/m. */
 export const kPresets = {
   default: { stiffness: 500, friction: 0.2, field: "balanced", texture: 0, grain: false },
@@ -39,8 +44,11 @@ export class FakeProgram {
   near = false;
   holder; // the client whose hand moves the tool
 
-  constructor({ points = 30000, token, still = false, silent, length }) {
+  constructor({ points = 30000, token, still = false, silent, length, anew = false }) {
     this.token = token;
+    this.run = "first";
+    this.opens = anew ? 2 ** 30 : undefined; // bytes
+    if (anew) this.settings.push(...kAnew.map((one) => ({ ...one })));
     this.length = length; // s, of a recording that is shown; undefined: a run
     this.moment = { time: 0, playing: false, speed: 1 };
     this.still = still;
@@ -149,7 +157,7 @@ export class FakeProgram {
 
   welcome() {
     return {
-      type: "welcome", version: 1, run: "first", scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
+      type: "welcome", version: 2, run: this.run, ...(this.opens === undefined ? {} : { opens: this.opens }), scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
       devices: [{ name: "simulated", takeable: this.length === undefined }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
       ...(this.length === undefined ? { settings: this.settings, presets: Object.keys(kPresets) }
         : { settings: [], presets: [], timeline: { length: this.length } }),

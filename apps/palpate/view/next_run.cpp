@@ -1,0 +1,128 @@
+// Offers other scenes and other units as settings.
+#include "apps/palpate/view/next_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "apps/palpate/cli/arguments.hpp"
+#include "apps/palpate/run/opening.hpp"
+#include "apps/palpate/sources/cloud_facts.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct LengthUnit {
+  const char* name;
+  double metres;
+};
+
+constexpr std::array<LengthUnit, 5> kLengthUnits = {
+    {{"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"inch", 0.0254}, {"ft", 0.3048}}};
+
+struct Example {
+  const char* name;
+  const char* source;
+};
+
+// One scan, one camera and one room: each is prepared within a second.
+constexpr std::array<Example, 3> kExamples = {{{"rabbit", "rabbit=synthetic:rabbit"},
+                                               {"desk", "desk=camera:simulated:desk"},
+                                               {"room", "room=synthetic:room"}}};
+
+constexpr std::string_view kUnitKey = "unit.";
+
+std::string name_of_unit(double metres) {
+  const auto unit = std::ranges::find(kLengthUnits, metres, &LengthUnit::metres);
+  return unit == kLengthUnits.end() ? fmt::format("{:g} m", metres) : unit->name;
+}
+
+// Metres a unit of its file.
+double unit_taken(const LoadedSource& source) {
+  return source.format.ends_with(kTakenAsMillimetres) ? 0.001 : source.plan.reading.scale;
+}
+
+// Can it be read again, and is its unit the file's?
+bool has_unit(const LoadedSource& source) {
+  const std::string& path = source.plan.argument.path;
+  std::error_code unknown;
+  return source.plan.kind == SourceKind::cloud && !source.plan.reading.length && path != "-" &&
+         !path.starts_with(kSynthetic) && !path.starts_with("/dev/") &&
+         !std::filesystem::is_fifo(path, unknown);
+}
+
+std::string question(const LoadedSource& source, const Source& felt) {
+  if (source.units.metres == 0) return {};
+  const std::shared_ptr<const PointCloud> cloud =
+      source.cloud ? source.cloud : felt.state().overview;
+  if (!cloud) return {};
+  const Eigen::Vector3d size = core_of(*cloud).size() / unit_taken(source);
+  return fmt::format("{}: {:.3g} x {:.3g} x {:.3g} {}?", source.plan.argument.name, size.x(),
+                     size.y(), size.z(), name_of_unit(source.units.metres));
+}
+
+Setting unit_setting(const LoadedSource& source, const Source& felt) {
+  const std::string& name = source.plan.argument.name;
+  Setting setting{.key = std::string(kUnitKey) + name, .label = "Unit of " + name};
+  setting.kind = Setting::Kind::choice;
+  for (const LengthUnit& unit : kLengthUnits) setting.choices.emplace_back(unit.name);
+  const std::string present = name_of_unit(unit_taken(source));
+  if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
+  setting.value = present;
+  setting.restarts = true;
+  setting.question = question(source, felt);
+  return setting;
+}
+
+Setting scene_setting(const LoadedScene& loaded) {
+  Setting setting{.key = "scene", .label = "Scene", .kind = Setting::Kind::choice};
+  for (const Example& each : kExamples) setting.choices.emplace_back(each.name);
+  std::string present;
+  for (const LoadedSource& source : loaded.sources) {
+    present += (present.empty() ? "" : " + ") + source.plan.argument.name;
+  }
+  if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
+  setting.value = present;
+  setting.restarts = true;
+  return setting;
+}
+
+}  // namespace
+
+NextRun::NextRun(const Run& run) : run_(run) {
+  if (run.opening == nullptr) return;
+  settings_.push_back(scene_setting(run.loaded));
+  const auto camera = [](const LoadedSource& source) { return source.camera != nullptr; };
+  if (std::ranges::any_of(run.loaded.sources, camera)) return;  // nobody else may open it meanwhile
+  for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
+    const LoadedSource& source = run.loaded.sources[i];
+    if (has_unit(source)) settings_.push_back(unit_setting(source, run.loaded.scene.source(i)));
+  }
+}
+
+bool NextRun::set(const std::string& key, const Setting::Value& value) {
+  const auto setting = std::ranges::find(settings_, key, &Setting::key);
+  if (setting == settings_.end()) return false;
+  if (value == setting->value) return true;
+  const std::string& wanted = std::get<std::string>(value);
+  if (key == "scene") {
+    const auto example = std::ranges::find(kExamples, wanted, &Example::name);
+    run_.opening->begin({wanted, Opening::Sources{{example->source}}});
+    return true;
+  }
+  const std::string name = key.substr(kUnitKey.size());
+  const auto unit = std::ranges::find(kLengthUnits, wanted, &LengthUnit::name);
+  const auto& sources = run_.loaded.sources;
+  const auto source = std::ranges::find_if(
+      sources, [&](const LoadedSource& each) { return each.plan.argument.name == name; });
+  const auto index = static_cast<std::size_t>(source - sources.begin());
+  run_.opening->begin(
+      {fmt::format("{} in {}", name, wanted), Opening::OtherUnit{index, unit->metres}});
+  return true;
+}
+
+}  // namespace palpate::app
