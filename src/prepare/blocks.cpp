@@ -25,9 +25,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Points of a flat cube (Division::kBlockEdge) at 2.5 spacings in R, (96 x 2.5)^2, rounded up: a smaller
-// cloud is about one block, and two cores prepare it in some 2 s.
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 16;
+// Points that two cores prepare in some 2 s. The first block of a smaller cloud would be a third of
+// it, which is not worth the halos; judgement.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 19;
 
 // Typical R of its level: the halo of a block. Measured: 2, 3 and 5 give nearly the same columns
 // (docs/preparation.md).
