@@ -143,7 +143,7 @@ void add_reading_options(OptionTable& table, FileReading& o) {
       .only_for({&RunFacts::is_static,
                  "applies only to files; cameras report their own, sequences store it in "
                  "sequence.json, and bags and topics take ,unit=METRES behind their names"})
-       .option->each([&o](const std::string& /*text*/) { o.unit = FileReading::Unit::given; });
+      .option->each([&o](const std::string& /*text*/) { o.unit = FileReading::Unit::given; });
   table
       .add("--length", o.length, "METRES", positive(),
            "length of the cloud's longest side, instead of --scale; splats have no unit of their "
