@@ -61,8 +61,11 @@ std::string question(const LoadedSource& source, const Source& felt) {
       source.cloud ? source.cloud : felt.state().overview;
   if (!cloud) return {};
   const Eigen::Vector3d size = core_of(*cloud).size() / unit_taken(source);
-  return fmt::format("{}: {:.3g} x {:.3g} x {:.3g} {}?", source.plan.argument.name, size.x(),
-                     size.y(), size.z(), name_of_unit(source.units.metres));
+  const auto words = [](double side) {
+    return side < 1000 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
+  };
+  return fmt::format("{}: {} x {} x {} {}?", source.plan.argument.name, words(size.x()),
+                     words(size.y()), words(size.z()), name_of_unit(source.units.metres));
 }
 
 Setting unit_setting(const LoadedSource& source, const Source& felt) {
