@@ -36,9 +36,18 @@ std::size_t quoted_size(std::string_view text) {
 }  // namespace
 
 std::optional<std::string_view> take_cell(std::string_view& rest, std::string_view separator) {
-  if (separator == " ") {
-    while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
+  if (separator.front() == ' ') {
+    const char* at = rest.data();
+    const char* const last = at + rest.size();
+    while (at != last && is_space(*at)) ++at;
+    rest = {at, last};
     if (rest.empty()) return {};
+    if (*at != '"') {  // nearly all cells: nothing of them is trimmed
+      while (at != last && !is_space(*at)) ++at;
+      const std::string_view cell(rest.data(), at);
+      rest = at == last ? std::string_view() : std::string_view(at + 1, last);
+      return cell;
+    }
   }
   if (rest.data() == nullptr) return {};
   const std::size_t end = cell_end(rest, quoted_size(rest), separator);

@@ -11,14 +11,14 @@
 namespace palpate::io {
 
 std::optional<NumberType> number_type(std::string_view letter, std::size_t size) {
-  constexpr std::pair<std::string_view, NumberType> kTypes[] = {
+  constexpr std::pair<std::string_view, NumberType> kNumberTypes[] = {
       {"i1", NumberType::int8},    {"u1", NumberType::uint8},  {"i2", NumberType::int16},
       {"u2", NumberType::uint16},  {"i4", NumberType::int32},  {"u4", NumberType::uint32},
       {"i8", NumberType::int64},   {"u8", NumberType::uint64}, {"f4", NumberType::float32},
       {"f8", NumberType::float64},
   };
   const std::string wanted = fmt::format("{}{}", lower_case(letter), size);
-  for (const auto& [name, type] : kTypes) {
+  for (const auto& [name, type] : kNumberTypes) {
     if (name == wanted) return type;
   }
   return {};
