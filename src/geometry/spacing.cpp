@@ -85,7 +85,7 @@ using Nearest = void (*)(const simd::Join&, simd::Row*);
 float guess_spacing(const Block& block) {
   const Eigen::Vector3f extent = block.upper - block.lower;
   const float longest = extent.maxCoeff();
-  const float middle = extent.sum() - longest - extent.minCoeff();
+  const float middle = std::max(0.F, extent.sum() - longest - extent.minCoeff());  // it rounds
   const auto count = static_cast<float>(block.size());
   return std::max(std::sqrt(longest * middle / count), longest / count);
 }

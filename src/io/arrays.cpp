@@ -72,7 +72,7 @@ std::vector<std::size_t> shape_of(std::string_view text) {
 // What to make of an array `a` so that it holds rows of points; nothing where it does.
 std::string_view mend(std::string_view type, bool is_number, std::span<const std::size_t> shape) {
   if (type.starts_with('[')) return "np.stack([a[k] for k in 'xyz'], -1)";  // fields
-  if (!is_number) return "a.astype('<f4')";
+  if (!is_number) return "a.astype('<f8')";
   if (shape.size() != 2) return "a.reshape(-1, 3)";
   const bool across = shape[1] > FirstNumbers{}.size() && shape[1] > shape[0];
   return shape[1] < 3 || across ? "a.T" : "";
@@ -118,17 +118,40 @@ CloudFile read_npy(const Input& input) {
   return cloud_of_array(input, array, "NumPy array" + unused(present - array.rows));
 }
 
+// Do neighbouring points differ less in groups of `wide` numbers? Scans go from point to point.
+bool lies_in_groups_of(std::size_t wide, std::span<const std::byte> bytes) {
+  constexpr std::size_t kNumbers = 4096;  // that are looked at (judgement)
+  const std::size_t count = std::min(bytes.size() / sizeof(float), kNumbers);
+  const auto difference = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = 0; i + lag < count; ++i) {
+      const auto a = load_as<float>(bytes.data() + i * sizeof(float));
+      sum += std::abs(
+          static_cast<double>(load_as<float>(bytes.data() + (i + lag) * sizeof(float)) - a));
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(count - lag, 1));
+  };
+  return count > 8 * wide && 2 * difference(wide) < difference(4);  // by far; judgement
+}
+
 // Where numbers are not in groups of x y z intensity, coordinates come where intensities are to be.
+// Whole numbers and doubles are floats of absurd sizes.
 CloudFile read_kitti(const Input& input) {
   constexpr std::size_t kPoint = 16;  // bytes: four floats
   const std::size_t size = input.bytes.size();
   const auto is_right = [&](std::size_t at) {
     const auto value = load_as<float>(input.bytes.data() + at);
-    return std::isfinite(value) && (at % kPoint != kPoint - sizeof(float) || value >= 0);
+    const float size_of_it = std::abs(value);
+    const bool is_length =
+        value == 0 || (size_of_it > 1e-20F && size_of_it < 1e7F);  // m; the Earth
+    return is_length && (at % kPoint != kPoint - sizeof(float) || value >= 0);
   };
   std::size_t at = 0;
   while (at + sizeof(float) <= size && is_right(at)) at += sizeof(float);
-  if (at < size || size % kPoint != 0) {
+  const bool other = std::ranges::any_of(std::array{3, 5, 6}, [&](int wide) {
+    return lies_in_groups_of(static_cast<std::size_t>(wide), input.bytes);
+  });
+  if (at < size || size % kPoint != 0 || other) {
     fail_at_byte(
         input, at,
         "not points of four floats, x y z and an intensity of 0 or more, as KITTI has them",

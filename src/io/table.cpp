@@ -125,8 +125,22 @@ std::string bare_name(std::string_view name) {
 
 }  // namespace
 
+namespace {
+
+// Does a comment name its columns, x y z one after the other, or is it prose that holds the
+// letters?
+bool is_prose(const Roles& roles) {
+  std::size_t first = 0;
+  while (first < roles.size() && roles[first] != Role::x) ++first;
+  return first + 2 >= roles.size() || roles[first + 1] != Role::y || roles[first + 2] != Role::z;
+}
+
+}  // namespace
+
 std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns) {
-  line.remove_prefix(std::min(line.find_first_not_of("/#% "), line.size()));
+  const std::size_t begin = std::min(line.find_first_not_of("/#% "), line.size());
+  line.remove_prefix(begin);
+  if (begin > 0) line.remove_prefix(line.find(": ") == line.npos ? 0 : line.find(": ") + 2);
   for (const std::string_view separator : kSeparators) {
     ColumnNames plain;
     ColumnNames places;
@@ -142,7 +156,7 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
       places.degrees = places.degrees || (name.starts_with("lat") && place == Role::y);
     }
     const ColumnNames& names = plain.roles.has_point() ? plain : places;
-    if (!names.roles.has_point()) continue;
+    if (!names.roles.has_point() || (begin > 0 && is_prose(names.roles))) continue;
     if (columns == 0 || names.roles.size() == columns) return names;
   }
   return {};

@@ -126,9 +126,21 @@ class XyzReader {
     const auto odd =
         std::ranges::find_if_not(sample_, [&](std::string_view line) { return fits(line, table); });
     const auto fitting = static_cast<std::size_t>(odd - sample_.begin());
-    if (fitting <= fitting_) return;
+    // In columns of one width, as "-120,  80,1500", blanks pad numbers and separate nothing.
+    const bool padded = separator == "," && table_.dialect.separator == ", " &&
+                        std::ranges::all_of(sample_, has_columns_of_one_width);
+    if (fitting < fitting_ || (fitting == fitting_ && !padded)) return;
     fitting_ = fitting;
     table_ = std::move(table);
+  }
+
+  static bool has_columns_of_one_width(std::string_view line) {
+    const std::size_t width = line.find(',');
+    for (std::size_t at = width; at < line.size(); at += width + 1) {
+      const std::size_t next = std::min(line.find(',', at + 1), line.size());
+      if (line[at] != ',' || next != at + width + 1) return false;
+    }
+    return true;
   }
 
   static bool fits(std::string_view line, const TextTable& table) {

@@ -40,8 +40,9 @@ TEST(CloudFacts, AUnitThatTheFileStatesIsNotAskedFor) {
 }
 
 TEST(CloudFacts, AMeshWithoutAUnitIsInMillimetresWhereAPartOfAMachineCouldBe) {
-  const auto unit = [](const char* format, float longest) {
+  const auto unit = [](const char* format, float longest, bool faces = true) {
     CloudFile file;
+    if (faces) file.mesh.emplace();
     file.format = format;
     file.cloud.positions = {{0, 0, 0}, {longest, 0, 0}, {0, longest / 2, 0}};
     return likely_unit(file);
@@ -51,6 +52,7 @@ TEST(CloudFacts, AMeshWithoutAUnitIsInMillimetresWhereAPartOfAMachineCouldBe) {
   EXPECT_EQ(unit("STL, ascii", 2000), 0.001);
   EXPECT_EQ(unit("STL, binary", 0.9f), 1);
   EXPECT_EQ(unit("OBJ", 2001), 1);
+  EXPECT_EQ(unit("OBJ", 5, false), 1) << "points of a scan";
   EXPECT_EQ(unit("PLY, ascii", 20), 1);
   EXPECT_EQ(unit("glTF, binary", 20), 1);
 }

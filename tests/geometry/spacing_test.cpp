@@ -103,6 +103,12 @@ TEST(LocalSpacings, AreFiniteAndPositiveWhateverThePoints) {
   Points line;
   for (int i = 0; i < 100; ++i) line.push_back(Vector3f(static_cast<float>(i), 5e5f, 0));
   inputs.push_back(line);
+  Points thin;  // the two short extents vanish beside the long one, and their sum rounds below 0
+  for (int i = 0; i < 50; ++i) {
+    const auto t = static_cast<float>(i);
+    thin.push_back(Vector3f(4.1e-11F * t, 4.1e-11F * t, 0.1F * t));
+  }
+  inputs.push_back(thin);
   Points doubled = Clouds(2).sphere(500, 0.1);
   doubled.insert(doubled.end(), doubled.begin(), doubled.end());
   inputs.push_back(doubled);

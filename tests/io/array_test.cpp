@@ -56,9 +56,9 @@ TEST(Npy, ReadsFortransOrder) {
 }
 
 TEST(Npy, SaysHowToSaveWhatItDoesNotRead) {
-  EXPECT_THAT(refusal(npy(header("<f2", "(2, 3)"), kSix)), HasSubstr("a.astype('<f4')"));
-  EXPECT_THAT(refusal(npy(header(">f4", "(2, 3)"), kSix)), HasSubstr("a.astype('<f4')"));
-  EXPECT_THAT(refusal(npy(header("<c16", "(2, 3)"), kSix)), HasSubstr("a.astype('<f4')"));
+  EXPECT_THAT(refusal(npy(header("<f2", "(2, 3)"), kSix)), HasSubstr("a.astype('<f8')"));
+  EXPECT_THAT(refusal(npy(header(">f4", "(2, 3)"), kSix)), HasSubstr("a.astype('<f8')"));
+  EXPECT_THAT(refusal(npy(header("<c16", "(2, 3)"), kSix)), HasSubstr("a.astype('<f8')"));
   EXPECT_THAT(refusal(npy(header("<f4", "(6,)"), kSix)), HasSubstr("a.reshape(-1, 3)"));
   EXPECT_THAT(refusal(npy(header("<f4", "(1, 2, 3)"), kSix)), HasSubstr("a.reshape(-1, 3)"));
   EXPECT_THAT(refusal(npy(header("<f4", "(3, 2)"), kSix)), HasSubstr("np.save('OUT.npy', a.T)"));
@@ -87,6 +87,19 @@ TEST(Kitti, ReadsPointsOfFourFloats) {
   EXPECT_EQ(file.cloud.point(0), Eigen::Vector3d(1, -2, 3));
   EXPECT_EQ(file.cloud.intensities[0], 0.5F);
   EXPECT_EQ(read_text("1 2 3\n", "0.bin").format, "text");
+}
+
+TEST(Kitti, RefusesWhatGoesFromPointToPointInOtherGroups) {
+  for (const int wide : {3, 5, 6}) {
+    std::string bytes;
+    for (int i = 0; i < 400; ++i) {
+      for (int k = 0; k < wide; ++k)
+        append(bytes, 10.F * static_cast<float>(k) + 0.01F * static_cast<float>(i));
+    }
+    EXPECT_THAT(refusal(bytes, "scan.bin"), HasSubstr("N floats")) << wide;
+  }
+  EXPECT_THAT(refusal(numbers<double>({1.1, 2.2, 3.3, 4.4, 5.5, 6.6}), "scan.bin"),
+              HasSubstr("N floats"));
 }
 
 TEST(Kitti, RefusesOtherGroupsOfFloats) {

@@ -116,6 +116,19 @@ TEST(Xyz, LinesWithCommasMayEndInOne) {
   EXPECT_EQ(read_text("x,y,z,i\n1,2,3,\n").cloud.size(), 1u);
 }
 
+TEST(Xyz, BlanksThatPadColumnsOfOneWidthSeparateNothing) {
+  const PointCloud cloud = read_text("-120,  80,1500, 200\n-110,  85,1510, 210\n").cloud;
+  EXPECT_EQ(cloud.point(1), Eigen::Vector3d(-110, 85, 1510));
+}
+
+TEST(Xyz, ProseInACommentNamesNoColumns) {
+  for (const char* prose : {"# format: x y z\n", "# x, y and z in mm here\n"}) {
+    const std::string text = std::string(prose) + "1 2 3 9\n2 2 3 9\n4 5 6 9\n";
+    EXPECT_EQ(first_point(read_text(text)), Eigen::Vector3f(1, 2, 3)) << prose;
+  }
+  EXPECT_EQ(first_point(read_text("#id x y z\n7 1 2 3\n9 1 2 4\n")), Eigen::Vector3f(1, 2, 3));
+}
+
 TEST(Xyz, DecimalCommasAreNotTakenForSeparators) {
   for (const char* text : {"1,5;2;-3,25\n", "1,5 2 -3,25\n", "1,5\t2\t-3,25\n", "1,5, 2, -3,25\n",
                            "\"1,5\",\"2\",\"-3,25\"\n", "x, y, z\n1,5, 2,0, -3,25\n"}) {

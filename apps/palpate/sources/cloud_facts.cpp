@@ -97,7 +97,7 @@ double likely_unit(const CloudFile& file) {
   constexpr double kShortest = 1;
   constexpr double kLongest = 2000;
   const bool unitless = file.format.starts_with("STL") || file.format.starts_with("OBJ");
-  if (!unitless || file.cloud.empty()) return 1;
+  if (!unitless || !file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
   const double extent = core_of(file.cloud).size().maxCoeff();
   return extent >= kShortest && extent <= kLongest ? 0.001 : 1;
 }

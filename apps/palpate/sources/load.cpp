@@ -61,15 +61,29 @@ CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   return file;
 }
 
+// A file whose unit is guessed, and that can be read twice.
+bool is_unitless_file(const std::string& path) {
+  std::error_code unknown;
+  std::string type = std::filesystem::path(path).extension().string();
+  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return (type == ".stl" || type == ".obj") && std::filesystem::is_regular_file(path, unknown);
+}
+
 // A spacing of points is in metres, which are known once the cloud was read without it.
 CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options) {
-  const double spacing = std::exchange(options.mesh_spacing, 0.0);
+  const double spacing = options.mesh_spacing;
+  const bool twice = spacing > 0 && is_unitless_file(argument.path);
+  if (twice) options.mesh_spacing = 0;
   CloudFile file = read(argument, options);
   options.scale = likely_unit(file);
-  const bool again = spacing > 0 && file.mesh && argument.path != "-";
-  options.mesh_spacing = spacing;
-  if (again) {
+  if (twice) {
+    options.mesh_spacing = spacing;
     file = read(argument, options);
+  } else if (options.scale != 1 && spacing > 0) {
+    throw Error(fmt::format(
+        "{}: --mesh-spacing is in metres, and the file says no unit; give --scale, too: 0.001 for "
+        "millimetres, 1 for metres",
+        argument.path));
   } else if (options.scale != 1) {
     rescale(file, options.scale);
   }

@@ -46,13 +46,17 @@ double unit_taken(const LoadedSource& source) {
   return source.format.ends_with(kTakenAsMillimetres) ? 0.001 : source.plan.reading.scale;
 }
 
-// Can it be read again, and is its unit the file's?
-bool has_unit(const LoadedSource& source) {
+// Is it a camera, which nobody else may open meanwhile, or what can be read once alone?
+bool opens_once(const LoadedSource& source) {
   const std::string& path = source.plan.argument.path;
   std::error_code unknown;
-  return source.plan.kind == SourceKind::cloud && !source.plan.reading.length && path != "-" &&
-         !path.starts_with(kSynthetic) && !path.starts_with("/dev/") &&
-         !std::filesystem::is_fifo(path, unknown);
+  return source.camera != nullptr || path == "-" || path.starts_with("/dev/") ||
+         std::filesystem::is_fifo(path, unknown);
+}
+
+bool has_unit(const LoadedSource& source) {
+  return source.plan.kind == SourceKind::cloud && !source.plan.reading.length &&
+         !source.plan.argument.path.starts_with(kSynthetic);
 }
 
 std::string question(const LoadedSource& source, const Source& felt) {
@@ -99,8 +103,7 @@ Setting scene_setting(const LoadedScene& loaded) {
 NextRun::NextRun(const Run& run) : run_(run) {
   if (run.opening == nullptr) return;
   settings_.push_back(scene_setting(run.loaded));
-  const auto camera = [](const LoadedSource& source) { return source.camera != nullptr; };
-  if (std::ranges::any_of(run.loaded.sources, camera)) return;  // nobody else may open it meanwhile
+  if (std::ranges::any_of(run.loaded.sources, opens_once)) return;
   for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
     const LoadedSource& source = run.loaded.sources[i];
     if (has_unit(source)) settings_.push_back(unit_setting(source, run.loaded.scene.source(i)));

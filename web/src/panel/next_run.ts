@@ -24,16 +24,17 @@ export class NextRun {
     const others = (scene?.choices ?? []).filter((choice) => choice !== scene?.value);
     byId("examples").hidden = others.length === 0;
     byId("examples").replaceChildren("or try ", ...(scene === undefined ? [] : buttons({ ...scene, choices: others }, this.set)));
-    this.ask(settings.find(({ question }) => question !== undefined && !this.answered.has(question)));
+    this.ask(settings);
   }
 
-  private ask(setting: Setting | undefined): void {
+  private ask(settings: readonly Setting[]): void {
+    const setting = settings.find(({ question }) => question !== undefined && !this.answered.has(question));
     const card = byId("ask");
     card.hidden = setting === undefined;
     if (setting === undefined) return;
     const done = () => {
       this.answered.add(setting.question ?? "");
-      card.hidden = true;
+      this.ask(settings);
     };
     const answer: Set = (key, value) => {
       done();

@@ -29,8 +29,13 @@ export class Notices {
   /** `brief`: what is neither a warning nor work under way is listed only. */
   constructor(private readonly brief: () => boolean) {}
 
-  /** What work was under way is not the next run's. */
+  /** What work was under way is not the next run's, nor are faults: those that hold are said again. */
   begin(): void {
+    this.endWork();
+    for (const notice of this.shown) if (notice.level === "fault") this.remove(notice);
+  }
+
+  private endWork(): void {
     for (const notice of this.shown) if (notice.share !== undefined) this.remove(notice);
   }
 
@@ -43,7 +48,7 @@ export class Notices {
     if (share >= 1) {
       if (work !== undefined) this.remove(work);
     } else if (work === undefined || work.text !== text) {
-      this.begin();
+      this.endWork();
       this.put(level, text, share);
     } else {
       this.showShare(work, share);
@@ -52,7 +57,7 @@ export class Notices {
 
   /** What it said is true no more; the list of messages keeps it. */
   takeBack(text: string): void {
-    for (const notice of this.shown) if (kindOf(notice.text) === kindOf(text)) this.remove(notice);
+    for (const notice of this.shown) if (notice.text === text) this.remove(notice); // other words hold still
   }
 
   private put(level: NoticeLevel, text: string, share?: number): void {
