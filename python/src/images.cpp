@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "palpate/geometry/spacing.hpp"
 
 namespace palpate::python {
 
@@ -34,13 +35,11 @@ std::string problem_of(const Camera& camera, bool whole) {
     if (z > 0 && std::isfinite(z)) far.push_back(z);
   }
   if (far.empty()) return {};
-  const auto middle = far.begin() + static_cast<std::ptrdiff_t>(far.size() / 2);
-  std::ranges::nth_element(far, middle);
   return fmt::format(
       "all depths of the image at {} s are nearer than {} m or farther than {} m (median {:.4g} "
       "m); "
       "give {}, or other nearest= and farthest= to add_camera()",
-      camera.frame.stamp, range.nearest, range.farthest, *middle,
+      camera.frame.stamp, range.nearest, range.farthest, median(far),
       whole ? fmt::format("another unit= to add_camera() than {} m a step", camera.unit)
             : "real numbers in metres, such as depth * np.float32(0.001) of millimetres");
 }

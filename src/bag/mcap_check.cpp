@@ -252,10 +252,9 @@ void DataCheck::end_data(std::uint64_t at, View content) {
 }
 
 void DataCheck::end_file(std::uint64_t at) {
-  constexpr std::uint64_t kEnd = kFooter + kMagic.size();
   const Bytes rest = file_.read(at, file_.size() - at);
-  if (rest.size() < kEnd) throw Error(fmt::format("byte {}: the file has no end", at));
-  const View records = View(rest).first(rest.size() - kEnd);
+  if (rest.size() < kFileEnd) throw Error(fmt::format("byte {}: the file has no end", at));
+  const View records = View(rest).first(rest.size() - kFileEnd);
   Fields footer(View(rest).subspan(records.size() + kRecordHead));
   const auto begin = footer.number<std::uint64_t>();
   const auto offsets = footer.number<std::uint64_t>();

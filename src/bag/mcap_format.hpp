@@ -27,7 +27,8 @@ using Words = std::map<std::string, std::string>;
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 inline constexpr std::size_t kRecordHead = 9;    ///< bytes
 inline constexpr std::size_t kMessageHead = 22;  ///< bytes of a message's content before its data
-inline constexpr std::size_t kFooter = kRecordHead + 20;   ///< bytes
+inline constexpr std::size_t kFooter = kRecordHead + 20;            ///< bytes
+inline constexpr std::uint64_t kFileEnd = kFooter + kMagic.size();  ///< bytes; the last ones
 inline constexpr std::uint64_t kLargestChunk = 256 << 20;  ///< bytes before compression (judgement)
 
 enum class Op : std::uint8_t {

@@ -71,10 +71,9 @@ Contents Walk::run() {
 // Uses what the file's end says, if all of it is there.
 void Walk::read_summary() {
   data_end_ = file_.size();
-  constexpr std::uint64_t kEnd = kFooter + kMagic.size();
-  if (file_.size() < kEnd + kMagic.size()) return;
-  const std::uint64_t footer_at = file_.size() - kEnd;
-  const Bytes end = file_.read(footer_at, kEnd);
+  if (file_.size() < kFileEnd + kMagic.size()) return;
+  const std::uint64_t footer_at = file_.size() - kFileEnd;
+  const Bytes end = file_.read(footer_at, kFileEnd);
   Fields fields(end);
   const bool is_footer = fields.number<std::uint8_t>() == static_cast<std::uint8_t>(Op::footer) &&
                          fields.number<std::uint64_t>() == kFooter - kRecordHead;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "base/requirement.hpp"
@@ -83,18 +82,13 @@ Union unite(const Scene& scene) {
   return all;
 }
 
-// The sum of raw weights at a point of a plane: m^2 times the kernel's integral over the plane.
-double raw_weight(Kernel kernel, double multiple) {
-  const double integral = 2 * std::numbers::pi / (kernel == Kernel::wyvill ? 27. / 4 : 14.);
-  return multiple * multiple * integral;
-}
-
 // Height of the rendered surface above the points, m.
 double offset(const FieldOptions& field, const Union& all, double tool_radius) {
   if (field.kind != FieldOptions::Kind::metaball) return tool_radius;
   double level = field.threshold;
   if (field.raw_weights) {
-    level /= raw_weight(field.kernel, all.spacing > 0 ? all.radius / all.spacing : kPaperMultiple);
+    const double multiple = all.spacing > 0 ? all.radius / all.spacing : kPaperMultiple;
+    level /= multiple * multiple * plane_integral(field.kernel);
   }
   return plane_offset(field.kernel, level) * all.radius + tool_radius;
 }

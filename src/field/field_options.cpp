@@ -6,13 +6,6 @@
 #include "field/formulas.hpp"
 
 namespace palpate {
-namespace {
-
-// Derived: 1 / integral of w(r) r dr over [0, 1] (docs/method.md 2.1); no unit.
-constexpr double kWyvillNorm = 27. / 4;
-constexpr double kWendlandNorm = 14;  // the same of the other kernel
-
-}  // namespace
 
 double plane_threshold(Kernel kernel, double eta) noexcept {
   if (eta >= 1) return 0;
@@ -25,8 +18,7 @@ double plane_threshold(Kernel kernel, double eta) noexcept {
 }
 
 double plane_threshold_slope(Kernel kernel, double eta) noexcept {
-  const double norm = kernel == Kernel::wyvill ? kWyvillNorm : kWendlandNorm;
-  return -norm * eta * evaluate(kernel, eta * eta).w;
+  return -plane_norm(kernel) * eta * evaluate(kernel, eta * eta).w;
 }
 
 double plane_offset(Kernel kernel, double threshold) noexcept {

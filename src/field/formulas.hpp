@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "palpate/field/field_options.hpp"
 
@@ -36,6 +37,17 @@ struct KernelValue {
 
 [[nodiscard]] inline KernelValue evaluate(Kernel kernel, double q) noexcept {
   return kernel == Kernel::wyvill ? wyvill(q) : wendland(q);
+}
+
+/// 1 / integral of w(r) r dr over [0, 1] (docs/method.md 2.1).
+[[nodiscard]] constexpr double plane_norm(Kernel kernel) noexcept {
+  return kernel == Kernel::wyvill ? 27. / 4 : 14;
+}
+
+/// The integral of a kernel over a plane, for R = 1: times R^2 over the area of a point it is the
+/// sum of raw weights on a plane that goes on on all sides.
+[[nodiscard]] constexpr double plane_integral(Kernel kernel) noexcept {
+  return 2 * std::numbers::pi / plane_norm(kernel);
 }
 
 /// The level at which the density-normalised weight sum of a plane stands at a height of `eta`

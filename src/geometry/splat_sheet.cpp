@@ -82,8 +82,8 @@ SplatCell merged(std::span<const SplatCell> points) {
     mean.depth += each.depth;
     mean.position += each.depth * (each.position - points.front().position);
     mean.color += each.depth * each.color;
-    mean.normal += std::copysign(each.depth, each.normal.dot(points.front().normal)) * each.normal;
     const float side = each.normal.dot(points.front().normal);
+    mean.normal += std::copysign(each.depth, side) * each.normal;
     mean.behind += each.depth * turned_share(each, side);
     sure += each.sure ? each.depth : 0;
   }

@@ -141,17 +141,14 @@ CloudFile read_kitti(const Input& input) {
   const std::size_t size = input.bytes.size();
   const auto is_right = [&](std::size_t at) {
     const auto value = load_as<float>(input.bytes.data() + at);
-    const float size_of_it = std::abs(value);
-    const bool is_length =
-        value == 0 || (size_of_it > 1e-20F && size_of_it < 1e7F);  // m; the Earth
+    const float length = std::abs(value);
+    const bool is_length = value == 0 || (length > 1e-20F && length < 1e7F);  // m; the Earth
     return is_length && (at % kPoint != kPoint - sizeof(float) || value >= 0);
   };
   std::size_t at = 0;
   while (at + sizeof(float) <= size && is_right(at)) at += sizeof(float);
-  const bool other = std::ranges::any_of(std::array{3, 5, 6}, [&](int wide) {
-    return lies_in_groups_of(static_cast<std::size_t>(wide), input.bytes);
-  });
-  if (at < size || size % kPoint != 0 || other) {
+  const auto fits = [&](std::size_t wide) { return lies_in_groups_of(wide, input.bytes); };
+  if (at < size || size % kPoint != 0 || fits(3) || fits(5) || fits(6)) {
     fail_at_byte(
         input, at,
         "not points of four floats, x y z and an intensity of 0 or more, as KITTI has them",

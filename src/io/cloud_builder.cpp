@@ -256,4 +256,16 @@ void CloudBuilder::convert_colors(PointCloud& cloud) const {
   if (columns_.colors) cloud.colors = byte_colors(colors_, color_scale_);
 }
 
+void rescale(PointCloud& cloud, double factor) {
+  for (Eigen::Vector3f& p : cloud.positions) p *= static_cast<float>(factor);
+  cloud.origin *= factor;
+  if (cloud.viewpoint) *cloud.viewpoint *= factor;
+}
+
+void rescale(CloudFile& file, double factor) {
+  rescale(file.cloud, factor);
+  if (file.splats) file.splats->spacing *= factor;
+  if (file.mesh) file.mesh->spacing *= factor;
+}
+
 }  // namespace palpate::io

@@ -131,4 +131,10 @@ void check_options(const Input& input);
 /// @throws Error that says so when a file had points but none that can be used, or none at all.
 void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped);
 
+/// Multiplies all lengths of a cloud.
+void rescale(PointCloud& cloud, double factor);
+
+/// The same of a file, with the spacings that are reported of it.
+void rescale(CloudFile& file, double factor);
+
 }  // namespace palpate::io

@@ -77,19 +77,14 @@ Bytes unpack(const Input& input, const std::string& inside) {
 void fit_length(const Input& input, CloudFile& file) {
   if (!input.options.length) return;
   constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)
-  PointCloud& cloud = file.cloud;
+  const PointCloud& cloud = file.cloud;
   const Box inner = detail::inner_box(cloud.positions, cloud.size() / kOutermost);
   const double length = inner.size().maxCoeff();
   if (!(length > 0)) {
     fail(input, "all points are at one place, so no length fits",
          "Give no length, or another file");
   }
-  const double factor = *input.options.length / length;
-  for (Eigen::Vector3f& p : cloud.positions) p *= static_cast<float>(factor);
-  cloud.origin *= factor;
-  if (cloud.viewpoint) *cloud.viewpoint *= factor;
-  if (file.splats) file.splats->spacing *= factor;
-  if (file.mesh) file.mesh->spacing *= factor;
+  rescale(file, *input.options.length / length);
 }
 
 // Leaves out a byte order mark, but where the bytes are numbers.

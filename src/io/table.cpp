@@ -140,7 +140,8 @@ bool is_prose(const Roles& roles) {
 std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns) {
   const std::size_t begin = std::min(line.find_first_not_of("/#% "), line.size());
   line.remove_prefix(begin);
-  if (begin > 0) line.remove_prefix(line.find(": ") == line.npos ? 0 : line.find(": ") + 2);
+  const std::size_t colon = line.find(": ");
+  if (begin > 0 && colon != std::string_view::npos) line.remove_prefix(colon + 2);
   for (const std::string_view separator : kSeparators) {
     ColumnNames plain;
     ColumnNames places;

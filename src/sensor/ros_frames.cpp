@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "io/cloud_builder.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::sensor {
@@ -46,10 +47,7 @@ void RosFrames::fill(const message::PointCloud2& points, DepthFrame& frame) cons
   frame.depth.clear();
   frame.colors.clear();
   PointCloud cloud = cloud_of(points);
-  if (unit_) {
-    cloud.origin *= *unit_;
-    for (Eigen::Vector3f& position : cloud.positions) position *= static_cast<float>(*unit_);
-  }
+  if (unit_) io::rescale(cloud, *unit_);
   frame.cloud = std::make_shared<const PointCloud>(std::move(cloud));
 }
 

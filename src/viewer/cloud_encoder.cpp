@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -49,8 +48,7 @@ bool faded(const Source::State& state, double now) {
 /// The density weight of a point whose R is kUsualMultiple spacings: of a plane, where weights sum
 /// up to the kernel's mean over its disc for each point in that (docs/method.md 2.2).
 double usual_weight(Kernel kernel) {
-  const double mean = kernel == Kernel::wyvill ? 8.0 / 27 : 1.0 / 7;
-  return 1 / (mean * std::numbers::pi * kUsualMultiple * kUsualMultiple);
+  return 1 / (plane_integral(kernel) * kUsualMultiple * kUsualMultiple);
 }
 
 /// How large points are drawn, m: R, or where they lie more densely than R asks for,

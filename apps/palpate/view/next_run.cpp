@@ -66,7 +66,7 @@ std::string question(const LoadedSource& source, const Source& felt) {
   if (!cloud) return {};
   const Eigen::Vector3d size = core_of(*cloud).size() / unit_taken(source);
   const auto words = [](double side) {
-    return side < 1000 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
+    return side < 999.5 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
   };
   return fmt::format("{}: {} x {} x {} {}?", source.plan.argument.name, words(size.x()),
                      words(size.y()), words(size.z()), name_of_unit(source.units.metres));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "field/formulas.hpp"
 #include "scene/policies/lanes.hpp"
 
 namespace palpate {
@@ -78,7 +79,7 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
 // Radii by spacing, and areas of a surface that goes on on all sides.
 void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count) {
   const auto pitch = static_cast<float>(depth.pitch);
-  const float whole = whole_sum(kernel_);
+  const float whole = static_cast<float>(plane_integral(kernel_));
   const float half_wave = kHalfWave * static_cast<float>(depth.noise.correlation);
   const std::size_t begin = static_cast<std::size_t>(v) * depth.columns + first;
   for (std::size_t b = begin; b < begin + static_cast<std::size_t>(count); ++b) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "field/formulas.hpp"
 #include "geometry/parallel.hpp"
 
 namespace palpate {
@@ -191,7 +192,7 @@ HiddenPlanes::Point HiddenPlanes::between(const Line& line, const Gap& gap, int 
   point.radius = mix(line.faces.radii[a], line.faces.radii[b]);
   const float side = static_cast<float>(depth.pitch) * point.position.z();
   const float rows = std::max(side, mix(depth.spacings[a], depth.spacings[b]));
-  point.area = side * rows / whole_sum(kernel_);
+  point.area = side * rows / static_cast<float>(plane_integral(kernel_));
   point.confidence = std::min(depth.confidences[a], depth.confidences[b]);
   point.length = (to - from).norm();
   return point;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 #include "geometry/parallel.hpp"
@@ -10,13 +9,6 @@
 #include "palpate/field/field_options.hpp"
 
 namespace palpate {
-
-/// Density-normalised weights of a surface that goes on on all sides sum to this times R^2 over the
-/// area of a point (docs/method.md 6.7).
-[[nodiscard]] inline float whole_sum(Kernel kernel) {
-  constexpr double kTurn = 2 * std::numbers::pi;  // rad
-  return static_cast<float>(kernel == Kernel::wyvill ? kTurn * 4 / 27 : kTurn / 14);
-}
 
 /// Calls visit(row) for the rows of a frame, on several threads.
 template <class Visit>
