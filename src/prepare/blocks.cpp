@@ -118,9 +118,13 @@ void share_out(double seconds, std::span<Piece> pieces) {
 
 }  // namespace
 
-bool goes_by_blocks(std::size_t points, const PrepareOptions& options) {
+bool can_go_by_blocks(const PrepareOptions& options) {
   if (options.paper || options.material_from_intensity) return false;  // both are of all points
-  return options.facts ? options.facts->radius > 0 : points > kMostAtOnce;
+  return !options.facts || options.facts->radius > 0;
+}
+
+bool goes_by_blocks(std::size_t points, const PrepareOptions& options) {
+  return can_go_by_blocks(options) && (options.facts || points > kMostAtOnce);
 }
 
 namespace {
@@ -141,12 +145,12 @@ PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
 
 }  // namespace
 
-Blocks::Blocks(const Placed& placed, const PrepareOptions& options)
+Blocks::Blocks(const Placed& placed, const PrepareOptions& options, int halvings)
     : cloud_(placed.cloud()),
       options_(of_one_block(placed, options)),
       viewpoint_(placed.viewpoint),
       facts_(*options_.facts),
-      division_(cloud_, facts_) {}
+      division_(cloud_, facts_, halvings) {}
 
 double Blocks::halo(std::size_t block) const {
   const double radius = division_.radius(block);

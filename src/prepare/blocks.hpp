@@ -17,6 +17,9 @@
 
 namespace palpate {
 
+/// Can blocks be prepared each by itself? Not where a step needs the values of all points.
+[[nodiscard]] bool can_go_by_blocks(const PrepareOptions& options);
+
 /// Is a cloud of so many points prepared in blocks? A large one is, and one whose facts are given.
 [[nodiscard]] bool goes_by_blocks(std::size_t points, const PrepareOptions& options);
 
@@ -32,8 +35,9 @@ struct Piece {
 /// parts end at its faces. All but construction may be called by several threads.
 class Blocks {
  public:
-  /// Measures the facts where the options give none. `placed` has to outlive it.
-  Blocks(const Placed& placed, const PrepareOptions& options);
+  /// Measures the facts where the options give none. `placed` has to outlive it. `halvings`: of the
+  /// edges of the blocks.
+  Blocks(const Placed& placed, const PrepareOptions& options, int halvings = 0);
 
   [[nodiscard]] const CloudFacts& facts() const { return facts_; }
   [[nodiscard]] std::size_t size() const { return division_.size(); }

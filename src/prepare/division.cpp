@@ -75,8 +75,11 @@ const T* Division::Grid<T>::find(const Index& at) const {
   return found == numbers.end() ? nullptr : &all[found->second];
 }
 
-Division::Division(const PointCloud& cloud, const CloudFacts& facts)
-    : cloud_(cloud), extent_(facts.extent), radius_(facts.radius) {
+Division::Division(const PointCloud& cloud, const CloudFacts& facts, int halvings)
+    : cloud_(cloud),
+      extent_(facts.extent),
+      radius_(facts.radius),
+      cube_shift_(kCellShift - halvings) {
   std::vector<std::uint32_t> members(cloud.size());
   std::iota(members.begin(), members.end(), 0u);
   std::vector<std::uint8_t> waits(cloud.size(), 1);  // has the point no level yet?
@@ -144,7 +147,7 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
     cell.taken |= bit;
   }
   // A level whose cells are as large as the cloud takes all that is left.
-  level.make_cubes(!(level.cell < extent_.size().maxCoeff()));
+  level.make_cubes(!(level.cell < extent_.size().maxCoeff()), cube_shift_);
   bool more = false;
   std::vector<std::uint32_t> next;
   for (std::size_t k = 0; k < members.size(); ++k) {
@@ -166,11 +169,11 @@ void Division::add_level(std::vector<std::uint32_t>& members, std::vector<std::u
 }
 
 /// Decides in which cells points are prepared on this level and makes room for all that is in them.
-void Division::Level::make_cubes(bool takes_all) {
+void Division::Level::make_cubes(bool takes_all, int cube_shift) {
   std::vector<std::size_t> in_cubes;  // points
   for (Cell& in : cells.all) {
     in.settled = takes_all || has_enough(in.at);
-    in.cube = cubes.number_at(coarser(in.at, kCellShift));
+    in.cube = cubes.number_at(coarser(in.at, cube_shift));
     in_cubes.resize(cubes.all.size());
     in_cubes[in.cube] += in.points;
   }
@@ -213,7 +216,7 @@ bool Division::owns(std::size_t block, const Vector3d& place) const {
   std::size_t k = 0;
   const auto part = [&] { return index_of(place, levels_[k].cell / kParts); };
   while (k + 1 < levels_.size() && !levels_[k].is_settled(part())) ++k;
-  return k == blocks_[block].level && coarser(part(), kPartShift + kCellShift) == cube(block).at;
+  return k == blocks_[block].level && coarser(part(), kPartShift + cube_shift_) == cube(block).at;
 }
 
 std::vector<std::uint32_t> Division::around(std::size_t block, double reach) const {

@@ -35,8 +35,9 @@ class Division {
 
   static constexpr double kBlockEdge = 96;  ///< typical R of a level: edge of its cubes
 
-  /// `cloud` has to outlive it.
-  Division(const PointCloud& cloud, const CloudFacts& facts);
+  /// `cloud` has to outlive it. `halvings`: of the cubes' edges; cube() and above() are of whole
+  /// ones.
+  Division(const PointCloud& cloud, const CloudFacts& facts, int halvings = 0);
 
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }
   [[nodiscard]] Key key(std::size_t block) const;
@@ -92,7 +93,7 @@ class Division {
     Grid<Cell> cells;
     Grid<Cube> cubes;
 
-    void make_cubes(bool takes_all);
+    void make_cubes(bool takes_all, int cube_shift);
     [[nodiscard]] bool has_enough(const Index& at) const;  // points in and around a cell
     [[nodiscard]] bool is_settled(const Index& part) const;
   };
@@ -107,7 +108,8 @@ class Division {
 
   const PointCloud& cloud_;
   Box extent_;
-  double radius_;  // typical R of level 0, m
+  double radius_;   // typical R of level 0, m
+  int cube_shift_;  // of the cells along an edge of a cube
   std::vector<Level> levels_;
   std::vector<Block> blocks_;  // rising by level and index
 };

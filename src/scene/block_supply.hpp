@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,10 @@ class BlockSupply {
 
   /// @throws Error as PointStore::read() does; then the block is as it was.
   virtual void prepare(CloudBlock& block) = 0;
+
+  /// All of the cloud prepared together, where prepare() would do so; empty where it goes by
+  /// blocks.
+  [[nodiscard]] virtual std::optional<Prepared> prepare_together() const { return {}; }
 };
 
 /// All of a cloud in memory.

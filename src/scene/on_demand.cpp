@@ -14,13 +14,16 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scene/block_choice.hpp"
 #include "scene/block_supply.hpp"
+#include "scene/change_over.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {
@@ -29,11 +32,6 @@ namespace {
 constexpr double kAhead = 8;     // typical R around what a tool can reach; judgement
 constexpr double kLead = 0.002;  // s from publishing to being felt: a servo's step; judgement
 constexpr double kAppear = 0.1;  // s in which a block's presence rises; judgement
-// Points of a surface that is not whole: joining them takes a tenth of a second; judgement.
-constexpr std::size_t kMostShown = std::size_t{1} << 19;
-// Boxes that a servo looks through, 1.4 us a step (measured). A tool is not told of others: so many
-// are the blocks of about a hundred million points of a surface.
-constexpr std::size_t kMostMissing = 1024;
 // s until what could not be read is tried again: a disk or a network may be back; judgement.
 constexpr double kRetry = 10;
 
@@ -47,26 +45,25 @@ struct OnDemand::Inside {
 
   void look(const Source& source, double now);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
-  [[nodiscard]] int rank(const CloudBlock& block) const;
-  [[nodiscard]] std::vector<CloudBlock*> chosen();
-  [[nodiscard]] bool shows_more();
-  [[nodiscard]] std::vector<Box> missing(std::span<CloudBlock* const> shown) const;
   [[nodiscard]] bool was_missing();
   template <class Work>
   void beside_servos(const Work& work);
   void prepare(CloudBlock& block, double now);
   void show_near(Source& source, double now);
-  void show_all(Source& source);
-  void publish(Source& source, Prepared joined, Snapshot snapshot);
+  [[nodiscard]] Prepared join_all();
+  [[nodiscard]] bool change_over(Source& source, double now);
+  void publish(Source& source, Prepared::Report report, Snapshot snapshot);
+  void finish();
 
   std::unique_ptr<BlockSupply> supply;
   Kernel kernel;
   double near;  // how far around what tools can reach nothing is to be missing, m
   std::vector<CloudBlock> blocks;
-  std::vector<Box> unlisted;      // where no block is
-  std::vector<Box> told_missing;  // where it was last shown that nothing is known
-  double last_start = 0;          // of what was shown last, s
-  std::set<std::string> errors;   // that were thrown
+  std::vector<Box> unlisted;       // where no block is
+  std::vector<Box> told_missing;   // where it was last shown that nothing is known
+  double last_start = 0;           // of what was shown last, s
+  std::optional<ChangeOver> over;  // from the blocks to all of it prepared together
+  std::set<std::string> errors;    // that were thrown
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
@@ -106,55 +103,6 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// Ranks a block where there is no room for all: first what tools can reach, then what is near.
-/// What is shown already comes before others of its kind, or a hand's way would change what is
-/// shown all the time.
-int OnDemand::Inside::rank(const CloudBlock& block) const {
-  if (block.distance <= 0) return 0;
-  return (block.distance <= near ? 1 : 3) + (block.state == State::shown ? 0 : 1);
-}
-
-/// The blocks to show: all that tools can reach, and more while they are few.
-std::vector<CloudBlock*> OnDemand::Inside::chosen() {
-  std::vector<CloudBlock*> order;
-  for (CloudBlock& block : blocks) {
-    if (block.state > State::failed) order.push_back(&block);
-  }
-  std::ranges::stable_sort(
-      order, {}, [&](const CloudBlock* block) { return std::pair(rank(*block), block->distance); });
-  std::vector<CloudBlock*> found;
-  std::size_t points = 0;
-  for (CloudBlock* const block : order) {
-    const std::size_t more = block->piece.positions.size();
-    if (!found.empty() && block->distance > 0 && points + more > kMostShown) continue;
-    found.push_back(block);
-    points += more;
-  }
-  return found;
-}
-
-/// Is there a block near that is to be shown and is not yet? One for which there is no room does
-/// not count: nobody is to wait for it.
-bool OnDemand::Inside::shows_more() {
-  return std::ranges::any_of(chosen(), [&](const CloudBlock* block) {
-    return block->state == State::prepared && block->distance <= near;
-  });
-}
-
-/// Where nothing is known or shown, the nearest blocks first.
-std::vector<Box> OnDemand::Inside::missing(std::span<CloudBlock* const> shown) const {
-  std::vector<const CloudBlock*> others;
-  for (const CloudBlock& block : blocks) {
-    if (std::ranges::find(shown, &block) == shown.end()) others.push_back(&block);
-  }
-  std::ranges::stable_sort(others, {}, &CloudBlock::distance);
-  std::vector<Box> boxes = unlisted;
-  for (const CloudBlock* const block : others) {
-    if (boxes.size() < kMostMissing) boxes.push_back(block->box);
-  }
-  return boxes;
-}
-
 /// Was a place near shown as one of which nothing is known, and is it not so any more? A block may
 /// turn out to have no points there.
 bool OnDemand::Inside::was_missing() {
@@ -162,7 +110,7 @@ bool OnDemand::Inside::was_missing() {
   std::ranges::copy_if(told_missing, std::back_inserter(told),
                        [&](const Box& box) { return distance(box, tools) <= near; });
   if (told.empty()) return false;
-  const std::vector<Box> now = missing(chosen());
+  const std::vector<Box> now = missing_boxes(blocks, choose_shown(blocks, near), unlisted);
   return std::ranges::any_of(told, [&](const Box& box) {
     return std::ranges::none_of(now, [&](const Box& other) {
       return other.lower == box.lower && other.upper == box.upper;
@@ -199,7 +147,7 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   // A block whose presence still rises goes on from where that is at the new start.
   const double past = std::clamp((snapshot.start - last_start) / kAppear, 0., 1.);
   last_start = snapshot.start;
-  const std::vector<CloudBlock*> chosen = this->chosen();
+  const std::vector<CloudBlock*> chosen = choose_shown(blocks, near);
   std::vector<const Piece*> shown;
   for (CloudBlock* const block : chosen) {
     auto& [positions, columns, report] = block->piece;
@@ -214,13 +162,14 @@ void OnDemand::Inside::show_near(Source& to, double now) {
     if (block.state == State::shown) block.state = State::prepared;
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
-  snapshot.missing = told_missing = missing(chosen);
+  snapshot.missing = told_missing = missing_boxes(blocks, chosen, unlisted);
   Prepared joined;
   beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
-  publish(to, std::move(joined), std::move(snapshot));
+  snapshot.layers = still(std::move(joined.points)).layers;
+  publish(to, joined.report, std::move(snapshot));
 }
 
-void OnDemand::Inside::show_all(Source& to) {
+Prepared OnDemand::Inside::join_all() {
   std::vector<Piece> all;
   for (CloudBlock& block : blocks) {
     block.piece.columns.presences.clear();
@@ -230,20 +179,32 @@ void OnDemand::Inside::show_all(Source& to) {
   blocks.clear();
   Prepared joined;
   beside_servos([&] { joined = join(std::move(all), supply->facts(), supply->origin(), kernel); });
-  publish(to, std::move(joined), {});
+  return joined;
+}
+
+/// @return false: the fade goes on
+bool OnDemand::Inside::change_over(Source& to, double now) {
+  std::optional<Snapshot> next = over->next(now, kLead, kAppear);
+  if (!next) return false;
+  const bool is_last = next->layers.size() == 1;
+  publish(to, over->report(), std::move(*next));
+  if (is_last) finish();
+  return true;
+}
+
+void OnDemand::Inside::finish() {
+  over.reset();
   share = 1;
   done = true;
 }
 
-void OnDemand::Inside::publish(Source& to, Prepared joined, Snapshot snapshot) {
-  joined.report.points_in = supply->points();
+void OnDemand::Inside::publish(Source& to, Prepared::Report report, Snapshot snapshot) {
+  report.points_in = supply->points();
   {
     const std::lock_guard lock(to.inside_->mutex);
-    to.inside_->report = joined.report;
+    to.inside_->report = report;
     to.inside_->state.overview = supply->overview();
   }
-  auto points = std::make_shared<const SurfacePoints>(std::move(joined.points));
-  snapshot.layers.push_back({std::move(points), 1, 1});
   snapshot.publication = ++to.inside_->publications;
   source = &to;
   to.publish(std::make_shared<const Snapshot>(std::move(snapshot)));
@@ -263,12 +224,13 @@ OnDemand::~OnDemand() = default;
 
 bool OnDemand::advance(Source& source, double now, bool ahead) {
   Inside& in = *inside_;
-  const std::lock_guard lock(in.mutex);
+  std::unique_lock lock(in.mutex);
   if (in.done) return false;
+  if (in.over) return in.change_over(source, now);
   in.look(source, now);
   CloudBlock* wanted = in.nearest_missing(in.near);
   if (wanted == nullptr && in.share > 0 &&
-      (in.source != &source || in.shows_more() || in.was_missing())) {
+      (in.source != &source || shows_more(in.blocks, in.near) || in.was_missing())) {
     in.show_near(source, now);
     return true;
   }
@@ -280,7 +242,18 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
     return true;
   }
   if (!ahead || !in.supply->is_whole() || in.share < 1) return false;
-  in.show_all(source);
+  lock.unlock();  // cancel() does not wait for seconds
+  std::optional<Prepared> together;
+  in.beside_servos([&] { together = in.supply->prepare_together(); });
+  lock.lock();
+  if (in.done) return false;
+  Prepared joined = in.join_all();
+  if (together) {
+    in.over.emplace(std::move(joined), std::move(*together));
+    return true;
+  }
+  in.publish(source, joined.report, still(std::move(joined.points)));
+  in.finish();
   return true;
 }
 

@@ -14,47 +14,12 @@
 
 #include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
+#include "scene/hills.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-double height(double x, double y) {
-  return 0.03 * std::sin(9 * x) * std::cos(7 * y);
-}
-
-/// Hills over the unit square, `side` points along each of its sides.
-std::shared_ptr<const PointCloud> hills(int side = 300) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> error(0, 1);
-  auto cloud = std::make_shared<PointCloud>();
-  for (int i = 0; i < side; ++i) {
-    for (int j = 0; j < side; ++j) {
-      const double x = (i + 0.1 * error(random)) / side;
-      const double y = (j + 0.1 * error(random)) / side;
-      cloud->positions.push_back(Vector3d(x, y, height(x, y)).cast<float>());
-    }
-  }
-  return cloud;
-}
-
-/// A cloud on demand in blocks that are `wide`, m, as far as it comes at first.
-struct Begun {
-  Begun(const std::shared_ptr<const PointCloud>& cloud, double wide, SourceOptions given = {})
-      : options(std::move(given)) {
-    options.prepare.facts = measure_facts(*cloud, {});
-    options.prepare.facts->radius = wide / 96;
-    demand = std::make_unique<OnDemand>(cloud, options.prepare);
-    source = &scene.add("part", options);
-    while (!source->points()) demand->advance(*source, 0);
-  }
-
-  SourceOptions options;
-  Scene scene;
-  Source* source = nullptr;
-  std::unique_ptr<OnDemand> demand;
-};
 
 /// The same cloud in two scenes: whole, and on demand in blocks a quarter of it wide.
 struct Hills {
@@ -64,19 +29,6 @@ struct Hills {
   Begun part{cloud, 0.25};
   Scene whole;
 };
-
-/// Lets a hand press at a place for 20 ms.
-Contact press(SceneField& field, const Vector3d& place, double depth, double time) {
-  Proxy proxy;
-  proxy.reset(place + Vector3d(0, 0, 0.01));
-  Contact contact;
-  for (int k = 0; k < 20; ++k) {
-    const Vector3d hip = place + Vector3d(0, 0, 0.01 - (0.01 + depth) * k / 19);
-    field.update(time + 1e-3 * k, hip, proxy.position());
-    contact = proxy.step(field, hip, 1e-3);
-  }
-  return contact;
-}
 
 TEST(OnDemand, ForcesAreThoseOfTheWholeWhereTheBlockIs) {
   Hills hills;
@@ -232,10 +184,10 @@ TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
   EXPECT_TRUE(begun.demand->done());
 }
 
-TEST(OnDemand, WhatIsLeftOfALargeCloudIsPreparedAtOnceWhereThatIsLittle) {
+TEST(OnDemand, SuitsCloudsThatAPersonWouldWaitFor) {
   PrepareOptions options;
-  EXPECT_FALSE(OnDemand::suits(*hills(700), options));
-  const auto cloud = hills(750);
+  EXPECT_FALSE(OnDemand::suits(*hills(250), options));
+  const auto cloud = hills(260);
   EXPECT_TRUE(OnDemand::suits(*cloud, options));
   options.clip = Box{{0.4, 0.4, -1}, {0.6, 0.6, 1}};
   EXPECT_FALSE(OnDemand::suits(*cloud, options));

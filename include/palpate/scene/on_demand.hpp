@@ -15,7 +15,8 @@ namespace palpate {
 /// A large static cloud that becomes a source's surface block by block: those that tools come near
 /// first, then the rest, until all is as Source::set() would make it. A store on disk stays there:
 /// what is around the tools is read, prepared and kept while there is memory for it. Where a block
-/// is there, forces are those of the whole, bit for bit. Where it is missing there is no surface,
+/// is there, forces are those of the whole, bit for bit, where prepare() goes by blocks; else they
+/// are nearly those, and the whole fades in at the end. Where it is missing there is no surface,
 /// which FieldNote::not_loaded says; once it is there its presence goes from 0 to 1 in 0.1 s, so
 /// that it pushes nobody.
 ///
@@ -42,17 +43,17 @@ class OnDemand {
   OnDemand& operator=(const OnDemand&) = delete;
 
   /// Prepares one block, or makes what is there the surface of `source` from `now` on (s, on the
-  /// clock that SceneField::update is given). Takes up to some tenths of a second; leaves a core to
-  /// servos once there are any. Not real-time.
-  /// `ahead`: prepare also what no tool comes near yet.
+  /// clock that SceneField::update is given). Takes up to some tenths of a second, but seconds
+  /// where all is prepared together at the end; leaves a core to servos once there are any. Not
+  /// real-time. `ahead`: prepare also what no tool comes near yet.
   /// @return false: there was nothing to do. That is for good if done(); around a store it is until
   ///   a tool moves.
   /// @throws Error as prepare() and PointStore::read() do, once for each thing that is wrong. The
   ///   next call goes on: what could not be read counts as missing, and is tried again after 10 s.
   bool advance(Source& source, double now, bool ahead = true);
 
-  /// Waits until advance() is through, and publishes nothing from then on: the source becomes
-  /// somebody else's. Any thread.
+  /// Waits until a block or a join is through, and publishes nothing from then on: the source
+  /// becomes somebody else's. Any thread.
   void cancel();
 
   /// The share of the blocks that is prepared, 0-1; 1 once it is done. Of a store, of those around
