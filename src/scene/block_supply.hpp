@@ -56,8 +56,9 @@ class BlockSupply {
   [[nodiscard]] virtual Eigen::Vector3d origin() const = 0;  ///< of its surface, m
   /// Where the cloud is looked at before there are tools.
   [[nodiscard]] virtual Eigen::Vector3d start() const = 0;
-  /// Points of all of it, world frame, where list() does not give all; else null.
-  [[nodiscard]] virtual std::shared_ptr<const PointCloud> overview() const = 0;
+  /// Points of what is not shown, thinned, world frame; null where all is.
+  [[nodiscard]] virtual std::shared_ptr<const PointCloud> overview(
+      std::span<const CloudBlock> blocks) const = 0;
   /// Does list() give all of the cloud?
   [[nodiscard]] virtual bool is_whole() const = 0;
 

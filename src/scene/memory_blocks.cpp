@@ -1,6 +1,10 @@
 // Divides a cloud in memory into blocks, all of which are listed from the start.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "palpate/scene/on_demand.hpp"
 #include "prepare/at_once.hpp"
@@ -18,6 +22,10 @@ constexpr std::size_t kMostWaitedFor = std::size_t{1} << 16;
 // first block held half of its points, 270 000, and took 7.5 s.
 constexpr int kHalvings = 2;
 
+// Points of an overview. A page without a graphics card draws 40 000 of a cloud while it moves, and
+// to look whether they are in a few hundred boxes takes some 20 ms.
+constexpr std::size_t kMostInOverview = std::size_t{1} << 16;
+
 class MemoryBlocks final : public BlockSupply {
  public:
   MemoryBlocks(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
@@ -31,7 +39,8 @@ class MemoryBlocks final : public BlockSupply {
   [[nodiscard]] std::size_t points() const override { return cloud_->size(); }
   [[nodiscard]] Eigen::Vector3d origin() const override { return placed_.cloud().origin; }
   [[nodiscard]] Eigen::Vector3d start() const override { return facts().extent.center(); }
-  [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return nullptr; }
+  [[nodiscard]] std::shared_ptr<const PointCloud> overview(
+      std::span<const CloudBlock> blocks) const override;
   [[nodiscard]] bool is_whole() const override { return true; }
 
   [[nodiscard]] std::vector<Box> list(std::span<const Ball> /*tools*/, double /*near*/,
@@ -67,6 +76,26 @@ class MemoryBlocks final : public BlockSupply {
   Placed placed_;
   Blocks blocks_;
 };
+
+std::shared_ptr<const PointCloud> MemoryBlocks::overview(std::span<const CloudBlock> blocks) const {
+  const PointCloud& cloud = placed_.cloud();
+  const auto is_shown = [&](const CloudBlock& block) {
+    return block.state == CloudBlock::State::shown;
+  };
+  if (std::ranges::all_of(blocks, is_shown)) return nullptr;
+  std::vector<Box> shown;
+  for (const CloudBlock& block : blocks) {
+    if (is_shown(block)) shown.push_back(block.box);
+  }
+  std::vector<std::uint32_t> kept;
+  const std::size_t stride = cloud.size() / kMostInOverview + 1;
+  for (std::size_t i = 0; i < cloud.size(); i += stride) {
+    const Eigen::Vector3d point = cloud.point(i);
+    const auto holds = [&](const Box& box) { return box.contains(point); };
+    if (std::ranges::none_of(shown, holds)) kept.push_back(static_cast<std::uint32_t>(i));
+  }
+  return std::make_shared<const PointCloud>(select(cloud, kept));
+}
 
 }  // namespace
 

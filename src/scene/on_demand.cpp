@@ -200,10 +200,11 @@ void OnDemand::Inside::finish() {
 
 void OnDemand::Inside::publish(Source& to, Prepared::Report report, Snapshot snapshot) {
   report.points_in = supply->points();
+  const std::shared_ptr<const PointCloud> overview = supply->overview(blocks);
   {
     const std::lock_guard lock(to.inside_->mutex);
     to.inside_->report = report;
-    to.inside_->state.overview = supply->overview();
+    to.inside_->state.overview = overview;
   }
   snapshot.publication = ++to.inside_->publications;
   source = &to;

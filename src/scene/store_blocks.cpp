@@ -126,7 +126,10 @@ class StoreBlocks final : public BlockSupply {
   [[nodiscard]] std::size_t points() const override { return nodes_.layout().points; }
   [[nodiscard]] Vector3d origin() const override { return pose_ * nodes_.layout().origin; }
   [[nodiscard]] Vector3d start() const override { return start_; }
-  [[nodiscard]] std::shared_ptr<const PointCloud> overview() const override { return overview_; }
+  [[nodiscard]] std::shared_ptr<const PointCloud> overview(
+      std::span<const CloudBlock> /*blocks*/) const override {
+    return overview_;
+  }
   [[nodiscard]] bool is_whole() const override { return false; }
 
   [[nodiscard]] std::vector<Box> list(std::span<const Ball> tools, double near,

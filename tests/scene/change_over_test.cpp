@@ -39,6 +39,24 @@ TEST(ChangeOver, WhatCanBePreparedTogetherIsInTheEnd) {
   EXPECT_EQ(begun.source->report().points_in, cloud->size());
 }
 
+TEST(ChangeOver, WhatIsNotThereYetIsSeenAllOverTheCloud) {
+  Begun begun(hills());
+  const auto overview = begun.source->state().overview;
+  ASSERT_NE(overview, nullptr);
+  const Box there = begun.source->points()->bounds();
+  const Vector3d edge = Vector3d(0.01, 0.01, 0);
+  const Box inner{there.lower + edge, there.upper - edge};
+  Box seen;
+  for (std::size_t i = 0; i < overview->size(); ++i) {
+    seen.extend(overview->point(i));
+    EXPECT_FALSE(inner.contains(overview->point(i)));
+  }
+  EXPECT_GT(seen.size().x(), 0.99);
+  EXPECT_GT(seen.size().y(), 0.99);
+  change_over(begun, 2);
+  EXPECT_EQ(begun.source->state().overview, nullptr);
+}
+
 TEST(ChangeOver, AHandThatPressesFeelsNoStepWhereTheWholeTakesThePlaceOfBlocks) {
   Begun begun(hills());
   SceneField field(begun.scene);
