@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -43,6 +44,7 @@ TEST(Info, SuspectsMillimetres) {
 }
 
 TEST(Info, TakesAMeshWithoutAUnitForMillimetresUnlessToldOtherwise) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   shell.write("part.obj",
               "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::app {
 namespace {
@@ -71,7 +72,8 @@ struct Log {
   std::vector<Eigen::Vector3d> forces;  // N
 };
 
-TEST(Stores, AreFeltInPartsAsAsAWholeWithTheSameRadiusAndVoxel) {
+TEST(Stores, AreFeltInPartsAsAWholeWithTheSameRadiusAndVoxel) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Site site;
   const auto log = [&](const std::string& options) {
     const Outcome run = site.shell.run("touch site --log log.csv " + options);
@@ -107,6 +109,7 @@ TEST(Stores, SayWhatNeedsTheWhole) {
 }
 
 TEST(Stores, AreGuessedAndRefusedAsOtherClouds) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Site site;
   const Outcome moved = site.shell.run(
       "touch site --cache 8M --pose site=100000,0,0,0,0,0,1 --duration 0.1 --json run.json");

@@ -11,6 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "palpate/io/files.hpp"
+#include "support/effort.hpp"
 
 namespace palpate {
 namespace {
@@ -85,6 +86,7 @@ TEST(LikelyUp, IsZWhereNothingElseIsLikely) {
 }
 
 TEST(LikelyUp, IsTrueOfRealScans) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   const char* data = std::getenv("PALPATE_DATA");
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA does not name a folder of real data";
   const std::filesystem::path folder = data;
