@@ -58,16 +58,20 @@ function(palpate_precompile target)
     <variant> <vector> <Eigen/Dense> <fmt/format.h> ${ARGN})
 endfunction()
 
+# Objects that may become part of a shared library of ours. The Python module is such a one that holds them, and who
+# installs Python's headers later need not compile all of it again. What nothing can replace may be inlined as before.
+function(palpate_objects target)
+  palpate_target(${target})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+endfunction()
+
 # A library of ours. Where it is a shared one, it shows the names of palpate and nothing of what it is made with.
 function(palpate_library target name)
-  palpate_target(${target})
+  palpate_objects(${target})
   add_library(palpate::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  # The Python module is a shared object that holds it, and who installs Python's headers later need not compile all of
-  # it again. What nothing can replace may be inlined as before.
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   # One precompiled header serves all of them, so none has a name of its own defined.
   set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")
   if(BUILD_SHARED_LIBS)

@@ -1,11 +1,14 @@
-# simd_twins(NAME INCLUDE FILE... TYPE TYPE VALUE EXPRESSION [OPTIONS OPTION...]): what the files hold, in an
+# simd_twins(NAME [TARGET TARGET] INCLUDE FILE... TYPE TYPE VALUE EXPRESSION [OPTIONS OPTION...]): what the files hold, in an
 # anonymous namespace, is compiled twice: for the oldest processor that palpate runs on and for x86-64-v3. Makes
 # palpate::simd::kNAMEBaseline and kNAMEV3 of it, equal but for their level, and best_NAME(), the one for this
 # processor. Only code of a unit's own may be compiled for v3: what is inline elsewhere would be linked everywhere.
 include_guard()
 
 function(simd_twins name)
-  cmake_parse_arguments(PARSE_ARGV 1 twin "" "TYPE;VALUE" "INCLUDE;OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 twin "" "TARGET;TYPE;VALUE" "INCLUDE;OPTIONS")
+  if(NOT twin_TARGET)
+    set(twin_TARGET palpate_core)
+  endif()
   string(SUBSTRING ${name} 0 1 first)
   string(SUBSTRING ${name} 1 -1 rest)
   string(TOUPPER ${first} first)
@@ -25,12 +28,12 @@ constexpr ${twin_TYPE} ${constant}${level} = ${twin_VALUE};
 ${best}}
 " @ONLY)
     set(best "")
-    target_sources(palpate_core PRIVATE ${file})
-    set_source_files_properties(${file} TARGET_DIRECTORY palpate_core PROPERTIES
+    target_sources(${twin_TARGET} PRIVATE ${file})
+    set_source_files_properties(${file} TARGET_DIRECTORY ${twin_TARGET} PROPERTIES
       COMPILE_OPTIONS "-O3;${twin_OPTIONS}" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    set_property(SOURCE ${file} TARGET_DIRECTORY palpate_core APPEND PROPERTY
+    set_property(SOURCE ${file} TARGET_DIRECTORY ${twin_TARGET} APPEND PROPERTY
       COMPILE_OPTIONS -march=x86-64-v3)
   endif()
 endfunction()

@@ -1,7 +1,7 @@
 // Checks what is read of a LAS file piece by piece.
 #include <stdexcept>
 
-#include "io/tile/input.hpp"
+#include "extras/tile/input.hpp"
 #include "memory_file.hpp"
 #include "palpate/base/error.hpp"
 #include "targets.hpp"

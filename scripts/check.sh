@@ -51,7 +51,7 @@ check_sanitized() {
 check_programs() {
   configure release -DPALPATE_BUILD_TESTS=ON
   build release
-  test_preset release -R '^(page|dds)/|^(align|depth|io|scene)/long'
+  test_preset release -R '^(page|dds)/|^(align|depth|io|large|scene)/long'
 }
 
 check_bare() {

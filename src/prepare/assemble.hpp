@@ -6,8 +6,8 @@
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
-#include "prepare/sheets.hpp"
 #include "prepare/weights.hpp"
+#include "refine/sheets.hpp"
 
 namespace palpate {
 

@@ -4,18 +4,18 @@
 
 #include <utility>
 
+#include "large/blocks.hpp"
 #include "prepare/assemble.hpp"
 #include "prepare/at_once.hpp"
-#include "prepare/blocks.hpp"
-#include "prepare/gaps.hpp"
 #include "prepare/place.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
-#include "prepare/sheets.hpp"
 #include "prepare/stopwatch.hpp"
-#include "prepare/strays.hpp"
 #include "prepare/weights.hpp"
+#include "refine/gaps.hpp"
+#include "refine/sheets.hpp"
+#include "refine/strays.hpp"
 
 namespace palpate {
 

@@ -10,7 +10,7 @@
 #include "geometry/normals.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/limit_growth.hpp"
-#include "prepare/strays.hpp"
+#include "refine/strays.hpp"
 
 namespace palpate {
 namespace {

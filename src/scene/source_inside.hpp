@@ -14,14 +14,14 @@
 #include "palpate/field/surface_points.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
-#include "scene/frame_timing.hpp"
 #include "scene/handoff.hpp"
-#include "scene/one_view.hpp"
-#include "scene/policies/layer_history.hpp"
-#include "scene/policies/morph.hpp"
 #include "scene/recycler.hpp"
-#include "scene/sight.hpp"
 #include "scene/tool_reach.hpp"
+#include "sight/sight.hpp"
+#include "stream/frame_timing.hpp"
+#include "stream/layer_history.hpp"
+#include "stream/morph.hpp"
+#include "stream/one_view.hpp"
 
 namespace palpate {
 

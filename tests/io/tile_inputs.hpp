@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/numbers.hpp"
+#include "extras/tile/tile.hpp"
 #include "io/las_bytes.hpp"
 #include "io/store_reading.hpp"
-#include "io/tile/tile.hpp"
 
 namespace palpate {
 

@@ -1,6 +1,6 @@
 // A store holds the points of its inputs, once each and where they belong, whatever happens while
 // it is written.
-#include "io/tile/tile.hpp"
+#include "extras/tile/tile.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,11 +14,11 @@
 #include <set>
 
 #include "base/numbers.hpp"
+#include "extras/tile/input.hpp"
 #include "io/las_bytes.hpp"
 #include "io/laz_encoder.hpp"
 #include "io/laz_survey.hpp"
 #include "io/store_reading.hpp"
-#include "io/tile/input.hpp"
 #include "io/tile_inputs.hpp"
 #include "palpate/io/files.hpp"
 #include "support/effort.hpp"

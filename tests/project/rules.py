@@ -12,7 +12,9 @@ FLOORS = {
     "base": set(),
     "geometry": {"base"},
     "depth": {"base", "geometry"},
-    "io": {"base", "geometry", "depth"},
+    "splats": {"base", "geometry"},
+    "io": {"base", "geometry", "depth", "splats"},
+    "tile": {"base", "geometry", "io"},
     "message": {"base", "geometry", "depth", "io"},
     "bag": {"base", "geometry", "depth", "io", "message"},
     "dds": {"base", "message"},
@@ -30,7 +32,7 @@ FLOORS = {
                "servo"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},
-    "apps": {"base", "geometry", "depth", "io", "message", "bag", "field", "contact", "prepare", "align",
+    "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",
              "scene", "sensor", "device", "servo", "ros", "viewer"},
     "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
 }
@@ -64,6 +66,8 @@ def lines(path):
 def floor_of(parts):
     """The floor of a file or an include, given its path below the root or as it is written."""
     if parts[0] in {"include", "src"}:
+        parts = parts[1:]
+    if parts[0] == "extras":  # each of which is a floor
         parts = parts[1:]
     if parts[0] == "palpate":
         parts = parts[1:]

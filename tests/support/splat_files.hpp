@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/splat_shell.hpp"
+#include "extras/splats/splat_shell.hpp"
 
 namespace palpate::test {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/numbers.hpp"
-#include "geometry/splat_shell.hpp"
+#include "extras/splats/splat_shell.hpp"
 
 namespace palpate::test {
 

@@ -16,7 +16,7 @@
 #include "apps/palpate/record/recording_file.hpp"
 #include "message/palpate_types.hpp"
 #include "palpate/depth/depth_frame.hpp"
-#include "scene/source_trace.hpp"
+#include "stream/source_trace.hpp"
 
 namespace palpate::app {
 

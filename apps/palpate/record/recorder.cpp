@@ -15,7 +15,7 @@
 #include "apps/palpate/record/recorded_messages.hpp"
 #include "apps/palpate/record/recording_file.hpp"
 #include "ros/hand_messages.hpp"
-#include "scene/source_trace.hpp"
+#include "stream/source_trace.hpp"
 
 namespace palpate::app {
 

@@ -14,7 +14,7 @@
 #include "message/transforms.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
-#include "scene/source_trace.hpp"
+#include "stream/source_trace.hpp"
 
 namespace palpate::app {
 

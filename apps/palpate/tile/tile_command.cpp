@@ -10,7 +10,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/report.hpp"
-#include "io/tile/tile.hpp"
+#include "extras/tile/tile.hpp"
 
 namespace palpate::app {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/splat_shell.hpp"
+#include "extras/splats/splat_shell.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
 

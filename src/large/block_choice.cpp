@@ -1,0 +1,68 @@
+// Ranks the blocks of a cloud by how near tools are.
+#include "large/block_choice.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+using State = CloudBlock::State;
+
+// Points of a surface that is not whole: joining them takes a tenth of a second; judgement.
+constexpr std::size_t kMostShown = std::size_t{1} << 19;
+// Boxes that a servo looks through, 1.4 us a step (measured). A tool is not told of others: so many
+// are the blocks of about a hundred million points of a surface.
+constexpr std::size_t kMostMissing = 1024;
+
+/// Ranks a block where there is no room for all: first what tools can reach, then what is near.
+/// What is shown already comes before others of its kind, or a hand's way would change what is
+/// shown all the time.
+int rank(const CloudBlock& block, double near) {
+  if (block.distance <= 0) return 0;
+  return (block.distance <= near ? 1 : 3) + (block.state == State::shown ? 0 : 1);
+}
+
+}  // namespace
+
+std::vector<CloudBlock*> choose_shown(std::span<CloudBlock> blocks, double near) {
+  std::vector<CloudBlock*> order;
+  for (CloudBlock& block : blocks) {
+    if (block.state > State::failed) order.push_back(&block);
+  }
+  std::ranges::stable_sort(order, {}, [&](const CloudBlock* block) {
+    return std::pair(rank(*block, near), block->distance);
+  });
+  std::vector<CloudBlock*> found;
+  std::size_t points = 0;
+  for (CloudBlock* const block : order) {
+    const std::size_t more = block->piece.positions.size();
+    if (!found.empty() && block->distance > 0 && points + more > kMostShown) continue;
+    found.push_back(block);
+    points += more;
+  }
+  return found;
+}
+
+bool shows_more(std::span<CloudBlock> blocks, double near) {
+  return std::ranges::any_of(choose_shown(blocks, near), [&](const CloudBlock* block) {
+    return block->state == State::prepared && block->distance <= near;
+  });
+}
+
+std::vector<Box> missing_boxes(std::span<const CloudBlock> blocks,
+                               std::span<CloudBlock* const> shown, std::vector<Box> unlisted) {
+  std::vector<const CloudBlock*> others;
+  for (const CloudBlock& block : blocks) {
+    if (std::ranges::find(shown, &block) == shown.end()) others.push_back(&block);
+  }
+  std::ranges::stable_sort(others, {}, &CloudBlock::distance);
+  std::vector<Box> boxes = std::move(unlisted);
+  for (const CloudBlock* const block : others) {
+    if (boxes.size() < kMostMissing) boxes.push_back(block->box);
+  }
+  return boxes;
+}
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+// Chooses which blocks of a cloud are shown, and says where nothing is.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "large/block_supply.hpp"
+
+namespace palpate {
+
+/// The blocks to show: all that tools can reach, and more while they are few, those within `near`
+/// (m) of what tools can reach first.
+[[nodiscard]] std::vector<CloudBlock*> choose_shown(std::span<CloudBlock> blocks, double near);
+
+/// Is there a block near that is to be shown and is not yet? One for which there is no room does
+/// not count: nobody is to wait for it.
+[[nodiscard]] bool shows_more(std::span<CloudBlock> blocks, double near);
+
+/// Where nothing is known (`unlisted`) or shown, the nearest blocks first.
+[[nodiscard]] std::vector<Box> missing_boxes(std::span<const CloudBlock> blocks,
+                                             std::span<CloudBlock* const> shown,
+                                             std::vector<Box> unlisted);
+
+}  // namespace palpate

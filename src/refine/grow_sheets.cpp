@@ -1,0 +1,190 @@
+// Joins points whose planes continue each other into sheets.
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "geometry/neighborhoods.hpp"
+#include "geometry/signed_sets.hpp"
+#include "refine/layered_sets.hpp"
+#include "refine/sheets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+// When two points continue each other's sheet; judgement (docs/preparation.md, Sheets).
+constexpr float kPairReach = 1.6f;  // spacings
+constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one sheet may turn, or more
+constexpr float kTolerance =
+    0.15f;  // spacings; a point may be off by three of these, or of the noise
+
+constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
+// Factor on the confidence of points of smaller sheets; judgement.
+constexpr float kTrustOfFew = 0.1f;
+
+// Points whose normals turn by no more than this are joined as they come, for time; measured: with
+// half of it signs are the same, with twice of it twice as many are wrong (docs/preparation.md).
+constexpr float kParallel = 0.5f * kTurn;  // rad
+
+struct Pair {
+  std::uint32_t a;
+  std::uint32_t b;
+  int sign;
+  float skew;  // 1 - cosine of the angle between the normals
+};
+
+/// Pairs of points of a block that wait until those with parallel normals in it are joined.
+struct Later {
+  std::vector<Pair> parallel;  // across blocks
+  std::vector<Pair> turning;   // continue each other, and are not parallel
+  std::vector<Pair> layers;    // do not: one lies over the other
+};
+
+/// Joins points that continue each other's sheets: those with parallel normals within each block on
+/// its own, all others afterwards, the most parallel first. So signs spread from normal to normal
+/// where they turn the least (Hoppe et al., Surface reconstruction from unorganized points, 1992).
+/// Where no signs agree all around, as beside a fold that is too thin to tell its sides apart, they
+/// part where normals turn the most.
+class Growth {
+ public:
+  /// `hosts`: of each point the one whose fit it has; kNoHost: it is on no sheet.
+  Growth(const SheetInput& input, const PointFits& own, const std::vector<std::uint32_t>& hosts)
+      : input_(input), own_(own), hosts_(hosts), sets_(input.grid.size()) {}
+
+  detail::SignedSets& run() {
+    const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
+    std::vector<Later> later(blocks.size());
+    detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+      detail::Surroundings surroundings;
+      detail::NearPairs pairs;
+      for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, pairs, later[b]);
+    });
+    join(later);
+    return sets_;
+  }
+
+ private:
+  void join(const std::vector<Later>& later) {
+    LayeredSets layered(sets_, input_.grid.size());
+    for (const Later& block : later) {
+      for (const Pair& pair : block.layers) layered.add_layers(pair.a, pair.b, pair.sign);
+    }
+    for (const Later& block : later) {
+      for (const Pair& pair : block.parallel) layered.join(pair.a, pair.b, pair.sign);
+    }
+    std::vector<Pair> turning;
+    for (const Later& block : later) {
+      std::ranges::copy_if(block.turning, std::back_inserter(turning), [this](const Pair& pair) {
+        return sets_.find(pair.a).first != sets_.find(pair.b).first;
+      });
+    }
+    std::ranges::stable_sort(turning, {}, &Pair::skew);
+    for (const Pair& pair : turning) layered.join(pair.a, pair.b, pair.sign);
+  }
+
+  void look(const detail::Block& block, detail::Surroundings& surroundings,
+            detail::NearPairs& pairs, Later& later) {
+    const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
+    detail::for_each_part(
+        input_.grid, reach, block, surroundings,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          pairs.each(
+              input_.grid, first, count, runs,
+              [this](std::uint32_t i) { return kPairReach * input_.spacings[i]; },
+              [&](std::uint32_t i, std::uint32_t j) { meet(i, j, block, later); });
+        });
+  }
+
+  /// Joins i and j, which are near each other, if they lie on one sheet. Compares their hosts: at a
+  /// sharp rim, where two sides meet, these are as far apart as the sides are.
+  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
+    if (i == j || hosts_[i] == kNoHost || hosts_[j] == kNoHost) return;
+    const bool inside = j >= block.begin && j < block.end;
+    if (inside && sets_.find(i).first == sets_.find(j).first) return;
+    const std::uint32_t a = hosts_[i];
+    const std::uint32_t b = hosts_[j];
+    const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
+    const float length = way.norm();
+    const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
+    const float bowed = std::min(bow(input_, own_, a), bow(input_, own_, b));
+    const float turn = std::max(kTurn, kTurnMargin * bowed * length);
+    const float cosine = own_.normals[i].dot(own_.normals[j]);
+    if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
+    const float off =
+        std::max(std::abs(own_.normals[a].dot(way)), std::abs(own_.normals[b].dot(way)));
+    // An arc's normals turn by twice as much as it leaves their planes.
+    const float turned =
+        std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
+    const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
+    const float arc = kChord * std::max(kTurn * near, bend * length);
+    const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
+    if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
+      if (a == i && b == j && lie_over(i, j, way)) later.layers.push_back(pair);
+    } else if (pair.skew > 0.5f * kParallel * kParallel) {
+      later.turning.push_back(pair);
+    } else if (inside) {
+      sets_.join(i, j, pair.sign);
+    } else {
+      later.parallel.push_back(pair);
+    }
+  }
+
+  /// Does each lie over the other's plane rather than beside the other?
+  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j, const Vector3f& way) const {
+    const float height =
+        std::min(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
+    const float aside = std::sqrt(std::max(0.f, way.squaredNorm() - height * height));
+    return height > sheet_tolerance(input_, i, j) && height >= kGapSlope * aside;
+  }
+
+  const SheetInput& input_;
+  const PointFits& own_;
+  const std::vector<std::uint32_t>& hosts_;
+  detail::SignedSets sets_;
+};
+
+}  // namespace
+
+float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j) {
+  return 3 * std::max(std::max(input.noise[i], input.noise[j]),
+                      kTolerance * std::min(input.spacings[i], input.spacings[j]));
+}
+
+Growths grow_sheets(const SheetInput& input, PointFits& own) {
+  Growths result;
+  Snapped snapped = snap_to_planes(input, own);
+  result.sure = std::move(snapped.sure);
+  result.twins = std::move(snapped.twins);
+  Growth growth(input, own, snapped.hosts);
+  detail::SignedSets& sets = growth.run();
+  const std::size_t count = input.grid.size();
+  std::vector<std::uint32_t>& sheet = result.sheets.sheet;
+  sheet.assign(count, SurfacePoints::Sheets::kNone);
+  std::vector<std::uint32_t> sizes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (snapped.hosts[i] == kNoHost) continue;
+    const auto [root, sign] = sets.find(i);
+    if (sign < 0) own.normals[i] = -own.normals[i];
+    if (root == i) {  // before all others of its sheet
+      sheet[i] = static_cast<std::uint32_t>(sizes.size());
+      sizes.push_back(0);
+    }
+    ++sizes[sheet[i] = sheet[root]];
+  }
+  std::erase_if(result.twins,
+                [&](const Twin& twin) { return sheet[twin.point] == sheet[twin.host]; });
+  result.sheets.part.resize(sizes.size());
+  std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (sheet[i] != SurfacePoints::Sheets::kNone && sizes[sheet[i]] < kFewestOnSheet) {
+      own.confidences[i] *= kTrustOfFew;
+    }
+  }
+  return result;
+}
+
+}  // namespace palpate

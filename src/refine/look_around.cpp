@@ -1,0 +1,185 @@
+// Lets pairs of points vote on how their sheets lie, and finds those that another sheet hides.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "field/formulas.hpp"
+#include "geometry/neighborhoods.hpp"
+#include "refine/sheets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+// Which points belong to another sheet above or below one; all are judgement.
+constexpr float kGapReach = 1.6f;   // R
+constexpr float kGapTube = 1.3f;    // spacings to the side
+constexpr float kGapCosine = 0.8f;  // of the angle between both normals, at least (37 degrees)
+constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
+
+// Factor on the squared slope where points are picked for a closer look.
+constexpr float kSafe = 0.999f;  // derived: rounding takes less
+
+// Votes of one sheet on another; all are judgement.
+constexpr float kVoteReach = 1.3f;      // R
+constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
+constexpr int kVotesEach = 3;           // points of each, the nearest
+
+/// Looks from the points of one block at other sheets.
+class Outlook {
+ public:
+  Outlook(const SheetInput& input, const PointFits& own, const std::optional<Vector3f>& eye,
+          Growths& grown)
+      : input_(input), own_(own), viewer_(eye), grown_(grown), sheets_(grown.sheets) {}
+
+  void look(const detail::Block& block, detail::Surroundings& surroundings,
+            std::vector<SheetVote>& votes) {
+    const detail::Reach reach{.of_points = input_.radii, .times = reach_, .of_cells = {}};
+    detail::for_each_part(
+        input_.grid, reach, block, surroundings,
+        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
+          if (!alone(first, runs)) look_from(first, count, runs, votes);
+        });
+  }
+
+ private:
+  /// Is there but one sheet, and does it not curl so far that it may hide itself?
+  [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
+    // A point of one sheet that hides another is turned from it by 143 degrees or more
+    // (kGapCosine), so one of the two by half of that from the first.
+    constexpr float kSquaredCurl = 0.5f * (1 - kGapCosine);
+    const std::uint32_t sheet = sheets_.sheet[first];
+    const Vector3f& n = own_.normals[first];
+    for (const simd::Run& run : runs) {
+      for (std::uint32_t j = run.begin; j < run.end; ++j) {
+        if (sheets_.sheet[j] != sheet) return false;
+        const float cosine = n.dot(own_.normals[j]);
+        if (viewer_ && !(cosine > 0 && cosine * cosine > kSquaredCurl)) return false;
+      }
+    }
+    return true;
+  }
+
+  void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
+                 std::vector<SheetVote>& votes) {
+    simd::Eyes eyes = {};
+    eyes.squared_slope = kSafe * kGapSlope * kGapSlope;
+    eyes.sheets = sheets_.sheet.data();
+    for (std::uint32_t q = 0; q < count; ++q) {
+      others_[q].clear();
+      eyes_[q] = eye_at(first + q);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) eyes.normal[axis][q] = eyes_[q].normal[axis];
+      const float reach = own_.confidences[first + q] > 0 ? reach_ * input_.radii[first + q] : 0;
+      eyes.squared_reach[q] = reach * reach;
+      eyes.least[q] = eyes_[q].least;
+      eyes.squared_tube[q] = eyes_[q].tube * eyes_[q].tube;
+      eyes.squared_vote[q] = eyes_[q].voting;
+      eyes.sheet[q] = eyes_[q].sheet;
+    }
+    pairs_.each_hit(detail::make_join(input_.grid, first, count, runs), simd::best_joins().apart,
+                    eyes, [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
+    for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
+  }
+
+  /// Copies of what a point needs to look at others, so that a pair costs few reads of memory.
+  struct Eye {
+    Vector3f at;
+    Vector3f normal;
+    float tube;    // to the side, m
+    float least;   // height of another sheet, m; infinity: none is looked for
+    float voting;  // squared reach, m^2; below 0: it has no vote
+    std::uint32_t sheet;
+    bool faces;  // does the normal point to the viewer?
+  };
+
+  [[nodiscard]] Eye eye_at(std::uint32_t i) const {
+    const float spacing = input_.spacings[i];
+    const float voting = kVoteReach * input_.radii[i];
+    return {input_.grid.points()[i],
+            own_.normals[i],
+            kGapTube * spacing,
+            viewer_ ? kGapResiduals * own_.residuals[i] : std::numeric_limits<float>::infinity(),
+            grown_.sure[i] != 0 ? voting * voting : -1,
+            sheets_.sheet[i],
+            viewer_ && own_.normals[i].dot(*viewer_ - input_.grid.points()[i]) > 0};
+  }
+
+  void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
+    if (j == first + q) return;
+    const Eye& eye = eyes_[q];
+    const Vector3f way = input_.grid.points()[j] - eye.at;
+    const float squared = way.squaredNorm();
+    if (viewer_ && is_before(eye, j, way, squared)) grown_.hidden[first + q] = 1;
+    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet &&
+                          sheets_.sheet[j] != SurfacePoints::Sheets::kNone;
+    if (votes_on) others_[q].push_back({squared, j});
+  }
+
+  /// Does j belong to a sheet between the point and the viewer?
+  [[nodiscard]] bool is_before(const Eye& eye, std::uint32_t j, const Vector3f& way,
+                               float squared) const {
+    const float height = eye.normal.dot(way);
+    const float off = std::abs(height);
+    if (off <= eye.least || (height > 0) != eye.faces) return false;
+    const float aside = std::max(0.f, squared - height * height);
+    if (aside > eye.tube * eye.tube || off < kGapSlope * std::sqrt(aside)) return false;
+    return std::abs(eye.normal.dot(own_.normals[j])) >= kGapCosine;
+  }
+
+  /// The nearest points of the nearest other sheets.
+  void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
+            std::vector<SheetVote>& votes) {
+    std::sort(others.begin(), others.end());
+    std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
+    std::size_t count = 0;
+    for (const auto& [squared, j] : others) {
+      const std::uint32_t sheet = sheets_.sheet[j];
+      std::size_t k = 0;
+      while (k < count && heard[k].first != sheet) ++k;
+      if (k == kVoteSheets) continue;
+      if (k == count) heard[count++] = {sheet, 0};
+      if (heard[k].second++ >= kVotesEach) continue;
+      const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+      const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
+      votes.push_back(
+          {a, b, agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, i, j))});
+    }
+  }
+
+  const SheetInput& input_;
+  const PointFits& own_;
+  const std::optional<Vector3f>& viewer_;
+  const float reach_ = viewer_ ? kGapReach : kVoteReach;  // R
+  Growths& grown_;
+  const SurfacePoints::Sheets& sheets_;
+  detail::NearPairs pairs_;
+  std::array<Eye, simd::kQueries> eyes_;
+  std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
+};
+
+}  // namespace
+
+std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
+                                   const std::optional<Vector3f>& eye, Growths& grown) {
+  if (eye) grown.hidden.assign(input.grid.size(), 0);
+  const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
+  std::vector<std::vector<SheetVote>> votes(blocks.size());
+  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
+    detail::Surroundings surroundings;
+    Outlook outlook(input, own, eye, grown);
+    for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
+  });
+  std::vector<SheetVote> all;
+  for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
+  std::stable_sort(all.begin(), all.end(), [](const SheetVote& x, const SheetVote& y) {
+    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
+  });
+  return all;
+}
+
+}  // namespace palpate

@@ -1,0 +1,244 @@
+// Makes parts of sheets, within which signs agree, and turns their normals outward.
+
+#include "refine/sheets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "refine/bonds.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+// |sum of evidence| over the sum of its sizes.
+constexpr double kCoherent = 0.5;  // three quarters agree; judgement
+constexpr double kAgree = 0.96;    // it is sure: 98 % agree; judgement
+
+constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
+
+constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
+// Sine of the lean that gives an open part an upper side; judgement.
+constexpr double kUpright = 0.2;
+
+/// What is known from outside of which side of a sheet or part is free, relative to its normals.
+struct Evidence {
+  double signs = 0;  // sum of votes
+  double all = 0;    // sum of their sizes
+
+  void add(double vote) {
+    signs += vote;
+    all += std::abs(vote);
+  }
+  /// The sign that at least (1 + share) / 2 of the votes have; 0: neither.
+  [[nodiscard]] int sign(double share) const {
+    if (!(all > 0) || std::abs(signs) < share * all) return 0;
+    return signs < 0 ? -1 : 1;
+  }
+};
+
+/// For each sheet: given normals where nearly all agree, else what the eye sees of it.
+std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& known,
+                                  const PointFits& own, const Growths& grown) {
+  const SurfacePoints::Sheets& sheets = grown.sheets;
+  struct Counts {
+    double points = 0;
+    double hidden = 0;
+  };
+  std::vector<Evidence> given(sheets.part.size());
+  std::vector<Evidence> seen(sheets.part.size());
+  std::vector<Counts> counts(sheets.part.size());
+  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
+    const std::uint32_t sheet = sheets.sheet[i];
+    if (sheet == SurfacePoints::Sheets::kNone) continue;
+    ++counts[sheet].points;
+    if (!known.given.empty() && known.given[i].allFinite()) {
+      const float cosine = known.given[i].dot(own.normals[i]);
+      if (cosine != 0) given[sheet].add(cosine < 0 ? -1 : 1);
+    }
+    if (known.eye) {
+      const Vector3f way = *known.eye - input.grid.points()[i];
+      const float cosine = own.normals[i].dot(way.normalized());
+      if (grown.hidden[i] != 0) {
+        ++counts[sheet].hidden;
+      } else {
+        seen[sheet].add(static_cast<double>(cosine));
+      }
+    }
+  }
+  for (std::uint32_t k = 0; k < seen.size(); ++k) {
+    if (counts[k].hidden > kMostHidden * counts[k].points) seen[k] = {};
+    if (given[k].sign(kAgree) != 0 || !(seen[k].all > 0)) seen[k] = given[k];
+  }
+  return seen;
+}
+
+/// What sheets say of each other, the surest first.
+std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes) {
+  std::vector<Bond> bonds;
+  for (std::size_t k = 0; k < votes.size();) {
+    Bond bond{votes[k].a, votes[k].b, {}};
+    for (; k < votes.size() && votes[k].a == bond.a && votes[k].b == bond.b; ++k) {
+      const auto v = static_cast<double>(votes[k].value);
+      bond.said.value += v * std::abs(v);
+      bond.said.squares += v * v;
+    }
+    bonds.push_back(bond);
+  }
+  std::stable_sort(bonds.begin(), bonds.end(), [](const Bond& x, const Bond& y) {
+    return std::abs(x.said.value) > std::abs(y.said.value);
+  });
+  return bonds;
+}
+
+/// Sums over the points of one part.
+struct PartSums {
+  double area = 0;                     // m^2
+  double flux = 0;                     // sum a n.p, m^3
+  Vector3d vector = Vector3d::Zero();  // sum a n, m^2
+  Vector3d moment = Vector3d::Zero();  // sum a p, m^3
+};
+
+/// The sign that turns a part's normals to its free side, and whether evidence told it.
+struct Side {
+  int sign = 1;
+  bool known = false;
+};
+
+/// Evidence counts where nearly all of it agrees. Else a part that closes around something gets its
+/// normals outward: the far side of a whole object faces away from where it was seen. A part that
+/// does not close, such as terrain, a wall or one view of a scene, has no outside: evidence that
+/// mostly agrees decides or, without any, the mean normal is to point up (+z) or, if it lies, away
+/// from the centre of all points.
+Side side_of(const PartSums& part, const Evidence& evidence, const Vector3d& center_of_all) {
+  if (const int sign = evidence.sign(kAgree); sign != 0) return {sign, true};
+  if (!(part.area > 0)) return {};
+  const auto turned = [](double along) { return Side{along < 0 ? -1 : 1, false}; };
+  const Vector3d center = part.moment / part.area;
+  if (part.vector.norm() <= kOpen * part.area) return turned(part.flux - center.dot(part.vector));
+  if (const int sign = evidence.sign(kCoherent); sign != 0) return {sign, true};
+  if (std::abs(part.vector.z()) > kUpright * part.vector.norm()) return turned(part.vector.z());
+  return turned(part.vector.dot(center - center_of_all));
+}
+
+/// The sums of every part, its normals turned by `signs` of the sheets, and of all.
+std::vector<PartSums> sums_of_parts(const SheetInput& input, const PointFits& own,
+                                    const SurfacePoints::Sheets& sheets,
+                                    const std::vector<int>& signs, PartSums& all) {
+  std::vector<PartSums> sums(signs.size());
+  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone) continue;
+    const Vector3d p = input.grid.points()[i].cast<double>();
+    const Vector3d n = signs[sheets.sheet[i]] * own.normals[i].cast<double>();
+    const double area =
+        static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
+    PartSums& part = sums[sheets.part[sheets.sheet[i]]];
+    part.area += area;
+    part.flux += area * n.dot(p);
+    part.vector += area * n;
+    part.moment += area * p;
+    all.area += area;
+    all.moment += area * p;
+  }
+  return sums;
+}
+
+/// Turns the normals of whole sheets.
+void turn(const std::vector<int>& sign_of_sheet, const SurfacePoints::Sheets& sheets,
+          PointFits& own) {
+  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0)
+      continue;
+    own.normals[i] = -own.normals[i];
+  }
+}
+
+/// Joins sheets in sets, by the surest bonds first. One that contradicts the evidence of both of
+/// its sides is passed over. `evidence`: becomes that of the sets, at their roots.
+BondedSets join_bonded(const std::vector<Bond>& bonds, std::vector<Evidence>& evidence) {
+  BondedSets sets(bonds, evidence.size());
+  for (const Bond& bond : bonds) {
+    const std::uint32_t root_a = sets.find(bond.a).first;
+    const std::uint32_t root_b = sets.find(bond.b).first;
+    const int sign = sets.sign_between(root_a, root_b);
+    if (sign == 0) continue;
+    const int both = evidence[root_a].sign(kCoherent) * evidence[root_b].sign(kCoherent);
+    if (both != 0 && both != sign) continue;
+    Evidence& whole = evidence[std::min(root_a, root_b)];
+    const Evidence& other = evidence[std::max(root_a, root_b)];
+    whole.signs += sign * other.signs;
+    whole.all += other.all;
+    sets.join(root_a, root_b, sign);
+  }
+  return sets;
+}
+
+/// Makes parts of bonded sheets and turns their normals to the free side.
+void join_parts(const SheetInput& input, const std::vector<Bond>& bonds,
+                std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
+                PointFits& own, SurfacePoints::Sheets& sheets) {
+  BondedSets sets = join_bonded(bonds, evidence);
+  std::vector<int> signs;
+  std::vector<std::uint32_t> roots;  // of the parts
+  for (std::uint32_t k = 0; k < sheets.part.size(); ++k) {
+    const auto [root, sign] = sets.find(k);
+    if (root == k) roots.push_back(k);
+    sheets.part[k] = root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : sheets.part[root];
+    signs.push_back(sign);
+  }
+  PartSums all;
+  const std::vector<PartSums> sums = sums_of_parts(input, own, sheets, signs, all);
+  const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
+  std::vector<Side> sides;
+  for (std::uint32_t k = 0; k < roots.size(); ++k) {
+    sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
+    sheets.known.push_back(sides.back().known ? 1 : 0);
+  }
+  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[sheets.part[k]].sign;
+  turn(signs, sheets, own);
+}
+
+}  // namespace
+
+SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, PointFits& own,
+                                  std::vector<Twin>& twins) {
+  Growths grown = grow_sheets(input, own);
+  twins = std::move(grown.twins);
+  const std::vector<SheetVote> votes = look_around(input, own, known.eye, grown);
+  const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
+  SurfacePoints::Sheets sheets = std::move(grown.sheets);
+  join_parts(input, bonds_of(votes), evidence, known.middle, own, sheets);
+  sheets.residual = own.residuals;
+  return sheets;
+}
+
+JoinedSheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
+                         const KnownSigns& known, PointFits& fits) {
+  if (fits.normals.empty()) return {};
+  for (std::size_t i = 0; i < weights.values.size(); ++i) {
+    if (weights.values[i] <= 0) fits.confidences[i] = 0;
+  }
+  JoinedSheets result;
+  result.sheets =
+      make_sheets({sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas}, known,
+                  fits, result.twins);
+  return result;
+}
+
+KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+                       const PrepareOptions& options) {
+  using Orientation = PrepareOptions::Orientation;
+  const Orientation how = options.orientation;
+  KnownSigns known;
+  const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
+  if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
+  const bool given = how == Orientation::automatic || how == Orientation::given;
+  const bool asked = options.viewpoint && how != Orientation::given;
+  if (given && !asked) known.given = sampling.normals;
+  if (options.facts) known.middle = options.facts->extent.center() - sampling.origin;
+  return known;
+}
+
+}  // namespace palpate

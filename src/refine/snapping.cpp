@@ -1,0 +1,294 @@
+// Gives points at edges and creases the plane of a confident point nearby, or one that they share.
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "geometry/parallel.hpp"
+#include "prepare/sheet_fit.hpp"
+#include "refine/sheets.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+// An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
+// this many of its residuals.
+constexpr float kSnapReach = 1.6f;    // R; judgement
+constexpr float kFarSnapReach = 4;    // R, where few are sure within kSnapReach; judgement
+constexpr std::size_t kFewSure = 12;  // points; judgement
+constexpr float kSnapSlope = 0.12f;   // 7 degrees; judgement
+constexpr float kSnapResiduals = 3;   // three sigma
+
+// The share of the area within R that lies on a plane which holds there: a third at a corner of
+// three faces (derived), less a margin for jitter (judgement).
+constexpr float kShared = 0.3f;
+
+// Cost of the way over that of the distance from the plane; judgement.
+constexpr float kNearness = 0.1f;
+
+// When a point lies on a second plane as well; judgement.
+constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two
+constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
+
+/// What a second fit needs; keeps its memory in between.
+struct Refit {
+  std::vector<std::uint32_t> near;
+  std::vector<std::uint32_t> some;
+  SheetFitter fitter;
+};
+
+/// Finds a plane for each point that its own fit does not put on a sheet.
+class Snapping {
+ public:
+  Snapping(const SheetInput& input, PointFits& own)
+      : input_(input), own_(own), sure_(input.grid.size()) {
+    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) sure_[i] = is_sure(i) ? 1 : 0;
+    });
+  }
+
+  void run() {
+    hosts_.assign(sure_.size(), kNoHost);
+    second_hosts_.assign(sure_.size(), kNoHost);
+    take_hosts(std::vector<std::uint8_t>(sure_.size(), 1));
+    take_hosts(fit_homeless());
+    std::vector<std::uint8_t> alone(sure_.size());
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+      if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
+    });
+    for (std::uint32_t i = 0; i < alone.size(); ++i) {
+      if (hosts_[i] == kNoHost) {
+        sure_[i] = alone[i];
+        if (alone[i] != 0) hosts_[i] = i;
+        if (alone[i] == 0) own_.confidences[i] = 0;
+      } else if (hosts_[i] != i) {
+        take_over(i, hosts_[i]);
+      }
+    }
+  }
+
+  /// The result for all points, after run().
+  [[nodiscard]] Snapped finish() && {
+    Snapped snapped{std::move(sure_), std::move(hosts_), {}};
+    for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
+      if (second_hosts_[i] != kNoHost) snapped.twins.push_back({i, second_hosts_[i]});
+    }
+    return snapped;
+  }
+
+ private:
+  [[nodiscard]] bool is_sure(std::size_t i) const {
+    return fit_of(own_, i).is_smooth(static_cast<double>(input_.radii[i]),
+                                     static_cast<double>(input_.noise[i]));
+  }
+
+  /// Looks for the hosts of those that ask. One that has a host keeps it where no other holds.
+  void take_hosts(const std::vector<std::uint8_t>& asks) {
+    if (std::ranges::count(asks, 1) == 0) return;
+    index_sure();
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+      if (asks[i] == 0) return;
+      if (sure_[i] == 0) {
+        take_host(i, near);
+        return;
+      }
+      hosts_[i] = i;
+      second_hosts_[i] = kNoHost;
+      if (own_.others[i] == 0) return;
+      list_sure(i, near);
+      second_hosts_[i] = second_host(i, i, near);
+    });
+  }
+
+  /// Fits points without a host to each other: what lies on others' planes hid theirs, such as that
+  /// of a wall which is lower than R. Returns who may have another host now.
+  std::vector<std::uint8_t> fit_homeless() {
+    std::vector<std::uint8_t> found(sure_.size());
+    each_with<Refit>([&](std::uint32_t i, Refit& refit) {
+      if (hosts_[i] == kNoHost) found[i] = fit_again(i, refit) ? 1 : 0;
+    });
+    std::vector<Vector3f> places;
+    for (std::uint32_t i = 0; i < found.size(); ++i) {
+      if (found[i] == 0) continue;
+      sure_[i] = 1;
+      places.push_back(input_.grid.points()[i]);
+    }
+    if (places.empty()) return found;
+    const CellGrid new_ones(places);
+    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+      if (sure_[i] != 0 && own_.others[i] == 0) return;
+      near.clear();
+      new_ones.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+      found[i] = near.empty() ? 0 : 1;
+    });
+    return found;
+  }
+
+  /// Fits a plane to the homeless points around, then a sheet to all unsure ones that lie on it.
+  bool fit_again(std::uint32_t i, Refit& refit) {
+    const auto radius = static_cast<double>(input_.radii[i]);
+    const auto noise = static_cast<double>(input_.noise[i]);
+    const float reach = kNormalsReach * input_.radii[i];
+    const Vector3f& p = input_.grid.points()[i];
+    refit.near.clear();
+    input_.grid.within(p, reach, refit.near);
+    std::erase_if(refit.near, [this](std::uint32_t j) { return sure_[j] != 0; });
+    const auto fit_to = [&](const auto& belongs) {
+      refit.some.clear();
+      std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
+      return refit.fitter.fit(input_.grid, p, refit.some, static_cast<double>(reach), 0, 0);
+    };
+    SheetFit fit = fit_to([this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    if (!fit.is_smooth(radius, noise)) return false;
+    const Vector3f normal = fit.normal.cast<float>();
+    fit = fit_to([&](std::uint32_t j) {
+      return std::abs(normal.dot(input_.grid.points()[j] - p)) <= kSnapSlope * input_.radii[i];
+    });
+    if (!fit.is_sheet(radius, noise)) return false;
+    take_fit(fit, i, own_);
+    own_.others[i] = 1;
+    return true;
+  }
+
+  void index_sure() {
+    sure_points_.clear();
+    std::vector<Vector3f> places;
+    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
+      if (sure_[i] == 0) continue;
+      sure_points_.push_back(i);
+      places.push_back(input_.grid.points()[i]);
+    }
+    sure_places_ = CellGrid(places);
+  }
+
+  /// Sure points around; where they are few, as in the foot of a narrow crease, farther ones too.
+  void list_sure(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    for (const float reach : {kSnapReach, kFarSnapReach}) {
+      near.clear();
+      sure_places_.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      for (std::uint32_t& j : near) j = sure_points_[sure_places_.order()[j]];
+      if (near.size() >= kFewSure) return;
+    }
+  }
+
+  template <class Memory, class Body>
+  void each_with(const Body& body) const {
+    detail::parallel_each_with<Memory>(sure_.size(), 512, [&](std::size_t i, Memory& memory) {
+      body(static_cast<std::uint32_t>(i), memory);
+    });
+  }
+
+  void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
+    list_sure(i, near);
+    const std::uint32_t host = best_host(i, near);
+    if (host == kNoHost) return;
+    const std::uint32_t second = second_host(i, host, near);
+    if (!is_shared(i, host, near)) return;
+    hosts_[i] = host;
+    second_hosts_[i] = second;
+  }
+
+  /// Gives a point its host's fit, or at least its trust where an arc joins both.
+  void take_over(std::uint32_t i, std::uint32_t host) {
+    const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
+    const float turn = kTurnMargin * bow(input_, own_, host) * way;
+    if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
+      own_.normals[i] = own_.normals[host];
+      own_.residuals[i] = own_.residuals[host];
+    }
+    own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+  }
+
+  /// Does enough of the area around lie on the host's plane, too? At a corner of three faces a
+  /// third does.
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
+                               std::vector<std::uint32_t>& around) const {
+    around.clear();
+    const Vector3f& p = input_.grid.points()[i];
+    input_.grid.within(p, input_.radii[i], around);
+    const float on = std::max(kSnapResiduals * own_.residuals[host], kSnapSlope * input_.radii[i]);
+    float shared = 0;
+    float all = 0;
+    for (const std::uint32_t j : around) {
+      const float area = input_.spacings[j] * input_.spacings[j];
+      all += area;
+      if (std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on) shared += area;
+    }
+    return shared >= kShared * all;
+  }
+
+  /// Are half of the points around without a host, too? On a thing so small a plane has to do.
+  [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+    if (static_cast<double>(own_.confidences[i]) < kPlanar) return false;
+    near.clear();
+    input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
+    const auto homeless =
+        std::ranges::count_if(near, [this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    return 2 * static_cast<std::size_t>(homeless) >= near.size();
+  }
+
+  /// The sure point on whose plane the point lies best.
+  [[nodiscard]] std::uint32_t best_host(std::uint32_t i,
+                                        const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNoHost;
+    for (const std::uint32_t j : near) {
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
+      const float length = way.norm();
+      const float off = std::abs(own_.normals[j].dot(way));
+      const float cost = off + kNearness * length;
+      if (cost >= best) continue;
+      const bool on_plane =
+          off <= std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length);
+      if (!on_plane && off > kChord * kTurnMargin * bow(input_, own_, j) * length) continue;
+      best = cost;
+      host = j;
+    }
+    return host;
+  }
+
+  /// The nearest sure point of another plane that the point lies on as well.
+  [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
+                                          const std::vector<std::uint32_t>& near) const {
+    float best = std::numeric_limits<float>::infinity();
+    std::uint32_t host = kNoHost;
+    for (const std::uint32_t j : near) {
+      if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
+      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
+      const float off = std::abs(own_.normals[j].dot(way));
+      const float squared = way.squaredNorm();
+      if (off > kOnBoth * input_.spacings[i] || squared >= best) continue;
+      best = squared;
+      host = j;
+    }
+    return host;
+  }
+
+  const SheetInput& input_;
+  PointFits& own_;
+  std::vector<std::uint8_t> sure_;
+  CellGrid sure_places_;
+  std::vector<std::uint32_t> sure_points_;  // in the order that the index was given them
+  std::vector<std::uint32_t> hosts_;
+  std::vector<std::uint32_t> second_hosts_;
+};
+
+}  // namespace
+
+float bow(const SheetInput& input, const PointFits& own, std::uint32_t i) {
+  const float reach = kNormalsReach * input.radii[i];
+  const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
+  return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
+}
+
+Snapped snap_to_planes(const SheetInput& input, PointFits& own) {
+  Snapping snapping(input, own);
+  snapping.run();
+  return std::move(snapping).finish();
+}
+
+}  // namespace palpate

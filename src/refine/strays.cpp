@@ -1,0 +1,110 @@
+// Finds strays: points around which the others form neither a sheet nor a line.
+
+#include "refine/strays.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "geometry/parallel.hpp"
+#include "palpate/geometry/spacing.hpp"
+#include "prepare/lines.hpp"
+#include "prepare/places.hpp"
+
+namespace palpate {
+namespace {
+
+// A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
+// beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
+constexpr float kStraySpacings = 1.8f;  // measured (tests/refine/strays_test.cpp)
+constexpr std::size_t kNeighbors = 9;   // derived: a point of a grid and the eight around it
+constexpr float kSlender = 1.f / 3;     // judgement: of a sheet's width, and of a line's length
+// The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, less
+// where they lie around.
+constexpr float kAround = 0.5f;  // judgement: no corner of a sheet
+// Points, more than half of kNeighbors, the point itself among them; judgement.
+constexpr std::ptrdiff_t kMostOfNearest = 5;
+
+/// How the places nearest to a point lie.
+struct Neighborhood {
+  bool like_a_surface = false;  ///< in a sheet or along a line
+  float aside = 1;              ///< 0: all around the point; 1: all far away on one side
+};
+
+Neighborhood neighborhood(const CellGrid& grid, std::uint32_t i,
+                          std::span<const CellGrid::Neighbor> places) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const CellGrid::Neighbor& place : places) {
+    const Eigen::Vector3f way = grid.points()[place.index] - grid.points()[i];
+    sum += way / static_cast<float>(kNeighbors);
+    squares += way * way.transpose() / static_cast<float>(kNeighbors);
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(squares - sum * sum.transpose());
+  const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0);
+  const float slender = kSlender * kSlender;
+  return {spread[0] < slender * spread[1] || spread[1] < slender * spread[2],
+          sum.squaredNorm() / squares.trace()};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
+                                      double typical) {
+  const auto near = static_cast<float>(typical);
+  std::vector<std::uint8_t> doubted(grid.size());
+  const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& places) {
+    nearest_places(grid, static_cast<std::uint32_t>(i), kNeighbors, places);
+    if (places.size() < kNeighbors) return Neighborhood{};
+    return neighborhood(grid, static_cast<std::uint32_t>(i), places);
+  };
+  const auto each = [&](const auto& decide) {
+    detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(grid.size(), 4096, decide);
+  };
+  each([&](std::size_t i, auto& places) {
+    if (spacings[i] <= kStraySpacings * near) return;
+    const Neighborhood around = look(i, places);
+    const bool company = places.size() > 1 && places[1].squared_distance <= near * near;
+    doubted[i] = !company && !around.like_a_surface ? 1 : 0;
+  });
+  // Where sheets meet, the nearest are in no sheet, but most of them are.
+  std::vector<std::uint8_t> strays(grid.size());
+  each([&](std::size_t i, auto& places) {
+    if (doubted[i] == 0) return;
+    const Neighborhood around = look(i, places);
+    const auto sure = std::ranges::count_if(
+        places, [&](const CellGrid::Neighbor& place) { return doubted[place.index] == 0; });
+    const bool edge = around.aside < kAround && sure >= kMostOfNearest;
+    strays[i] = edge ? 0 : 1;
+  });
+  return strays;
+}
+
+void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined,
+                            Weights& weights) {
+  const std::vector<std::uint32_t>& sheet = joined.sheets.sheet;
+  std::vector<std::uint32_t> off;
+  std::vector<Eigen::Vector3f> positions;
+  for (std::uint32_t i = 0; i < sheet.size(); ++i) {
+    if (sheet[i] != SurfacePoints::Sheets::kNone || weights.values[i] <= 0) continue;
+    off.push_back(i);
+    positions.push_back(sampling.grid.points()[i]);
+  }
+  if (off.empty()) return;
+  const CellGrid grid(positions);
+  std::vector<float> spacings = local_spacings(grid);
+  widen_to_lines(grid, spacings);
+  const std::vector<std::uint8_t> strays = find_strays(grid, spacings, sampling.spacing);
+  const double typical_squared = sampling.spacing * sampling.spacing;
+  std::vector<CellGrid::Neighbor> places;
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    const std::uint32_t i = off[grid.order()[k]];
+    if (strays[k] == 0) continue;
+    nearest_places(sampling.grid, i, 2, places);
+    if (places.size() > 1 && places[1].squared_distance <= typical_squared) continue;
+    weights.values[i] = 0;
+    ++weights.speckle;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+// Points that are evidence of no surface.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "palpate/geometry/cell_grid.hpp"
+#include "prepare/sampling.hpp"
+#include "prepare/weights.hpp"
+#include "refine/sheets.hpp"
+
+namespace palpate {
+
+/// 1 for each point that is farther from others than most, has none within `typical`, and whose
+/// nearest places lie neither in a sheet nor along a line, nor around it in several sheets.
+/// `spacings`: of the points, `typical`: their median, m. In sorted order.
+[[nodiscard]] std::vector<std::uint8_t> find_strays(const CellGrid& grid,
+                                                    std::span<const float> spacings,
+                                                    double typical);
+
+/// Lets strays beside a surface weigh nothing. Its points are their neighbours, so find_strays() of
+/// all points passes them over; here it looks at the points on no sheet among themselves. A point
+/// with another within the typical spacing stays: tips and ridges are on no sheet either.
+void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined, Weights& weights);
+
+}  // namespace palpate

@@ -1,0 +1,163 @@
+// Decides on the point that a frame shows at each block, and on the old ones there.
+#include "stream/block_fates.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+// Share of the blocks around one that have to show the same surface; a line has 2 of 8 (derived).
+constexpr float kVouch = 0.25f;
+
+// Share of R^2: points whose squared distance is below it are within R, however it was rounded.
+constexpr float kWithin2 = 0.98f;
+
+}  // namespace
+
+void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) const {
+  to.going_on.clear();
+  to.shown.clear();
+  to.unseen.clear();
+  for (std::size_t place = begin; place < end; place += kLanes) {
+    const std::uint32_t first = place + kLanes <= end && !blocks_.hide(place)
+                                    ? matches_.four_at(place)
+                                    : BlockEntries::kNone;
+    FourWays& ways = to.going_on.emplace_back();
+    ways.place = static_cast<std::uint32_t>(place);
+    const bool live = first != BlockEntries::kNone && are_live(first, ways);
+    if (live && blocks_.keeps(place) && keep_going(first, ways)) continue;
+    const SeenFour four = blocks_.four_at(place);
+    if (live && go_on(four, ways)) continue;
+    to.going_on.pop_back();
+    for (int l = 0; l < kLanes && place + l < end; ++l) settle(four.lane(l), to);
+  }
+}
+
+/// Are four points live, beside no edge? Says where they are.
+bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
+  bool live = true;
+  for (std::uint32_t k = 0; k < kLanes; ++k) {
+    const Entry& entry = shown_.entries()[first + k];
+    live = live & (entry.kind == EntryKind::live);
+    ways.variance[k] = entry.variance;
+  }
+  if (!live || any(~load<Ints>(&shown_.edges()[first]))) return false;
+  ways.from = shown_.four_at(first);
+  return true;
+}
+
+/// Four points that the last frame showed, and of which this one says the same, go on to where they
+/// were going.
+bool BlockFates::keep_going(std::uint32_t first, FourWays& ways) const {
+  for (std::uint32_t k = 0; k < kLanes; ++k) {
+    if (shown_.entries()[first + k].confirmed != shown_.stamp()) return false;
+  }
+  ways.to = shown_.end_of_four(first);
+  return all(ways.to.presence >= 1);
+}
+
+/// Are four live points seen again within R, as they face, beside no edge? Else there is more to
+/// decide. Worth 16 to 29 % of a frame (bench/FINDINGS.md).
+bool BlockFates::go_on(const SeenFour& seen, FourWays& ways) const {
+  if (any(~seen.edges)) return false;
+  const Vectors way = ways.from.position - seen.position;
+  const Vectors& normal = ways.from.normal;
+  const Ints near = (seen.radius > 0) & (dot(way, way) <= kWithin2 * (seen.radius * seen.radius));
+  const Ints turns = ~normal.zero() &
+                     (dot(seen.normal, normal) < SeenPoint::kTurns * dot(seen.normal, seen.normal));
+  if (!all(near & ~turns)) return false;
+  moves_.follow(seen, ways);
+  return true;
+}
+
+/// Decides on the point that the frame has at a block, and on the old ones there.
+void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
+  std::optional<BlockMatches::Partner> partner;
+  if (seen.state.radius > 0) partner = matches_.partner_of(seen);
+  const bool shown = seen.state.radius > 0 && is_sure(seen, partner);
+  if (!shown) partner.reset();
+  float at = blocks_.depth_of(seen.state.position);
+  if (shown && !partner) add(moves_.appear(seen), seen, to);
+  if (partner) {
+    const auto& [i, before] = *partner;
+    const bool vouched = !is_doubtful(seen, before);
+    const Fate next = fate({.shown = true, .same = true, .vouched = vouched});
+    if (next == Fate::stay) at = blocks_.depth_of(before.position);
+    add(next == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
+  }
+  const std::span<const std::uint32_t> old = matches_.at(seen.place);
+  const std::optional<std::uint32_t> own = partner ? std::optional(partner->i) : std::nullopt;
+  const std::optional<std::uint32_t> behind = settle_behind(seen.place, own, to);
+  bool held = false;
+  for (const std::uint32_t i : old) {
+    if (i == own || i == behind) continue;
+    FateFacts facts{.kind = shown_.entries()[i].kind, .shown = shown};
+    if (shown) {
+      facts.beyond = blocks_.depth_of(shown_.at(i).position) - at;
+      facts.radius = seen.state.radius;
+      facts.may_hide = facts.beyond > facts.radius && may_hide(old, i);
+    } else {
+      facts.second = facts.kind == EntryKind::live && std::exchange(held, true);
+    }
+    add(moves_.unseen(fate(facts), i), seen, to);
+  }
+}
+
+/// Lets a plane go on behind what the block shows, which is the old point `shown`, unless the block
+/// remembers what was seen there, or what it shows comes from there.
+/// @return the old point of that plane.
+std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t place,
+                                                       std::optional<std::uint32_t> shown,
+                                                       SettledPlaces& to) const {
+  const SeenPoint behind = blocks_.behind(place);
+  if (!(behind.state.radius > 0)) return {};
+  std::optional<std::uint32_t> old;
+  for (const std::uint32_t i : matches_.at(place)) {
+    const EntryKind kind = shown_.entries()[i].kind;
+    const float way = (shown_.at(i).position - behind.state.position).norm();
+    const bool same = way <= behind.state.radius;
+    if (kind == EntryKind::hidden || (kind == EntryKind::live && same)) return {};
+    if (kind == EntryKind::supposed && same && i != shown) old = i;
+  }
+  Way way = old ? moves_.follow(behind, *old, shown_.at(*old)) : moves_.appear(behind);
+  way.entry.kind = EntryKind::supposed;
+  add(way, behind, to);
+  return old;
+}
+
+/// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal
+/// that noise has turned within a frame? One that turns for longer is believed after a while.
+bool BlockFates::is_sure(const SeenPoint& seen,
+                         const std::optional<BlockMatches::Partner>& partner) const {
+  if (partner) return !(seen.turns_from(partner->before.normal) && moves_.is_fresh(partner->i));
+  return !shown_.any() || blocks_.vouching(seen.place) >= kVouch;
+}
+
+/// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
+/// shows that, too? Such a frame does not tell where the surface is.
+bool BlockFates::is_doubtful(const SeenPoint& seen, const PointState& before) const {
+  return (before.position - seen.state.position).norm() > seen.state.radius &&
+         blocks_.vouching(seen.place) < FrameBlocks::kVouchToMove;
+}
+
+/// A block remembers one hidden surface: the one that was hidden first. What moves before it leaves
+/// no trail.
+bool BlockFates::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const {
+  const std::vector<Entry>& entries = shown_.entries();
+  if (entries[i].kind == EntryKind::hidden) return true;
+  const PointState point = shown_.at(i);
+  return std::ranges::none_of(old, [&](std::uint32_t other) {
+    return entries[other].kind == EntryKind::hidden &&
+           (shown_.at(other).position - point.position).norm() > point.radius;
+  });
+}
+
+void BlockFates::add(Way way, const SeenPoint& at, SettledPlaces& to) const {
+  if (PointMoves::is_gone(way)) return;
+  way.entry.place = at.place;
+  way.code = blocks_.order().codes[at.place];
+  (way.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(way);
+}
+
+}  // namespace palpate

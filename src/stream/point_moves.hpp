@@ -1,0 +1,79 @@
+// Declares how points move and fade while a snapshot lasts.
+#pragma once
+
+#include <cstdint>
+
+#include "palpate/field/field_options.hpp"
+#include "stream/fate.hpp"
+#include "stream/frame_blocks.hpp"
+#include "stream/frame_timing.hpp"
+#include "stream/moving_points.hpp"
+#include "stream/shown_points.hpp"
+
+namespace palpate {
+
+struct MorphOptions {
+  double silence = 0.3;  ///< a point that nothing confirmed for so long begins to fade, s
+  double fade = 0.5;     ///< in which it fades away, s
+  Kernel kernel = Kernel::wyvill;
+  double minimum_radius = 0;  ///< no R below this, m
+};
+
+/// Says for each fate where a point goes while the next snapshot lasts, and how sure it is then.
+class PointMoves {
+ public:
+  /// All have to last as long.
+  PointMoves(const MorphOptions& options, const ShownPoints& shown, const FrameBlocks& blocks)
+      : options_(options), shown_(shown), blocks_(blocks) {}
+
+  /// `last`: no frame follows. `still`: what appears is there at once.
+  void begin(const FrameTiming& moment, bool last, bool still);
+
+  /// Has a frame shown the old point within `silence`?
+  [[nodiscard]] bool is_fresh(std::uint32_t i) const;
+
+  /// A point that was not there before.
+  [[nodiscard]] Way appear(const SeenPoint& seen) const;
+
+  /// Lets the old point, which was at `from`, go to the new one.
+  [[nodiscard]] Way follow(const SeenPoint& seen, std::uint32_t i, const PointState& from) const;
+
+  /// Does the same for points within R, in four lanes, from `ways.from` and their old variances.
+  void follow(const SeenFour& seen, FourWays& ways) const;
+
+  /// Confirms the old point where it was.
+  [[nodiscard]] Way stay(std::uint32_t i, const PointState& from) const;
+
+  /// `fate`: of a point that is not seen again.
+  [[nodiscard]] Way unseen(Fate fate, std::uint32_t i) const;
+
+  /// Takes its weight from a point.
+  static void leave(Way& way);
+
+  /// Has a point that leaves no weight that anybody feels?
+  [[nodiscard]] static bool is_gone(const Way& way);
+
+  /// What is remembered of a point that a frame shows.
+  [[nodiscard]] Entry seen_entry(float variance) const { return Entry{moment_.stamp, variance}; }
+
+ private:
+  [[nodiscard]] float share_of(double time) const;
+  [[nodiscard]] EdgeWay edge_of(const SeenPoint& seen, std::uint32_t i) const;
+  [[nodiscard]] Way hold(std::uint32_t i) const;
+  [[nodiscard]] Way hide(std::uint32_t i) const;
+  [[nodiscard]] Way go(std::uint32_t i) const;
+  [[nodiscard]] Way leave(std::uint32_t i) const;
+  [[nodiscard]] Way keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
+                         double confirmed) const;
+
+  const MorphOptions& options_;
+  const ShownPoints& shown_;
+  const FrameBlocks& blocks_;
+  FrameTiming moment_;
+  float comes_ = 1;  // presence that what is seen gains
+  float doubt_ = 1;  // by which variances of what is known grow
+  bool ends_ = false;
+  bool still_ = false;
+};
+
+}  // namespace palpate

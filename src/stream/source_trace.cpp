@@ -1,0 +1,41 @@
+// Reads and imposes what a source depended on, for recordings and replays.
+#include "stream/source_trace.hpp"
+
+#include <algorithm>
+
+#include "scene/source_inside.hpp"
+
+namespace palpate {
+
+std::span<const Reach> SourceTrace::reach() const {
+  return source_->inside_->found;
+}
+
+std::uint64_t SourceTrace::publications() const {
+  return source_->inside_->publications;
+}
+
+std::uint64_t SourceTrace::changes() const {
+  return source_->inside_->changes;
+}
+
+const SourceOptions& SourceTrace::options() const {
+  return source_->inside_->taken;
+}
+
+void SourceTrace::impose_reach(std::span<const Reach> reach) {
+  ReachTable& table = source_->inside_->reaches;
+  for (std::size_t i = 0; i < ReachTable::kPlaces; ++i) {
+    if (i < reach.size()) {
+      table.write(i, reach[i]);
+    } else {
+      table.clear(i);
+    }
+  }
+}
+
+void SourceTrace::impose_least_radius(double radius) {
+  source_->inside_->seams->set_least_radius(source_->inside_->place, radius);
+}
+
+}  // namespace palpate

@@ -1,0 +1,95 @@
+// Which sets of sheets hang together: those that agree as a whole.
+#include "refine/bonds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "geometry/clouds.hpp"
+#include "palpate/prepare/prepare.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3f;
+
+TEST(Bonds, JoinSetsThatAgreeAsAWhole) {
+  // 1 and 2 are opposite. Sheet 0 likes both alike, 3 likes 1 and dislikes 2.
+  const std::vector<Bond> bonds{
+      {0, 1, {20, 20}}, {0, 2, {20, 20}}, {1, 2, {-30, 30}}, {1, 3, {8, 8}}, {2, 3, {-0.2, 0.2}}};
+  BondedSets sets(bonds, 4);
+  EXPECT_EQ(sets.sign_between(0, 1), 1);
+  EXPECT_EQ(sets.sign_between(2, 3), 0);  // too few votes
+  ASSERT_EQ(sets.sign_between(1, 2), -1);
+  sets.join(1, 2, -1);
+  EXPECT_EQ(sets.find(2), std::pair(1u, -1));
+  EXPECT_EQ(sets.sign_between(0, 1), 0);
+  ASSERT_EQ(sets.sign_between(1, 3), 1);
+  sets.join(1, 3, 1);
+  EXPECT_EQ(sets.find(3), std::pair(1u, 1));
+  EXPECT_EQ(sets.sign_between(0, 1), 0);
+}
+
+TEST(Bonds, TurnWithTheSetThatTheyAreOf) {
+  // The set of 2 and 3 has more to say, but its root becomes 1.
+  const std::vector<Bond> bonds{
+      {0, 2, {9, 9}}, {0, 3, {9, 9}}, {1, 2, {-20, 20}}, {2, 3, {40, 40}}, {3, 4, {7, 7}}};
+  BondedSets sets(bonds, 5);
+  sets.join(2, 3, sets.sign_between(2, 3));
+  sets.join(1, 2, sets.sign_between(1, 2));
+  EXPECT_EQ(sets.find(3), std::pair(1u, -1));
+  EXPECT_EQ(sets.sign_between(0, 1), -1);
+  EXPECT_EQ(sets.sign_between(4, 1), -1);
+  sets.join(0, 1, -1);
+  EXPECT_EQ(sets.sign_between(0, 4), 1);
+}
+
+/// A box of 10 x 30 x `height` on a floor that goes on beneath it, a point per unit area.
+std::vector<Vector3f> box_on_floor(unsigned seed, int height) {
+  test::Clouds clouds(seed);
+  std::vector<Vector3f> points;
+  const auto off = [&] { return clouds.uniform(0.2, 0.8); };
+  const auto add = [&](double x, double y, double z) {
+    points.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+  };
+  for (int i = -20; i < 30; ++i) {
+    for (int j = -20; j < 50; ++j) add(i + off(), j + off(), 0);
+  }
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 30; ++j) add(i + off(), j + off(), height);
+    for (int k = 0; k < height; ++k) {
+      for (const double y : {0., 30.}) add(i + off(), y, k + off());
+    }
+  }
+  for (int j = 0; j < 30; ++j) {
+    for (int k = 0; k < height; ++k) {
+      for (const double x : {0., 10.}) add(x, j + off(), k + off());
+    }
+  }
+  return points;
+}
+
+TEST(Bonds, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
+  int apart = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    PointCloud cloud;
+    cloud.positions = box_on_floor(seed, 8);
+    const SurfacePoints points = prepare(cloud).points;
+    const auto part_at = [&](const Vector3f& place) {
+      std::vector<CellGrid::Neighbor> nearest;
+      points.grid.nearest(place - points.origin.cast<float>(), 1, nearest);
+      const std::uint32_t sheet = points.sheets.sheet[nearest.front().index];
+      EXPECT_NE(sheet, SurfacePoints::Sheets::kNone);
+      return sheet == SurfacePoints::Sheets::kNone ? sheet : points.sheets.part[sheet];
+    };
+    const std::uint32_t floor = part_at({-10, 15, 0});
+    EXPECT_EQ(part_at({5, 15, 0}), floor) << seed;
+    const bool together = part_at({5, 15, 8}) == floor || part_at({0, 15, 4}) == floor ||
+                          part_at({5, 30, 4}) == floor;
+    apart += together ? 0 : 1;
+  }
+  EXPECT_GE(apart, 28);  // of 300 seeds 242 are, and 122 where sheets are joined one by one
+}
+
+}  // namespace
+}  // namespace palpate
