@@ -14,10 +14,11 @@
 #include "geometry/cell_builder.hpp"
 #include "geometry/parallel.hpp"
 #include "prepare/assemble.hpp"
-#include "prepare/at_once.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
 #include "prepare/stopwatch.hpp"
+#include "prepare/surfels.hpp"
+#include "refine/refinements.hpp"
 
 namespace palpate {
 namespace {
@@ -162,7 +163,7 @@ Piece Blocks::prepare(std::size_t number) const {
   const Placed part{near, {}, viewpoint_};
   PrepareOptions options = options_;
   options.facts->radius = division_.radius(number);
-  Prepared all = prepare_at_once(part, options, {});
+  Prepared all = prepare_at_once(part, options, refinements(), {});
   SurfacePoints& points = all.points;
   const auto is_own = [&](std::uint32_t i) {
     return division_.owns(number, points.origin + points.grid.points()[i].cast<double>());

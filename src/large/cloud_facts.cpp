@@ -108,9 +108,7 @@ CloudFacts facts_of(const Placed& drawn, const PrepareOptions& alone,
   Prepared::Report report;
   Sampling sampling = sample(drawn, alone, report);
   sampling.facts.extent = extent_of(drawn.cloud(), sample_points);
-  PrepareOptions without_strays = alone;
-  without_strays.remove_speckle = false;
-  sampling.facts.radius = median(choose_radii(sampling, without_strays).values);
+  sampling.facts.radius = median(choose_radii(sampling, alone).values);
   return sampling.facts;
 }
 

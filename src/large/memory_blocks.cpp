@@ -8,8 +8,9 @@
 
 #include "large/block_supply.hpp"
 #include "palpate/scene/on_demand.hpp"
-#include "prepare/at_once.hpp"
 #include "prepare/place.hpp"
+#include "prepare/surfels.hpp"
+#include "refine/refinements.hpp"
 
 namespace palpate {
 namespace {
@@ -63,7 +64,7 @@ class MemoryBlocks final : public BlockSupply {
 
   [[nodiscard]] std::optional<Prepared> prepare_together() const override {
     if (!comes_together()) return {};
-    return prepare_at_once(placed_, options_, {});
+    return prepare_at_once(placed_, options_, refinements(), {});
   }
 
  private:

@@ -36,33 +36,6 @@ void tell_trust(const SurfacePoints& points, Prepared::Report& report) {
 
 }  // namespace
 
-void add_twins(std::span<const Twin> twins, SurfacePoints& points) {
-  if (twins.empty()) return;
-  SurfacePoints::Sheets& sheets = points.sheets;
-  for (const Twin& twin : twins) points.density_weights[twin.point] *= 0.5f;
-  std::vector<Eigen::Vector3f> positions(points.grid.points().begin(), points.grid.points().end());
-  const auto append = [&](auto& column, std::uint32_t Twin::*from) {
-    if (column.empty()) return;
-    for (const Twin& twin : twins) column.push_back(column[twin.*from]);
-  };
-  append(positions, &Twin::point);
-  points.grid = CellGrid(positions);
-
-  // A twin copies its point's columns; the normal and what concerns sheets are its host's.
-  const auto add = [&](auto& column, std::uint32_t Twin::*from) {
-    append(column, from);
-    if (!column.empty()) column = in_grid_order(points.grid, column);
-  };
-  add(points.density_weights, &Twin::point);
-  add(points.radii, &Twin::point);
-  add(points.confidences, &Twin::point);
-  add(points.materials, &Twin::point);
-  add(points.colors, &Twin::point);
-  add(points.normals, &Twin::host);
-  add(sheets.sheet, &Twin::host);
-  add(sheets.residual, &Twin::host);
-}
-
 void complete(Prepared& prepared) {
   auto& [points, report] = prepared;
   finish(points);
@@ -75,28 +48,25 @@ void complete(Prepared& prepared) {
   }
 }
 
-Prepared assemble(Sampling sampling, Radii radii, PointFits fits, Weights weights,
-                  JoinedSheets joined, const PrepareOptions& options, Prepared::Report report) {
-  SurfacePoints points;
+void assemble(Surfels& surfels) {
+  SurfacePoints& points = surfels.prepared.points;
+  Sampling& sampling = surfels.sampling;
   points.origin = sampling.origin;
   points.grid = std::move(sampling.grid);
-  points.radii = std::move(radii.values);
-  points.density_weights = std::move(weights.values);
-  points.kernel = options.kernel;
+  points.radii = std::move(surfels.radii.values);
+  points.density_weights = std::move(surfels.weights.values);
+  points.kernel = surfels.options.kernel;
   points.colors = std::move(sampling.colors);
-  if (options.material_from_intensity) {
+  if (surfels.options.material_from_intensity) {
     points.materials = materials_of(std::move(sampling.intensities));
   }
-  points.normals = std::move(fits.normals);
-  points.confidences = std::move(fits.confidences);
+  points.normals = std::move(surfels.fits.normals);
+  points.confidences = std::move(surfels.fits.confidences);
   points.confidences.resize(points.size(), 0.0f);
-  points.sheets = std::move(joined.sheets);
-  add_twins(joined.twins, points);
-  report.speckle = weights.speckle;
-  report.points_out = points.size() - weights.speckle - joined.twins.size();
-  Prepared prepared{std::move(points), report};
-  complete(prepared);
-  return prepared;
+  points.sheets = std::move(surfels.sheets);
+  Prepared::Report& report = surfels.prepared.report;
+  report.speckle = surfels.weights.speckle;
+  report.points_out = points.size() - report.speckle;
 }
 
 }  // namespace palpate

@@ -9,7 +9,7 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/parallel.hpp"
-#include "prepare/plane_fits.hpp"
+#include "prepare/point_fits.hpp"
 
 namespace palpate {
 namespace {

@@ -1,59 +1,71 @@
-// prepare() on one page: how a cloud becomes surface points.
+// The steps of prepare() on one page: how a cloud becomes surface points.
 
-#include "palpate/prepare/prepare.hpp"
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
-#include "large/blocks.hpp"
+#include "palpate/base/error.hpp"
 #include "prepare/assemble.hpp"
-#include "prepare/at_once.hpp"
-#include "prepare/place.hpp"
+#include "prepare/orientation.hpp"
 #include "prepare/plane_fits.hpp"
-#include "prepare/radii.hpp"
-#include "prepare/sampling.hpp"
 #include "prepare/stopwatch.hpp"
-#include "prepare/weights.hpp"
-#include "refine/gaps.hpp"
-#include "refine/sheets.hpp"
-#include "refine/strays.hpp"
+#include "prepare/surfels.hpp"
 
 namespace palpate {
+namespace {
 
-Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
-                         Prepared::Report report) {
-  Sampling sampling = sample(placed, options, report);
+using Refinements = std::span<const Refinement>;
 
-  Stopwatch watch;
-  Radii radii = choose_radii(sampling, options);
-  watch.lap(report.seconds_spacing);
-  PointFits fits = fit_planes(sampling, radii, options);
-  watch.lap(report.seconds_normals);
-  const WeightSums sums = close_gaps(options, sampling, radii, fits);
-  Weights weights = weigh(sampling, radii, sums, options);
-  watch.lap(report.seconds_weights);
-  const KnownSigns known = given_signs(placed, sampling, options);
-  JoinedSheets joined = join_sheets(sampling, radii, weights, known, fits);
-  if (!radii.strays.empty()) drop_strays_off_sheets(sampling, joined, weights);
-  watch.lap(report.seconds_normals);
-
-  return assemble(std::move(sampling), std::move(radii), std::move(fits), std::move(weights),
-                  std::move(joined), options, report);
+void check_names(const PrepareOptions& options, Refinements refinements) {
+  for (const std::string& name : options.without) {
+    if (std::ranges::find(refinements, name, &Refinement::name) != refinements.end()) continue;
+    std::string names;
+    for (const Refinement& one : refinements) {
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", one.name);
+    }
+    throw Error(
+        fmt::format("preparation without '{}': there is no such refinement; give of these: {}",
+                    name, names.empty() ? "none" : names));
+  }
 }
 
-Prepared prepare(const PointCloud& cloud, const PrepareOptions& options,
-                 const Eigen::Isometry3d& T_world_sensor) {
-  Stopwatch placing;
-  const Placed placed = place(cloud, options, T_world_sensor);
-  Prepared::Report report{.points_in = cloud.size()};
-  placing.lap(report.seconds_filter);
-  if (!goes_by_blocks(placed.cloud().size(), options))
-    return prepare_at_once(placed, options, report);
-  const Blocks blocks(placed, options);
-  Prepared prepared =
-      join(blocks.prepare_all(), blocks.facts(), placed.cloud().origin, options.kernel);
-  prepared.report.points_in = report.points_in;
-  prepared.report.seconds_filter += report.seconds_filter;
-  return prepared;
+/// Runs the refinements of a stage, but those that the options leave out.
+void refine(Refinements refinements, Stage stage, Surfels& surfels) {
+  for (const Refinement& one : refinements) {
+    if (one.stage != stage || surfels.options.without.contains(one.name)) continue;
+    one.refine(surfels);
+  }
+}
+
+}  // namespace
+
+Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
+                         std::span<const Refinement> refinements, Prepared::Report report) {
+  check_names(options, refinements);
+  Surfels s{.placed = placed, .options = options};
+  s.sampling = sample(placed, options, report);
+
+  Stopwatch watch;
+  s.radii = choose_radii(s.sampling, options);
+  refine(refinements, Stage::radii, s);
+  watch.lap(report.seconds_spacing);
+  s.fits = fit_planes(s.sampling, s.radii, options);
+  watch.lap(report.seconds_normals);
+  s.sums = WeightSums(s.sampling.grid, s.radii.values, options.kernel);
+  refine(refinements, Stage::fits, s);
+  s.weights = weigh(s.sampling, s.radii, s.sums, options);
+  watch.lap(report.seconds_weights);
+  refine(refinements, Stage::weights, s);
+  if (s.sheets.empty()) orient(s.sampling, given_signs(placed, s.sampling, options), s.fits);
+  watch.lap(report.seconds_normals);
+
+  s.prepared.report = report;
+  assemble(s);
+  refine(refinements, Stage::points, s);
+  complete(s.prepared);
+  return std::move(s.prepared);
 }
 
 }  // namespace palpate

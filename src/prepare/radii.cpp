@@ -10,7 +10,6 @@
 #include "geometry/normals.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/limit_growth.hpp"
-#include "refine/strays.hpp"
 
 namespace palpate {
 namespace {
@@ -110,17 +109,7 @@ double largest_radius(const CloudFacts& facts) {
 }
 
 Radii choose_radii(const Sampling& sampling, const PrepareOptions& options) {
-  Radii radii{radii_of(sampling, options), {}};
-  if (options.paper || !options.remove_speckle || !options.estimate_normals) return radii;
-  radii.strays = find_strays(sampling.grid, sampling.spacings, sampling.spacing);
-  if (options.radius) return radii;
-  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
-    if (radii.strays[i] != 0) {
-      // Strays are not to reach what is sampled finely.
-      radii.values[i] = kUsualMultiple * static_cast<float>(sampling.spacing);
-    }
-  }
-  return radii;
+  return {radii_of(sampling, options), {}};
 }
 
 }  // namespace palpate

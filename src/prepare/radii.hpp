@@ -17,7 +17,7 @@ inline constexpr float kUsualMultiple = 2.5f;  ///< m in R = m s: the paper's (s
 struct Radii {
   std::vector<float> values;         ///< R_i in sorted order, m
   std::vector<std::uint8_t> strays;  ///< 1: a stray, whose R is small unless one is given; empty:
-                                     ///< not looked for
+                                     ///< nobody looked for them
 };
 
 /// The largest R that a point may have, m: 12 of the typical ones that the facts tell, since a

@@ -20,6 +20,7 @@ namespace palpate {
 ///   S_i = sum_j w(|p_i - p_j| / R_j),  the point itself included
 ///   Sbar_i = sum_j w_ij S_j / sum_j w_ij
 struct WeightSums {
+  WeightSums() = default;  ///< of no point
   /// @throws Error when there are not as many radii as points, or one is not positive and finite.
   WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel = Kernel::wyvill);
 

@@ -111,20 +111,19 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
   return static_cast<std::size_t>(std::ranges::count(raised, 1));
 }
 
-WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
-                      PointFits& fits) {
+void refine_gaps(Surfels& s) {
   constexpr float kSlope = 1;  // of R over distance, once gaps are closed; judgement
-  WeightSums sums(sampling.grid, radii.values, options.kernel);
-  if (options.radius || options.paper || !options.estimate_normals) return sums;
-  const std::vector<float> before = radii.values;
+  const PrepareOptions& options = s.options;
+  if (options.radius || options.paper || !options.estimate_normals) return;
+  Sampling& sampling = s.sampling;
+  const std::vector<float> before = s.radii.values;
   const auto largest = static_cast<float>(largest_radius(sampling.facts));
-  if (close_gaps(sampling.grid, sums.own, sampling.local.sigmas, sampling.spacings, radii.values,
-                 fits, largest) == 0) {
-    return sums;
+  if (close_gaps(sampling.grid, s.sums.own, sampling.local.sigmas, sampling.spacings,
+                 s.radii.values, s.fits, largest) == 0) {
+    return;
   }
-  limit_growth(sampling.grid, kSlope, radii.values, &fits);
-  sums.update(sampling.grid, before, radii.values, options.kernel);
-  return sums;
+  limit_growth(sampling.grid, kSlope, s.radii.values, &s.fits);
+  s.sums.update(sampling.grid, before, s.radii.values, options.kernel);
 }
 
 }  // namespace palpate

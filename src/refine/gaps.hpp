@@ -1,5 +1,4 @@
-// Between the fourth and the fifth step of prepare(): larger R, and planes, where points are
-// sparse.
+// The refinement that gives larger R, and planes, where points are sparse.
 #pragma once
 
 #include <cstddef>
@@ -7,18 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "palpate/prepare/prepare.hpp"
-#include "prepare/radii.hpp"
-#include "prepare/sampling.hpp"
-#include "prepare/weights.hpp"
-#include "refine/sheets.hpp"
+#include "palpate/geometry/cell_grid.hpp"
+#include "prepare/surfels.hpp"
 
 namespace palpate {
 
-/// Closes gaps where radii and planes are chosen by preparation. Returns the sums of weights that
-/// the radii give then.
-[[nodiscard]] WeightSums close_gaps(const PrepareOptions& options, Sampling& sampling, Radii& radii,
-                                    PointFits& fits);
+/// Closes gaps where radii and planes are chosen by preparation, and brings the sums of weights up
+/// to the new radii.
+void refine_gaps(Surfels& surfels);
 
 /// Raises the support radii (m) of points beside holes in their sheet that supports do not bridge,
 /// where one sheet goes on over the hole: to those of the square grid with holes as wide or, where

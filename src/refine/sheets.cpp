@@ -214,31 +214,15 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   return sheets;
 }
 
-JoinedSheets join_sheets(const Sampling& sampling, const Radii& radii, const Weights& weights,
-                         const KnownSigns& known, PointFits& fits) {
-  if (fits.normals.empty()) return {};
-  for (std::size_t i = 0; i < weights.values.size(); ++i) {
-    if (weights.values[i] <= 0) fits.confidences[i] = 0;
+void refine_sheets(Surfels& s) {
+  if (s.fits.normals.empty()) return;
+  for (std::size_t i = 0; i < s.weights.values.size(); ++i) {
+    if (s.weights.values[i] <= 0) s.fits.confidences[i] = 0;
   }
-  JoinedSheets result;
-  result.sheets =
-      make_sheets({sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas}, known,
-                  fits, result.twins);
-  return result;
-}
-
-KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
-                       const PrepareOptions& options) {
-  using Orientation = PrepareOptions::Orientation;
-  const Orientation how = options.orientation;
-  KnownSigns known;
-  const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
-  if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
-  const bool given = how == Orientation::automatic || how == Orientation::given;
-  const bool asked = options.viewpoint && how != Orientation::given;
-  if (given && !asked) known.given = sampling.normals;
-  if (options.facts) known.middle = options.facts->extent.center() - sampling.origin;
-  return known;
+  const KnownSigns known = given_signs(s.placed, s.sampling, s.options);
+  s.sheets =
+      make_sheets({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
+                  known, s.fits, s.twins);
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// The step of prepare() that puts points on sheets and sheets into parts.
+// The refinement that puts points on sheets and sheets into parts.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,12 +12,9 @@
 
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
-#include "palpate/prepare/prepare.hpp"
-#include "prepare/place.hpp"
-#include "prepare/plane_fits.hpp"
-#include "prepare/radii.hpp"
-#include "prepare/sampling.hpp"
-#include "prepare/weights.hpp"
+#include "prepare/orientation.hpp"
+#include "prepare/point_fits.hpp"
+#include "prepare/surfels.hpp"
 
 namespace palpate {
 
@@ -27,20 +24,6 @@ struct SheetInput {
   std::span<const float> spacings;  // m
   std::span<const float> radii;     // m
   std::span<const float> noise;     // sigma at each point, m
-};
-
-/// Signs of normals that are known from outside: given normals and a viewpoint.
-struct KnownSigns {
-  std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
-                                           ///< not finite; empty: none
-  std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
-  std::optional<Eigen::Vector3d> middle;   ///< of the whole cloud, m; empty: these are all
-};
-
-/// A point that lies on a second sheet, too, where two meet in a crease or at an edge.
-struct Twin {
-  std::uint32_t point = 0;
-  std::uint32_t host = 0;  ///< a point that is surely on that sheet
 };
 
 /// Puts each point on a sheet: sure points that continue each other's planes make one; an unsure
@@ -112,19 +95,7 @@ inline constexpr float kTurnMargin = 1.5f;  // judgement
 // How far a point may be off the other's plane, over distance times turn (rad): an arc has half.
 inline constexpr float kChord = 0.6f;  // half and a margin; judgement
 
-/// The sheets of all points, and the points that lie on two of them.
-struct JoinedSheets {
-  SurfacePoints::Sheets sheets;
-  std::vector<Twin> twins;  ///< in rising order
-};
-
 /// make_sheets() of the points that weigh something. None where there are no fits.
-[[nodiscard]] JoinedSheets join_sheets(const Sampling& sampling, const Radii& radii,
-                                       const Weights& weights, const KnownSigns& known,
-                                       PointFits& fits);
-
-/// The signs that the options allow sheets to use.
-[[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
-                                     const PrepareOptions& options);
+void refine_sheets(Surfels& surfels);
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/parallel.hpp"
+#include "prepare/plane_fits.hpp"
 #include "prepare/sheet_fit.hpp"
 #include "refine/sheets.hpp"
 

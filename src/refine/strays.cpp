@@ -80,9 +80,25 @@ std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const floa
   return strays;
 }
 
-void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined,
-                            Weights& weights) {
-  const std::vector<std::uint32_t>& sheet = joined.sheets.sheet;
+void refine_strays(Surfels& s) {
+  const PrepareOptions& options = s.options;
+  if (options.paper || !options.remove_speckle || !options.estimate_normals) return;
+  Radii& radii = s.radii;
+  radii.strays = find_strays(s.sampling.grid, s.sampling.spacings, s.sampling.spacing);
+  if (options.radius) return;
+  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
+    if (radii.strays[i] != 0) {
+      // Strays are not to reach what is sampled finely.
+      radii.values[i] = kUsualMultiple * static_cast<float>(s.sampling.spacing);
+    }
+  }
+}
+
+void refine_strays_off_sheets(Surfels& s) {
+  if (s.radii.strays.empty()) return;
+  const Sampling& sampling = s.sampling;
+  Weights& weights = s.weights;
+  const std::vector<std::uint32_t>& sheet = s.sheets.sheet;
   std::vector<std::uint32_t> off;
   std::vector<Eigen::Vector3f> positions;
   for (std::uint32_t i = 0; i < sheet.size(); ++i) {

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "palpate/geometry/cell_grid.hpp"
-#include "prepare/sampling.hpp"
-#include "prepare/weights.hpp"
-#include "refine/sheets.hpp"
+#include "prepare/surfels.hpp"
 
 namespace palpate {
 
@@ -19,9 +17,12 @@ namespace palpate {
                                                     std::span<const float> spacings,
                                                     double typical);
 
+/// Looks for strays, and gives them an R that does not reach what is sampled finely.
+void refine_strays(Surfels& surfels);
+
 /// Lets strays beside a surface weigh nothing. Its points are their neighbours, so find_strays() of
 /// all points passes them over; here it looks at the points on no sheet among themselves. A point
 /// with another within the typical spacing stays: tips and ridges are on no sheet either.
-void drop_strays_off_sheets(const Sampling& sampling, const JoinedSheets& joined, Weights& weights);
+void refine_strays_off_sheets(Surfels& surfels);
 
 }  // namespace palpate

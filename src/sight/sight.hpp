@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "depth/frame_timing.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/scene/source.hpp"
-#include "stream/frame_timing.hpp"
 
 namespace palpate {
 

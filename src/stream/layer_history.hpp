@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "depth/frame_timing.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/scene/source.hpp"
-#include "stream/frame_timing.hpp"
 
 namespace palpate {
 

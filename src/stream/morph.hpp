@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "depth/frame_timing.hpp"
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "stream/block_fates.hpp"
 #include "stream/block_matches.hpp"
 #include "stream/frame_blocks.hpp"
-#include "stream/frame_timing.hpp"
 #include "stream/point_moves.hpp"
 #include "stream/point_writer.hpp"
 #include "stream/shown_points.hpp"

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
+#include "depth/frame_timing.hpp"
 #include "palpate/field/field_options.hpp"
 #include "stream/fate.hpp"
 #include "stream/frame_blocks.hpp"
-#include "stream/frame_timing.hpp"
 #include "stream/moving_points.hpp"
 #include "stream/shown_points.hpp"
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "depth/frame_timing.hpp"
 #include "palpate/field/surface_points.hpp"
-#include "stream/frame_timing.hpp"
 #include "stream/moving_points.hpp"
 
 namespace palpate {

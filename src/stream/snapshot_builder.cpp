@@ -8,7 +8,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "prepare/place.hpp"
-#include "scene/source_inside.hpp"
+#include "stream/streaming.hpp"
 
 namespace palpate {
 namespace {

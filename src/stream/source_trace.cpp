@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "scene/source_inside.hpp"
+#include "stream/streaming.hpp"
 
 namespace palpate {
 
 std::span<const Reach> SourceTrace::reach() const {
-  return source_->inside_->found;
+  return Streaming::of(*source_).found;
 }
 
 std::uint64_t SourceTrace::publications() const {
@@ -16,11 +16,11 @@ std::uint64_t SourceTrace::publications() const {
 }
 
 std::uint64_t SourceTrace::changes() const {
-  return source_->inside_->changes;
+  return Streaming::of(*source_).changes;
 }
 
 const SourceOptions& SourceTrace::options() const {
-  return source_->inside_->taken;
+  return Streaming::of(*source_).taken;
 }
 
 void SourceTrace::impose_reach(std::span<const Reach> reach) {

@@ -7,22 +7,30 @@ import sys
 
 import counts
 
-# What each floor may include besides itself: only what lies below it. docs/architecture.md draws it.
-FLOORS = {
+# The core: from a cloud to a force. It sees none of the floors beside it (docs/architecture.md).
+CORE = {
     "base": set(),
     "geometry": {"base"},
+    "field": {"base", "geometry"},
+    "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
+    "prepare": {"base", "geometry", "field"},
+    "scene": {"base", "geometry", "field", "prepare"},  # and options of the depth filter: see ALLOWED
+}
+# What each floor may include besides itself: only what lies below it. docs/architecture.md draws it.
+FLOORS = CORE | {
+    "core_only": {"base", "geometry", "io", "field", "prepare", "scene"},
     "depth": {"base", "geometry"},
+    "refine": {"base", "geometry", "field", "prepare"},
+    "sight": {"base", "geometry", "depth", "field", "prepare", "scene"},
+    "stream": {"base", "geometry", "depth", "field", "prepare", "scene", "sight"},
+    "large": {"base", "geometry", "field", "prepare", "refine", "scene"},
     "splats": {"base", "geometry"},
     "io": {"base", "geometry", "depth", "splats"},
     "tile": {"base", "geometry", "io"},
     "message": {"base", "geometry", "depth", "io"},
     "bag": {"base", "geometry", "depth", "io", "message"},
     "dds": {"base", "message"},
-    "field": {"base", "geometry"},
-    "contact": {"base", "geometry"},  # and field/field.hpp: see ALLOWED
-    "prepare": {"base", "geometry", "field"},
     "align": {"base", "geometry", "field"},
-    "scene": {"base", "geometry", "depth", "field", "prepare"},
     "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
     "sensor": {"base", "geometry", "depth", "io", "message", "bag", "dds", "field", "prepare",
                "scene", "sim"},
@@ -33,15 +41,24 @@ FLOORS = {
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",
-             "scene", "sensor", "device", "servo", "ros", "viewer"},
+             "scene", "stream", "sensor", "device", "servo", "ros", "viewer"},
     "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
+}
+# The files of two floors from the first step on: what stands in one line sees what stands above it.
+STEPS = {
+    "prepare": [{"stopwatch", "point_fits", "places", "height_groups"},
+                {"given_normals", "lines", "sheet_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
+                {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
+    "refine": [{"said_by_sets", "holes"}, {"bonds", "layered_sets"}, {"strays"}, {"gaps"}, {"sheets"},
+               {"snapping"}, {"grow_sheets", "look_around"}, {"twins"}, {"refinements"}],
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
 ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "tile", "touch",
           "zwidth"}, {"view"},
          {"report"}, {"run"}, {"record"}, {"sources"}, {"options"}, {"plot"}, {"cli"}]
 # Single headers that a floor may include of a floor that it may not see otherwise.
-ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp")}
+ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp"),
+           ("scene", "palpate/depth/depth_filter.hpp")}
 
 # The one file that asks what machine it is compiled for.
 PLATFORM_FILES = {"src/base/cpu.hpp"}
@@ -88,6 +105,21 @@ def floors(root):
                 continue
             if there not in FLOORS[here]:
                 yield f"{name}:{number}: {here} must not include {found[1]} of {there}"
+
+
+def steps(root):
+    """Includes between the steps of preparation point to earlier ones; no file is without a step."""
+    for floor, rows in STEPS.items():
+        step_of = {name: number for number, row in enumerate(rows) for name in row}
+        for path in sources(root, (f"src/{floor}",)):
+            name = path.relative_to(root)
+            if path.stem not in step_of:
+                yield f"{name}: no step of {floor}; STEPS in tests/project/rules.py lists them"
+                continue
+            for number, line in enumerate(lines(path), 1):
+                found = re.match(rf'\s*#\s*include\s+"{floor}/(\w+)\.hpp"', line)
+                if found and found[1] != path.stem and step_of.get(found[1], 99) >= step_of[path.stem]:
+                    yield f"{name}:{number}: an earlier step must not include {found[1]}"
 
 
 def rooms(root):
@@ -273,7 +305,7 @@ def text_lines(root):
 
 
 RULES = {rule.__name__: rule
-         for rule in (floors, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
+         for rule in (floors, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
                       public_face, readme, links, documents)}
 

@@ -39,6 +39,22 @@ class Rules(unittest.TestCase):
             len(self.found(rules.floors,
                            {"src/contact/a.cpp": '#include "palpate/field/kernel.hpp"\n'})), 1)
 
+    def test_the_core_sees_no_floor_beside_it(self):
+        for beside in ("refine/sheets", "stream/morph", "large/blocks", "sight/sight", "depth/input",
+                       "extras/splats/splat_shell"):
+            files = {"src/prepare/a.cpp": f'#include "{beside}.hpp"\n'}
+            self.assertEqual(len(self.found(rules.floors, files)), 1, beside)
+            self.assertEqual(len(self.found(rules.floors, {"src/scene/a.hpp": files["src/prepare/a.cpp"]})), 1, beside)
+        self.assertEqual(
+            self.found(rules.floors,
+                       {"src/extras/splats/a.cpp": '#include "extras/splats/splat_shell.hpp"\n'}), [])
+
+    def test_a_step_of_preparation_sees_earlier_ones_alone(self):
+        for step, count in (("radii", 0), ("weights", 1), ("assemble", 1)):
+            files = {"src/prepare/plane_fits.hpp": f'#include "prepare/{step}.hpp"\n'}
+            self.assertEqual(len(self.found(rules.steps, files)), count, step)
+        self.assertEqual(len(self.found(rules.steps, {"src/refine/a.cpp": ""})), 1)
+
     def test_the_gathering_header_and_the_standard_library_are_free(self):
         files = {"include/palpate/palpate.hpp": '#include "palpate/scene/scene.hpp"\n',
                  "src/base/a.cpp": "#include <vector>\n"}

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prepare/plane_fits.hpp"
 #include "refine/sheets.hpp"
 
 namespace palpate::test {

@@ -11,8 +11,8 @@
 
 #include "geometry/clouds.hpp"
 #include "palpate/prepare/prepare.hpp"
-#include "prepare/assemble.hpp"
 #include "refine/fitted.hpp"
+#include "refine/twins.hpp"
 
 namespace palpate {
 namespace {

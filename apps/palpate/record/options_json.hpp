@@ -96,7 +96,7 @@ void members(auto f, CloudFacts& o) {
 }
 void members(auto f, PrepareOptions& o) {
   auto& [voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
-         paper, kernel, facts] = o;
+         paper, kernel, facts, without] = o;  // the last is for benches alone
   f({"voxel", "radius", "smoothing", "minimum_radius", "normal_error", "viewpoint", "orientation",
      "clip", "remove_speckle", "estimate_normals", "material_from_intensity", "paper", "kernel",
      "facts"},

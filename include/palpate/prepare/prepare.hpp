@@ -2,7 +2,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "palpate/field/field_options.hpp"
 #include "palpate/field/surface_points.hpp"
@@ -41,6 +44,9 @@ struct PrepareOptions {
   bool paper = false;                    ///< the paper's s (mean of k = 3 neighbours), R = 2.5 s
   Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
   std::optional<CloudFacts> facts = {};  ///< of the whole that the cloud is a part of
+  /// Names of refinements that are left out, for benches that ask what each is worth: strays, gaps,
+  /// sheets, strays_off_sheets, twins.
+  std::set<std::string, std::less<>> without = {};
 };
 
 /// A cloud as a surface.

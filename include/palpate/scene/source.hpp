@@ -243,6 +243,7 @@ class Source {
   friend class Scene;
   friend class SceneField;
   friend class SourceTrace;  // of recordings and replays
+  friend struct Streaming;   // of what is pushed
 
   struct Inside;
   std::unique_ptr<Inside> inside_;

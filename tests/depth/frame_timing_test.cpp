@@ -1,5 +1,5 @@
 // Checks the smoothed interval, the times of snapshots, and how long frames count.
-#include "stream/frame_timing.hpp"
+#include "depth/frame_timing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,7 @@
 #include <limits>
 
 #include "depth/input.hpp"
-#include "scene/source_inside.hpp"
-#include "sight/sight.hpp"
+#include "stream/streaming.hpp"
 
 namespace palpate {
 namespace {
@@ -16,28 +15,28 @@ constexpr double kMissedFrames = 2.5;
 
 }  // namespace
 
-/// Lets the frame say which places are free.
-void Source::Inside::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
+void Streaming::show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
   depth::check(frame);
   if (!std::isfinite(frame.stamp)) return;
   const NoiseModel& noise = builder->noise();
   sight.see(frame, T_world_sensor, noise.sigma(1) > 0 ? noise : unknown_sensor_noise());
 }
 
-/// The ages up to which a frame can say what is free.
-FrameLimits Source::Inside::frame_limits() const {
+FrameLimits Streaming::frame_limits(const Source::Inside& source) const {
   constexpr double kEver = std::numeric_limits<double>::infinity();  // s: a file does not age
   if (stays) return {.at_first = kEver, .later = kEver};
-  const std::lock_guard lock(mutex);
-  const double silence = options.policy.silence;
+  const std::lock_guard lock(source.mutex);
+  const Source::State& state = source.state;
+  const double silence = source.options.policy.silence;
   const double latency = std::min(state.latency, silence);
   const double missed = state.interval > 0 ? kMissedFrames * state.interval : silence;
   return {.at_first = latency + std::min(missed, silence), .later = latency + silence};
 }
 
 std::optional<Seen> Source::seen(const Ball& ball, double now) const {
-  inside_->watched = true;
-  std::optional<Seen> seen = inside_->sight.at(ball, now, inside_->frame_limits());
+  Streaming& streaming = *inside_->streaming;
+  streaming.watched = true;
+  std::optional<Seen> seen = streaming.sight.at(ball, now, streaming.frame_limits(*inside_));
   if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
   return seen;
 }

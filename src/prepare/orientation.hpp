@@ -1,0 +1,33 @@
+// What tells the signs of normals, and how they agree where nothing better is done.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/place.hpp"
+#include "prepare/point_fits.hpp"
+#include "prepare/sampling.hpp"
+
+namespace palpate {
+
+/// Signs of normals that are known from outside: given normals and a viewpoint.
+struct KnownSigns {
+  std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
+                                           ///< not finite; empty: none
+  std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
+  std::optional<Eigen::Vector3d> middle;   ///< of the whole cloud, m; empty: these are all
+};
+
+/// The signs that the options allow to be used.
+[[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+                                     const PrepareOptions& options);
+
+/// Turns normals so that those of neighbours agree: pairs of neighbours whose planes are most
+/// parallel join first (Hoppe et al. 1992). What hangs together then faces the side that given
+/// normals or the viewpoint tell, else outward. For smooth surfaces of one sheet; where sheets meet
+/// or lie close together, refinements do more.
+void orient(const Sampling& sampling, const KnownSigns& known, PointFits& fits);
+
+}  // namespace palpate

@@ -1,0 +1,61 @@
+// Holds a cloud on its way through prepare(), and where refinements come in.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "palpate/field/surface_points.hpp"
+#include "palpate/prepare/prepare.hpp"
+#include "prepare/place.hpp"
+#include "prepare/point_fits.hpp"
+#include "prepare/radii.hpp"
+#include "prepare/sampling.hpp"
+#include "prepare/weights.hpp"
+
+namespace palpate {
+
+/// A point that lies on a second sheet, too, where two meet in a crease or at an edge.
+struct Twin {
+  std::uint32_t point = 0;
+  std::uint32_t host = 0;  ///< a point that is surely on that sheet
+};
+
+/// What the steps of prepare() have made of a cloud so far. Columns are in sorted order.
+struct Surfels {
+  const Placed& placed;
+  const PrepareOptions& options;
+  Sampling sampling = {};
+  Radii radii = {};
+  PointFits fits = {};
+  WeightSums sums = {};
+  Weights weights = {};
+  SurfacePoints::Sheets sheets = {};  ///< empty: all points are one, and their signs agree
+  std::vector<Twin> twins = {};       ///< in rising order
+  Prepared prepared = {};             ///< the report from the start, the points at the end
+};
+
+/// The step of prepare() after which a refinement runs.
+enum class Stage {
+  radii,    ///< support radii are chosen
+  fits,     ///< planes are fitted, and sums of weights are known
+  weights,  ///< points are weighed
+  points,   ///< columns have become surface points
+};
+
+/// One thing that makes points better than the core does: floor `refine` lists all of them.
+struct Refinement {
+  std::string_view name;  ///< as PrepareOptions::without has it
+  Stage stage;
+  void (*refine)(Surfels& surfels);
+};
+
+/// Takes all steps of prepare() but place(), with these refinements in their order. `report`: what
+/// is known so far.
+/// @throws Error as prepare() does.
+[[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
+                                       std::span<const Refinement> refinements,
+                                       Prepared::Report report);
+
+}  // namespace palpate

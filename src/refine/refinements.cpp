@@ -1,0 +1,29 @@
+// The table of refinements: a name, when it runs, what it does.
+#include "refine/refinements.hpp"
+
+#include <array>
+
+#include "refine/gaps.hpp"
+#include "refine/sheets.hpp"
+#include "refine/strays.hpp"
+#include "refine/twins.hpp"
+
+namespace palpate {
+namespace {
+
+// Derived: each runs once what it reads is there.
+constexpr std::array kRefinements{
+    Refinement{"strays", Stage::radii, &refine_strays},
+    Refinement{"gaps", Stage::fits, &refine_gaps},
+    Refinement{"sheets", Stage::weights, &refine_sheets},
+    Refinement{"strays_off_sheets", Stage::weights, &refine_strays_off_sheets},
+    Refinement{"twins", Stage::points, &refine_twins},
+};
+
+}  // namespace
+
+std::span<const Refinement> refinements() {
+  return kRefinements;
+}
+
+}  // namespace palpate
