@@ -1,0 +1,89 @@
+"""Tests docs/method.md: sections 2 and 3 written from its text in plain Python (scripts/drawings) give the program's surface and forces."""
+
+import csv
+import math
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts" / "drawings"))
+from proxy import Proxy  # noqa: E402
+from surface import length, minus, prepare  # noqa: E402
+
+SAME_FORCE = 0.01  # N
+SAME_PLACE = 0.01  # R
+
+
+def ball(count, radius, noise=0.0):
+    """A spiral of points on a sphere, in m."""
+    chance = random.Random(3)
+    points = []
+    for i in range(count):
+        z = 1 - (2 * i + 1) / count
+        angle, around = i * math.pi * (3 - math.sqrt(5)), math.sqrt(1 - z * z)
+        r = radius + noise * (2 * chance.random() - 1)
+        points.append([r * around * math.cos(angle), r * around * math.sin(angle), r * z])
+    return points
+
+
+def waves(side, spacing):
+    """A jittered wavy sheet."""
+    chance = random.Random(5)
+    places = [[spacing * (k - side / 2 + 0.3 * (2 * chance.random() - 1)) for k in pair]
+              for pair in ((i, j) for i in range(side) for j in range(side))]
+    return [[x, y, 3e-3 * math.sin(60 * x) * math.cos(40 * y)] for x, y in places]
+
+
+class Method(unittest.TestCase):
+    def compare(self, points, hands):
+        """Steps both through the hand's positions; returns how many of the program's touched."""
+        with tempfile.TemporaryDirectory() as folder:
+            cloud, way, log = (f"{folder}/{name}" for name in ("cloud.txt", "way.csv", "log.csv"))
+            pathlib.Path(cloud).write_text("".join("{:.9f} {:.9f} {:.9f}\n".format(*p) for p in points), encoding="utf-8")
+            rows = "".join("{:.3f},{:.12f},{:.12f},{:.12f}\n".format(k * 1e-3, *h) for k, h in enumerate(hands))
+            pathlib.Path(way).write_text("t,hip_x,hip_y,hip_z\n" + rows, encoding="utf-8")
+            subprocess.run([os.environ["PALPATE_PROGRAM"], "touch", cloud, "--trajectory", way, "--log", log, "--simulated-time",
+                            "--no-view"], check=True, capture_output=True)
+            with open(log, encoding="utf-8") as file:
+                steps = list(csv.DictReader(file))
+        self.assertEqual(len(steps), len(hands))
+        surface = prepare(points, hands[0])
+        proxy = Proxy(surface)
+        for k, (hand, step) in enumerate(zip(hands, steps)):
+            force = proxy.step(list(hand))
+            self.assertEqual(proxy.normal is not None, step["touching"] == "1", k)
+            self.assertLess(length(minus(force, [float(step[name]) for name in ("fx", "fy", "fz")])), SAME_FORCE, k)
+            place = [float(step[f"proxy_{axis}"]) for axis in "xyz"]
+            self.assertLess(length(minus(proxy.position, place)), SAME_PLACE * surface.smallest, k)
+        return sum(step["touching"] == "1" for step in steps)
+
+    def test_a_hand_that_presses_strokes_and_leaves_a_ball(self):
+        hands = []
+        for k in range(150):
+            angle, r = 1.2 * k / 149, 0.065 - 0.02 * math.sin(math.pi * k / 149)
+            hands.append((r * math.cos(angle) * math.cos(0.3), r * math.cos(angle) * math.sin(0.3), r * math.sin(angle)))
+        self.assertGreater(self.compare(ball(300, 0.05), hands), 60)
+
+    def test_noisy_points(self):
+        hands = [(0.065 - 0.02 * math.sin(math.pi * k / 99), 4e-3 * k / 99, 2e-3) for k in range(100)]
+        self.assertGreater(self.compare(ball(300, 0.05, noise=4e-4), hands), 40)
+
+    def test_a_hand_that_is_pressed_through_a_ball(self):
+        hands = [(0.12 - 0.2 * k / 59, 4e-3, 2e-3) for k in range(60)]
+        self.assertGreater(self.compare(ball(300, 0.05), hands), 20)
+
+    def test_a_hand_that_slides_off_a_wavy_sheet(self):
+        hands = [(-0.02 + 0.08 * k / 149, 0.01 * math.sin(9 * k / 149), 0.01 - 0.016 * min(1, k / 25)) for k in range(150)]
+        touching = self.compare(waves(17, 4e-3), hands)
+        self.assertGreater(touching, 60)
+        self.assertLess(touching, 130)
+
+
+if __name__ == "__main__":
+    unittest.main()
