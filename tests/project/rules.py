@@ -271,18 +271,29 @@ def readme(root):
 
 
 def links(root):
-    """Relative links of the documents lead to files."""
+    """Relative links of the documents lead to files, and those of docs/ to headings that are there."""
     for path in (path for part in ("*.md", "docs/**/*.md", "bench/*.md", "web/*.md") for path in sorted(root.glob(part))):
-        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
-            if "://" not in target and not (path.parent / target).exists():
+        for target, anchor in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", path.read_text(encoding="utf-8")):
+            there = path.parent / target if target else path
+            if "://" in target or target.startswith("mailto:"):
+                continue
+            if not there.exists():
                 yield f"{path.relative_to(root)}: {target} does not exist"
+            elif anchor and there.suffix == ".md" and (root / "docs") in path.parents and anchor not in headings(there):
+                yield f"{path.relative_to(root)}: {target} has no heading #{anchor}"
+
+
+def headings(path):
+    """The anchors of a document's headings, as GitHub and the site make them."""
+    for title in re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE):
+        yield re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
 def documents(root):
     """Comments and texts name documents that are there, and sections of docs/method.md that are."""
     method = root / "docs" / "method.md"
     text = method.read_text(encoding="utf-8") if method.exists() else ""
-    sections = set(re.findall(r"^(?:## |\*\*)(\d+(?:\.\d+)?)", text, re.MULTILINE))
+    sections = set(re.findall(r"^(?:##+ |\*\*)(\d+(?:\.\d+)?)", text, re.MULTILINE))
     for path, number, line in text_lines(root):
         # What follows a $ is a path that a script makes up.
         for name in re.findall(r"(?<![\w$./-])/?([\w.-][\w./-]*\.md)\b", line):

@@ -153,10 +153,11 @@ class Rules(unittest.TestCase):
     def test_a_dead_link_is_found(self):
         for name in ("a.md", "docs/a.md", "docs/devices/a.md", "bench/a.md"):
             self.assertEqual(len(self.found(rules.links, {name: "[b](b.md)\n"})), 1)
-        self.assertEqual(self.found(rules.links, {"docs/a.md": "[a](a.md#there)\n"}), [])
+        self.assertEqual(self.found(rules.links, {"docs/a.md": "# It is: `there`\n[a](a.md#it-is-there), [a](#it-is-there)\n"}), [])
+        self.assertEqual(len(self.found(rules.links, {"docs/a.md": "# There\n[a](a.md#gone)\n[b](#gone)\n"})), 2)
 
     def test_a_document_that_is_absent_is_found(self):
-        files = {"docs/there.md": "", "docs/method.md": "## 2. Fields\n\n**2.1 Kernels.** W.\n"}
+        files = {"docs/there.md": "", "docs/method.md": "## 2. Fields\n\n### 2.1 Kernels\n"}
         for line, count in (("// as gone.md says\n", 1), ('say("docs/gone.md");\n', 1),
                             ("// docs/there.md, there.md, docs/method.md 2.1 and 2\n", 0),
                             ('open(DOCS "/there.md");\n', 0), ('echo >"$scratch/gone.md"\n', 0),
