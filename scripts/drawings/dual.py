@@ -37,6 +37,10 @@ class Dual:
         ratio = self.v / other.v
         return Dual(ratio, [(a - ratio * b) / other.v for a, b in zip(self.g, other.g)])
 
+    def __rtruediv__(self, other):
+        ratio = other / self.v
+        return Dual(ratio, [-ratio / self.v * g for g in self.g])
+
     __radd__ = __add__
     __rmul__ = __mul__
 

@@ -5,7 +5,7 @@ import random
 
 from dual import Dual, smax, smin
 from picture import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, RED, Panel, Picture, level_lines
-from surface import Surface, dot, minus, plus, unit, wyvill
+from surface import Surface, dot, minus, plane_sum, plus, unit, wyvill
 
 COLORS = {"metaball": ORANGE, "point-set": GREEN, "IMLS": PURPLE, "balanced": BLUE}
 
@@ -46,12 +46,6 @@ def kernels():
     right.line([(0.49, 0), (0.49, 0.4)], BLUE, 1, "3 3")
     right.text(0.49, 0.03, "0.49", BLUE, right=4, size=12)
     return picture
-
-
-def plane_sum(height):
-    """T of Wyvill's kernel (2.1)."""
-    e = height * height
-    return 1 - 27 / 8 * e * (1 - 11 / 9 * e + 17 / 27 * e * e - e ** 3 / 9)
 
 
 def four_fields():

@@ -1,4 +1,4 @@
-"""The proxy of docs/method.md 3, written from its text in plain Python, on surfaces that rest."""
+"""The proxy of docs/method.md 3 and 4.1, written from its text in plain Python, on surfaces that rest."""
 
 import math
 
@@ -6,10 +6,11 @@ from surface import dot, length, minus, plus, unit
 
 
 class Proxy:
-    """Follows a hand: step() gives the force on it."""
+    """Follows a hand: step() gives the force on it. `friction`: mu_s, mu_d and b_v."""
 
-    def __init__(self, surface, stiffness=500.0):
+    def __init__(self, surface, stiffness=500.0, friction=(0.0, 0.0, 0.0)):
         self.surface, self.wanted = surface, stiffness
+        self.friction, self.sliding = friction, False
         self.position = self.hand = self.normal = None
         self.stiffness, self.energy = 0.0, 0.0  # of the spring, N/m, and in its tank, J
         self.trail = []  # what a step did, for drawings
@@ -86,7 +87,7 @@ class Proxy:
     def hold(self, hand, dt):
         """Along the surface to the place nearest to the hand (3.3), then the spring (3.5)."""
         found = self.onto(self.position)
-        last, releases, iteration = None, 0, 0
+        last, releases, iteration, slid = None, 0, 0, 0.0
         while found and iteration < 20:
             self.position, self.normal, radius = found
             to_hand = minus(hand, self.position)
@@ -94,7 +95,7 @@ class Proxy:
             if above >= 0:
                 place = self.sweep(plus(self.position, self.normal, 0.002 * radius), hand)
                 if place is None:
-                    self.position, self.normal = hand, None
+                    self.position, self.normal, self.sliding = hand, None, False
                     return
                 releases += 1
                 if releases > 3 or length(minus(place, self.position)) < 0.003 * radius:
@@ -102,23 +103,42 @@ class Proxy:
                 found = self.onto(place)
                 continue
             tangent = plus(to_hand, self.normal, -above)
-            if length(tangent) < (1e-4 if iteration == 0 else 1e-3) * radius:
+            wanted = length(tangent) - self.held(-above, length(tangent), slid, dt)
+            if wanted < self.tolerance(iteration) * radius:
+                self.sliding = self.sliding and iteration > 0
                 break
+            self.sliding = True
             pace = self.pace(last, tangent)
             last = self.position, tangent
-            found = self.advance(hand, tangent, min(pace * length(tangent), radius / 4), radius)
+            found, done = self.advance(hand, tangent, min(pace * wanted, radius / 4), radius)
+            slid += done
             iteration += 1
         self.pull(length(minus(hand, self.position)), dt)
+
+    def held(self, depth, along, slid, dt):
+        """How much of the spring's stretch along the surface friction holds (4.1)."""
+        static, dynamic, viscous = self.friction
+        if along <= (dynamic if self.sliding else static) * depth:
+            return along
+        rate = viscous / dt
+        return min(along, (dynamic * depth * self.stiffness + rate * (slid + along)) / (self.stiffness + rate))
+
+    def tolerance(self, iteration):
+        if any(self.friction):
+            return 1e-5
+        return 1e-4 if iteration == 0 else 1e-3
 
     def pace(self, last, tangent):
         """The secant step of Barzilai and Borwein, within 0.05 and 4."""
         if last is None:
             return 1.0
+        most = 1.0 if any(self.friction) else 4.0
         moved = minus(self.position, last[0])
         fallen = dot(moved, minus(last[1], tangent))
-        return 4.0 if 4 * fallen <= dot(moved, moved) else max(0.05, dot(moved, moved) / fallen)
+        return most if most * fallen <= dot(moved, moved) else max(0.05, dot(moved, moved) / fallen)
 
     def advance(self, hand, tangent, trial, radius):
+        """The surface after a sub-step that is accepted, and its length; None and 0 where none is."""
         before = dot(d := minus(hand, self.position), d)
         for _ in range(7):
             target = plus(self.position, unit(tangent), trial)
@@ -128,9 +148,9 @@ class Proxy:
                 gained = before - dot(d := minus(hand, place), d) >= 1e-3 * trial * length(tangent)
                 if gained and dot(normal, self.normal) > 0.3 and length(minus(place, self.position)) <= radius / 2:
                     self.trail.append(("sub-step", self.position, target, place))
-                    return found
+                    return found, trial
             trial /= 2
-        return None
+        return None, 0.0
 
     def pull(self, stretch, dt):
         """The energy tank of 3.5: stiffness rises only as far as it is paid for."""

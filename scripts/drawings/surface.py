@@ -7,6 +7,7 @@ from dual import Dual, smax, sqrt, step
 
 WMIN = 0.3  # least weight of a surface (2.3)
 LEVEL = 0.4  # T' of a metaball (2.2)
+OFFSET = 0.4895863  # R, where T is LEVEL
 
 
 def minus(a, b):
@@ -35,6 +36,12 @@ def wyvill(e):
     if e >= 1:
         return 0.0, 0.0
     return (1 - e) ** 2 * (5 + 4 * (1 - e)) / 9, (-44 + 68 * e - 24 * e * e) / 9
+
+
+def plane_sum(height):
+    """T of Wyvill's kernel (2.1)."""
+    e = height * height
+    return 1 - 27 / 8 * e * (1 - 11 / 9 * e + 17 / 27 * e * e - 1 / 9 * e * e * e)
 
 
 class Sample:
@@ -101,7 +108,8 @@ class Surface:
             return Sample(0.35 * self.smallest, [0.0] * len(x), 0.0, self.smallest)
         radius = sums[1] / weight
         scale = radius * (0.35 / WMIN)
-        value = scale * (LEVEL - weight)
+        out = OFFSET + self.tool / radius
+        value = scale * (plane_sum(out if out.v < 0.85 else Dual(0.85, [0.0] * len(x))) - weight)
         trust = step(sums[2] / weight, 0.25, 0.3)
         if self.kind != "metaball" and sums[2].v > 1e-9 * weight.v:
             height, _ = self.height(sums)
@@ -115,7 +123,8 @@ class Surface:
         for p, radius, a in zip(self.points, self.radii, self.weights):
             near = max(0.0, length(minus(p, center)) - reach)
             most += a * wyvill((near / radius) ** 2)[0]
-        return most < (LEVEL if self.kind == "metaball" else min(LEVEL, WMIN))
+        level = plane_sum(min(0.85, OFFSET + self.tool / self.smallest))
+        return most < (level if self.kind == "metaball" else min(level, WMIN))
 
 
 def density_weights(points, radii):

@@ -1,4 +1,4 @@
-"""Tests docs/method.md: sections 2 and 3 written from its text in plain Python (scripts/drawings) give the program's surface and forces."""
+"""Tests docs/method.md: sections 2 to 4 written from its text in plain Python (scripts/drawings) give the program's surface and forces."""
 
 import csv
 import math
@@ -18,6 +18,15 @@ from surface import length, minus, prepare  # noqa: E402
 
 SAME_FORCE = 0.01  # N
 SAME_PLACE = 0.01  # R
+
+
+def over_a_ball(count, least):
+    """A hand that comes to a ball of 50 mm, strokes it `least` m from its centre, and leaves."""
+    hands = []
+    for k in range(count):
+        angle, r = 1.2 * k / (count - 1), 0.085 - (0.085 - least) * math.sin(math.pi * k / (count - 1))
+        hands.append((r * math.cos(angle) * math.cos(0.3), r * math.cos(angle) * math.sin(0.3), r * math.sin(angle)))
+    return hands
 
 
 def ball(count, radius, noise=0.0):
@@ -41,7 +50,7 @@ def waves(side, spacing):
 
 
 class Method(unittest.TestCase):
-    def compare(self, points, hands):
+    def compare(self, points, hands, *options, kind="balanced", tool=0.0, friction=(0.0, 0.0, 0.0)):
         """Steps both through the hand's positions; returns how many of the program's touched."""
         with tempfile.TemporaryDirectory() as folder:
             cloud, way, log = (f"{folder}/{name}" for name in ("cloud.txt", "way.csv", "log.csv"))
@@ -49,12 +58,13 @@ class Method(unittest.TestCase):
             rows = "".join("{:.3f},{:.12f},{:.12f},{:.12f}\n".format(k * 1e-3, *h) for k, h in enumerate(hands))
             pathlib.Path(way).write_text("t,hip_x,hip_y,hip_z\n" + rows, encoding="utf-8")
             subprocess.run([os.environ["PALPATE_PROGRAM"], "touch", cloud, "--trajectory", way, "--log", log, "--simulated-time",
-                            "--no-view"], check=True, capture_output=True)
+                            "--no-view", *options], check=True, capture_output=True)
             with open(log, encoding="utf-8") as file:
                 steps = list(csv.DictReader(file))
         self.assertEqual(len(steps), len(hands))
         surface = prepare(points, hands[0])
-        proxy = Proxy(surface)
+        surface.kind, surface.tool = kind, tool
+        proxy = Proxy(surface, friction=friction)
         for k, (hand, step) in enumerate(zip(hands, steps)):
             force = proxy.step(list(hand))
             self.assertEqual(proxy.normal is not None, step["touching"] == "1", k)
@@ -64,11 +74,17 @@ class Method(unittest.TestCase):
         return sum(step["touching"] == "1" for step in steps)
 
     def test_a_hand_that_presses_strokes_and_leaves_a_ball(self):
-        hands = []
-        for k in range(150):
-            angle, r = 1.2 * k / 149, 0.065 - 0.02 * math.sin(math.pi * k / 149)
-            hands.append((r * math.cos(angle) * math.cos(0.3), r * math.cos(angle) * math.sin(0.3), r * math.sin(angle)))
-        self.assertGreater(self.compare(ball(300, 0.05), hands), 60)
+        self.assertGreater(self.compare(ball(300, 0.05), over_a_ball(150, 0.045)), 40)
+
+    def test_other_fields_and_a_tool(self):
+        points, hands = ball(300, 0.05), over_a_ball(60, 0.045)
+        self.assertGreater(self.compare(points, hands, "--field", "pointset", kind="point-set"), 10)
+        self.assertGreater(self.compare(points, hands, "--field", "metaball", "--tool-radius", "0.005", kind="metaball", tool=0.005), 10)
+        self.assertGreater(self.compare(points, hands, "--tool-radius", "0.005", tool=0.005), 10)
+
+    def test_friction(self):
+        options = ("--friction-static", "0.6", "--friction-dynamic", "0.4", "--friction-viscous", "3")
+        self.assertGreater(self.compare(ball(300, 0.05), over_a_ball(150, 0.045), *options, friction=(0.6, 0.4, 3.0)), 40)
 
     def test_noisy_points(self):
         hands = [(0.065 - 0.02 * math.sin(math.pi * k / 99), 4e-3 * k / 99, 2e-3) for k in range(100)]
