@@ -4,6 +4,7 @@ import math
 import random
 
 from dual import Dual, smax, smin
+from faces import Faces
 from picture import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, RED, Panel, Picture, level_lines
 from surface import Surface, dot, minus, plane_sum, plus, unit, wyvill
 
@@ -174,17 +175,14 @@ def ways(across, down, sign):
     """(name, height(x), colour, width): all points in one sum, a height for each face, and points that know both planes."""
     upward, aside = [(0.0, float(sign))] * len(across), [(float(sign), 0.0)] * len(down)
     both = made(across + down, upward + aside)
-    first, second = made(across, upward), made(down, aside)
+    faces = Faces(across + down, upward + aside, both.radii, both.confidences, [False] * len(across) + [True] * len(down), sign > 0)
 
     def one_sum(x):
         return height_or(both, both.sums(x))
 
     def labels(x):
-        a, b = (s.sums(x) for s in (first, second))
-        if a[0].v < 0.02 or b[0].v < 0.02:
-            return height_or(first, a) if a[0].v > b[0].v else height_or(second, b)
-        heights = [Dual(height_or(s, m), []) for s, m in ((first, a), (second, b))]
-        return (smax(*heights, Dual(0.2, [])) if sign > 0 else smin(*heights, Dual(0.1, []))).v
+        faces.at = x
+        return height_or(faces, faces.sums(x))
 
     def planes(x):
         own, other = Dual(sign * x[1], []), Dual(sign * x[0], [])

@@ -154,6 +154,12 @@ def spacings(points):
     return result
 
 
+def support_radii(points, spacing):
+    """R_i of 5.3 without noise."""
+    radii = [2.5 * s for s in spacing]
+    return [min(radii[j] + length(minus(p, points[j])) / 2 for j in range(len(points))) for p in points]
+
+
 def eigen(matrix):
     """(value, vector) of a symmetric matrix, the least value first: Jacobi's rotations."""
     size = len(matrix)
@@ -204,8 +210,7 @@ def agree(points, normals, radii, eye):
 
 def prepare(points, eye):
     """Surface points of a clean cloud of one smooth surface (5.1, 5.3, 2.2, 5.5, 5.6), which the eye sees from outside."""
-    radii = [2.5 * s for s in spacings(points)]
-    radii = [min(radii[j] + length(minus(p, points[j])) / 2 for j in range(len(points))) for p in points]
+    radii = support_radii(points, spacings(points))
     fits = [normal_and_confidence(points, p, 1.15 * radius) for p, radius in zip(points, radii)]
     normals = agree(points, [n for n, _ in fits], radii, eye)
     return Surface(points, normals, radii, confidences=[c for _, c in fits])

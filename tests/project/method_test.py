@@ -13,6 +13,7 @@ import unittest
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "drawings"))
+from faces import prepare_faces  # noqa: E402
 from proxy import Proxy  # noqa: E402
 from surface import length, minus, prepare  # noqa: E402
 
@@ -49,8 +50,14 @@ def waves(side, spacing):
     return [[x, y, 3e-3 * math.sin(60 * x) * math.cos(40 * y)] for x, y in places]
 
 
+def floor_and_wall(side, spacing, up):
+    """A floor, and a wall that meets it at a right angle: above it (up 1) or below (-1)."""
+    along = [[spacing * (i + 0.5), spacing * (j - side / 2 + 0.5)] for i in range(side) for j in range(side)]
+    return [[-a, b, 0.0] for a, b in along] + [[0.0, b, up * a] for a, b in along]
+
+
 class Method(unittest.TestCase):
-    def compare(self, points, hands, *options, kind="balanced", tool=0.0, friction=(0.0, 0.0, 0.0)):
+    def compare(self, points, hands, *options, kind="balanced", tool=0.0, friction=(0.0, 0.0, 0.0), prepared=prepare):
         """Steps both through the hand's positions; returns how many of the program's touched."""
         with tempfile.TemporaryDirectory() as folder:
             cloud, way, log = (f"{folder}/{name}" for name in ("cloud.txt", "way.csv", "log.csv"))
@@ -62,7 +69,7 @@ class Method(unittest.TestCase):
             with open(log, encoding="utf-8") as file:
                 steps = list(csv.DictReader(file))
         self.assertEqual(len(steps), len(hands))
-        surface = prepare(points, hands[0])
+        surface = prepared(points, hands[0])
         surface.kind, surface.tool = kind, tool
         proxy = Proxy(surface, friction=friction)
         for k, (hand, step) in enumerate(zip(hands, steps)):
@@ -75,6 +82,17 @@ class Method(unittest.TestCase):
 
     def test_a_hand_that_presses_strokes_and_leaves_a_ball(self):
         self.assertGreater(self.compare(ball(300, 0.05), over_a_ball(150, 0.045)), 40)
+
+    def test_a_hand_that_goes_over_an_edge_and_down(self):
+        hands = []
+        for k in range(150):
+            over, back, down = min(1, k / 50), min(1, max(0, (k - 50) / 20)), max(0, (k - 70) / 80)
+            hands.append((-0.01 + 0.02 * over - 0.014 * back, 3e-3, 5e-3 - 0.012 * min(1, max(0, (k - 20) / 30)) - 0.02 * down))
+        self.assertGreater(self.compare(floor_and_wall(12, 4e-3, -1), hands, prepared=prepare_faces), 60)
+
+    def test_a_hand_that_goes_into_a_crease_and_up(self):
+        hands = [(-0.03 + 0.034 * min(1, k / 75), 3e-3, 0.01 - 0.013 * min(1, k / 20) + 0.02 * max(0, (k - 75) / 75)) for k in range(150)]
+        self.assertGreater(self.compare(floor_and_wall(12, 4e-3, 1), hands, prepared=prepare_faces), 100)
 
     def test_other_fields_and_a_tool(self):
         points, hands = ball(300, 0.05), over_a_ball(60, 0.045)
