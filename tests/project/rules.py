@@ -304,6 +304,29 @@ def documents(root):
                 yield f"{path.relative_to(root)}:{number}: docs/method.md has no section {section}"
 
 
+def refinements(root):
+    """Rows of docs/refinements.md name sources and tests that are there."""
+    path = root / "docs" / "refinements.md"
+    cases = set()
+    for test in sources(root, ("tests",)):
+        for suite, case in re.findall(r"^TEST(?:_[FP])?\((\w+),\s*(\w+)\)", test.read_text(encoding="utf-8"), re.MULTILINE):
+            cases |= {f"{suite}.{case}", f"{suite}.*"}
+    names = [source.relative_to(root).as_posix() for source in sources(root, ("src",))]
+    for number, line in enumerate(lines(path) if path.exists() else [], 1):
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if not line.startswith("|") or cells[0] == "refinement" or set(line) <= set("|-"):
+            continue
+        if len(cells) != 5 or not all(cells):
+            yield f"docs/refinements.md:{number}: give name, what it mends, section and source, test, and price"
+            continue
+        for name in re.findall(r"`([\w/]+\.(?:cpp|hpp|inl))`", cells[2]):
+            if not any(source.endswith("/" + name) for source in names):
+                yield f"docs/refinements.md:{number}: there is no source {name}"
+        for name in re.findall(r"`(\w+\.(?:\w+|\*))`", cells[3]):
+            if name not in cases:
+                yield f"docs/refinements.md:{number}: there is no test {name}"
+
+
 def text_lines(root):
     """All lines of what is written by hand, but of the tests of these rules."""
     for folder in (*SOURCE_FOLDERS, "cmake", "scripts", "web"):
@@ -318,7 +341,7 @@ def text_lines(root):
 RULES = {rule.__name__: rule
          for rule in (floors, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
-                      public_face, readme, links, documents)}
+                      public_face, readme, links, documents, refinements)}
 
 
 def main():

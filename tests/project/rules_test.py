@@ -167,6 +167,13 @@ class Rules(unittest.TestCase):
             self.assertEqual(len(self.found(rules.documents, {**files, "src/io/a.hpp": line})),
                              count, line)
 
+    def test_a_refinement_without_source_or_test_is_found(self):
+        head = "| refinement | mends | section; source | test | price |\n|---|---|---|---|---|\n"
+        files = {"src/field/a.cpp": "", "tests/field/a_test.cpp": "TEST(Edges, AreSharp) {\n}\nTEST_P(Of, Them) {\n}\n"}
+        for row, count in (("| a | b | 2.8; `a.cpp` | `Edges.AreSharp`, `Of.*` | +3 |", 0), ("| a | b | 2.8; `b.cpp` | `Edges.*` | +3 |", 1),
+                           ("| a | b | 2.8; `a.cpp` | `Edges.AreRound` | +3 |", 1), ("| a | b | 2.8; `a.cpp` | `Edges.*` | |", 1)):
+            self.assertEqual(len(self.found(rules.refinements, {**files, "docs/refinements.md": head + row + "\n"})), count, row)
+
 
 if __name__ == "__main__":
     unittest.main()
