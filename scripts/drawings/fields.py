@@ -6,6 +6,7 @@ import random
 from dual import Dual, smax, smin
 from faces import Faces
 from picture import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, RED, Panel, Picture, level_lines
+from sources import Sources
 from surface import Surface, dot, minus, plane_sum, plus, unit, wyvill
 
 COLORS = {"metaball": ORANGE, "point-set": GREEN, "IMLS": PURPLE, "balanced": BLUE}
@@ -223,6 +224,35 @@ def sides():
     return picture
 
 
+def sources():
+    picture = Picture(760, 330, "Two sources of one surface")
+    left = Panel(picture, (70, 40, 290, 220), (-1.6, 1.6), (-0.45, 0.55), "two scans that lie 0.15 R apart")
+    left.axes("x, R", "height, R", (-1, 0, 1), (-0.4, -0.2, 0, 0.2, 0.4))
+    scans = [[(x0 + spacing * k, y) for k in range(count)] for x0, y, spacing, count in ((-2.6, 0.0, 0.4, 8), (-0.45, 0.15, 0.3, 11))]
+    parts = [made(points, [(0.0, 1.0)] * len(points), radius=2.5 * spacing) for points, spacing in zip(scans, (0.4, 0.3))]
+    for shifted, color in ((False, GREY), (True, BLUE)):
+        lines = zero(Sources(parts, shifted), left.x, left.y)
+        left.lines([line for line in lines if max(y for _, y in line) > -0.1], color)
+    for points, color in zip(scans, (ORANGE, GREEN)):
+        left.dots(points, color, 4)
+    left.legend([("all points alike", GREY, ""), ("by source", BLUE, "")], down=180)
+    right = Panel(picture, (450, 40, 290, 220), (1, 8), (0.4, 0.9), "a metaball that n cameras see alike")
+    right.axes("n", "height of its surface, R", (1, 2, 4, 6, 8), (0.4, 0.5, 0.6, 0.7, 0.8))
+    for words, power, color in (("weights added", 1.0, GREY), ("W of 2.9", 0.25, BLUE)):
+        right.line([(n, offset(0.4 / n ** power)) for n in (1 + 0.25 * k for k in range(29))], color)
+        right.text(4, offset(0.4 / 4 ** power), words, color, up=16)
+    return picture
+
+
+def offset(level):
+    """The height at which the weight over a plane is `level`."""
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if plane_sum(middle) > level else (low, middle)
+    return low
+
+
 def eye():
     picture = Picture(760, 330, "A surface that one eye saw holds towards that eye")
     x, y = (-1.8, 1.8), (-1.3, 1.3)
@@ -257,4 +287,4 @@ def seen(surface, x, watcher):
     return max(here.value, -0.1 - dot(here.gradient, towards) / slope / math.hypot(*towards))
 
 
-DRAWINGS = {"kernels": kernels, "fields": four_fields, "cap": cap, "sides": sides, "edges": edges, "eye": eye}
+DRAWINGS = {"kernels": kernels, "fields": four_fields, "cap": cap, "sides": sides, "edges": edges, "sources": sources, "eye": eye}

@@ -101,17 +101,21 @@ class Surface:
         filled = 0.2 * radius * step(0.7 - square, 0, 0.7) * step(hollow, 0, 0.01)
         return 0.5 * (imls - along) - filled, radius
 
+    def united(self, plain):
+        """W: for one source the plain sum."""
+        return plain
+
     def sample(self, x):
         sums = self.sums(x)
-        weight = sums[0]
-        if weight.v < 1e-12:
+        plain = sums[0]
+        if plain.v < 1e-12:
             return Sample(0.35 * self.smallest, [0.0] * len(x), 0.0, self.smallest)
-        radius = sums[1] / weight
+        radius, weight = sums[1] / plain, self.united(plain)
         scale = radius * (0.35 / WMIN)
         out = OFFSET + self.tool / radius
         value = scale * (plane_sum(out if out.v < 0.85 else Dual(0.85, [0.0] * len(x))) - weight)
-        trust = step(sums[2] / weight, 0.25, 0.3)
-        if self.kind != "metaball" and sums[2].v > 1e-9 * weight.v:
+        trust = step(sums[2] / plain, 0.25, 0.3)
+        if self.kind != "metaball" and sums[2].v > 1e-9 * plain.v:
             height, _ = self.height(sums)
             capped = smax(height - self.tool, scale * (WMIN - weight), 0.1 * radius)
             value = trust * capped + (1 - trust) * value

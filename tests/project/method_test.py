@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "drawings"))
 from faces import prepare_faces  # noqa: E402
 from proxy import Proxy  # noqa: E402
+from sources import prepare_sources  # noqa: E402
 from surface import length, minus, prepare  # noqa: E402
 
 SAME_FORCE = 0.01  # N
@@ -60,11 +61,13 @@ class Method(unittest.TestCase):
     def compare(self, points, hands, *options, kind="balanced", tool=0.0, friction=(0.0, 0.0, 0.0), prepared=prepare):
         """Steps both through the hand's positions; returns how many of the program's touched."""
         with tempfile.TemporaryDirectory() as folder:
-            cloud, way, log = (f"{folder}/{name}" for name in ("cloud.txt", "way.csv", "log.csv"))
-            pathlib.Path(cloud).write_text("".join("{:.9f} {:.9f} {:.9f}\n".format(*p) for p in points), encoding="utf-8")
+            clouds = [f"{folder}/cloud{k}.txt" for k in range(len(points) if prepared is prepare_sources else 1)]
+            for cloud, column in zip(clouds, points if prepared is prepare_sources else [points]):
+                pathlib.Path(cloud).write_text("".join("{:.9f} {:.9f} {:.9f}\n".format(*p) for p in column), encoding="utf-8")
+            way, log = f"{folder}/way.csv", f"{folder}/log.csv"
             rows = "".join("{:.3f},{:.12f},{:.12f},{:.12f}\n".format(k * 1e-3, *h) for k, h in enumerate(hands))
             pathlib.Path(way).write_text("t,hip_x,hip_y,hip_z\n" + rows, encoding="utf-8")
-            subprocess.run([os.environ["PALPATE_PROGRAM"], "touch", cloud, "--trajectory", way, "--log", log, "--simulated-time",
+            subprocess.run([os.environ["PALPATE_PROGRAM"], "touch", *clouds, "--trajectory", way, "--log", log, "--simulated-time",
                             "--no-view", *options], check=True, capture_output=True)
             with open(log, encoding="utf-8") as file:
                 steps = list(csv.DictReader(file))
@@ -93,6 +96,13 @@ class Method(unittest.TestCase):
     def test_a_hand_that_goes_into_a_crease_and_up(self):
         hands = [(-0.03 + 0.034 * min(1, k / 75), 3e-3, 0.01 - 0.013 * min(1, k / 20) + 0.02 * max(0, (k - 75) / 75)) for k in range(150)]
         self.assertGreater(self.compare(floor_and_wall(12, 4e-3, 1), hands, prepared=prepare_faces), 100)
+
+    def test_two_scans_that_overlap_half_a_millimetre_apart(self):
+        chance = random.Random(1)
+        scans = [[[spacing * (i + 0.2 * (2 * chance.random() - 1)), spacing * (j + 0.2 * (2 * chance.random() - 1)), height]
+                  for i in range(first, first + 17) for j in range(-6, 7)] for spacing, height, first in ((4e-3, 0.0, -13), (3e-3, 5e-4, -5))]
+        hands = [(-0.03 + 0.06 * k / 149, 2e-3, 0.01 - 0.014 * min(1, k / 25)) for k in range(150)]
+        self.assertGreater(self.compare(scans, hands, prepared=prepare_sources), 100)
 
     def test_other_fields_and_a_tool(self):
         points, hands = ball(300, 0.05), over_a_ball(60, 0.045)
