@@ -68,7 +68,8 @@ export class Opening {
   }
 
   private async send(file: File): Promise<void> {
-    this.notices.add("info", `sending ${file.name}`);
+    const words = `sending ${file.name}`;
+    this.notices.add("info", words);
     const put = () => fetch(`open/${encodeURIComponent(fileName(file.name))}`,
       { method: "PUT", body: file, headers: { Authorization: `Bearer ${this.token}` } });
     const later = () => new Promise((resolve) => setTimeout(resolve, kAgain));
@@ -77,6 +78,8 @@ export class Opening {
       if (!answer.ok) this.notices.add("warning", `${file.name}: ${await answer.text()}`);
     } catch {
       this.notices.add("warning", `${file.name} could not be sent: the program does not answer, or the file cannot be read`);
+    } finally {
+      this.notices.takeBack(words);
     }
   }
 }
