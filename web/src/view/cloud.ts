@@ -68,6 +68,7 @@ export class Cloud {
   ) {
     this.points = new Points(new BufferGeometry(), makeMaterial(ramps));
     this.points.frustumCulled = false;
+    this.points.geometry.addEventListener("dispose", ({ target }) => this.dropChoice(target));
     this.points.layers.set(kCloudLayer);
     this.retint();
   }
@@ -134,8 +135,7 @@ export class Cloud {
       this.drawPart(0, this.count);
       return;
     }
-    if (this.every !== every) this.some = new BufferAttribute(Uint32Array.from({ length: Math.ceil(this.capacity / every) }, (_, i) => i * every), 1);
-    this.every = every;
+    if (this.every !== every) this.choose(every);
     geometry.setIndex(this.some!);
     this.drawPart(0, Math.ceil(this.count / every));
   }
@@ -144,11 +144,26 @@ export class Cloud {
     this.points.geometry.setDrawRange(from, count);
   }
 
+  /** The attribute stays one and the same, as a camera's clouds change in size. */
+  private choose(every: number): void {
+    this.every = every;
+    this.some ??= new BufferAttribute(new Uint32Array(Math.ceil(this.capacity / 2)), 1);
+    this.some.array.forEach((_, i, array) => (array[i] = i * every));
+    this.some.needsUpdate = true;
+  }
+
+  /** The graphics card lets go of an index only where that is the geometry's when this goes; the listener was there before the renderer's. */
+  private dropChoice(geometry: BufferGeometry): void {
+    geometry.setIndex(this.some ?? null);
+    this.some = undefined;
+    this.every = 1;
+  }
+
   private grow(count: number): void {
     this.capacity = Math.ceil(count * 1.25);
     const geometry = this.points.geometry;
     geometry.dispose();
-    this.every = 1;
+    geometry.setIndex(null);
     geometry.setAttribute("position", new BufferAttribute(new Uint16Array(3 * this.capacity), 3, true));
     geometry.setAttribute("own", new BufferAttribute(new Uint8Array(3 * this.capacity), 3, true));
     geometry.setAttribute("bend", new BufferAttribute(new Int8Array(2 * this.capacity), 2, true));
