@@ -220,7 +220,7 @@ export class App {
     if (again || !this.linked) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     this.linked = applyLink(this.link, welcome.settings, set, (text) => this.notices.add("warning", text));
-    history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
+    if (!this.linked) history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }
 
   private takeBinary(message: BinaryMessage): void {
@@ -241,8 +241,8 @@ export class App {
       this.world.takeState(message);
       if (message.device === this.hand.device) this.stroke.update(now);
       if (message.device !== this.session.device) return;
-      this.readout.begin(this.session.welcome?.devices[message.device]?.scale ?? 1);
-      this.readout.note(tool, now, this.hand.held && !this.stroke.content, this.stroke.nothing);
+      this.readout.begin(this.session.welcome?.devices[message.device]?.scale ?? 1, this.session.motors);
+      this.readout.note(tool, now, this.stroke.nothing);
       this.sound.hear(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
       if (this.hand.held) this.rumble.feel(message, now);
     }
@@ -257,7 +257,7 @@ export class App {
     if (now - this.plotted < this.plotInterval) return;
     this.plotted = now;
     this.readout.update(this.session.tool, now, this.world.tools[this.session.device]?.height, Number(this.session.values.get("stiffness")));
-    this.settings.watch(this.session.tool, now);
+    this.settings.watch(this.session, now);
     this.bar.update();
     this.hold.update();
     this.plots.update(now, this.world.stage.slow);

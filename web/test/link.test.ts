@@ -50,6 +50,17 @@ test("what begins the run anew is set first and alone, and once", () => {
   assert.deepEqual(asked, [[kNumber.key, 700]]);
 });
 
+test("while there is nothing to set, a link waits", () => {
+  const link = readLink("#t&k=700");
+  const asked: unknown[] = [];
+  const apply = (now: Setting[]) => applyLink(link, now, (key, value) => asked.push([key, value]), (text) => asked.push(text));
+  assert.equal(apply([]), true, "clouds are still read");
+  assert.deepEqual(asked, []);
+  assert.equal(apply([kNumber]), false);
+  assert.deepEqual(asked, [["k", 700]]);
+  assert.equal(applyLink(readLink("#t"), [], () => undefined, () => undefined), false, "there is nothing to wait for");
+});
+
 test("waiting doubles up to its bound, scattered, and begins anew", () => {
   const slow = new Backoff(() => 1);
   assert.deepEqual(Array.from({ length: 7 }, () => slow.next()), [0.5, 1, 2, 4, 8, 10, 10]);

@@ -33,7 +33,7 @@ export class Stroke {
   private at: Vector2 | undefined; // the pointer in the picture, -1 to 1
   private finger = false;
   private pressing = false;
-  content = false; // presses, and feels about the force that is wanted
+  private content = false; // presses, and feels about the force that is wanted
   led = false; // by a tour, not by a pointer
   private misses = 0; // of a press, which went through what is seen
   private sunk = false; // too deep in what is soft; until it is out of it

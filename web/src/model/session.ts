@@ -112,4 +112,9 @@ export class Session {
   get tool(): DeviceHistory | undefined {
     return this.devices[this.device];
   }
+
+  /** Is the tool in a hand that motors push, which no page takes? In contact it gets stiffer only as far as motion pays for it. */
+  get motors(): boolean {
+    return this.welcome?.devices[this.device]?.takeable === false;
+  }
 }

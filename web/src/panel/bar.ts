@@ -58,8 +58,7 @@ export class Bar {
     this.nameScene();
     const paused = this.session.tool?.has("paused") ?? false;
     this.press("pause", paused, paused ? "play" : "pause", paused ? "Resume" : "Pause");
-    const takeable = this.session.welcome?.devices[this.session.device]?.takeable ?? true;
-    byId("pause").classList.toggle("needed", paused || !takeable); // on the simple page
+    byId("pause").classList.toggle("needed", paused || this.session.motors); // on the simple page
     byId("reset").classList.toggle("needed", this.session.tool?.has("fault") ?? false);
     byId("follow").setAttribute("aria-pressed", String(this.world.followed !== undefined));
     const open = byId("link-state").dataset["phase"] === "open";

@@ -37,8 +37,8 @@ export class NextRun {
       this.ask(settings);
     };
     const answer: Set = (key, value) => {
-      done();
-      this.set(key, value);
+      if (value === setting.value) done();
+      else this.set(key, value); // it stays until a run is in that unit: the file may be gone
     };
     const close = make("button", { type: "button", class: "close", "aria-label": "Dismiss", click: done }, "×");
     card.replaceChildren(make("span", {}, setting.question ?? ""), ...buttons(setting, answer), close);

@@ -20,7 +20,7 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: st
   thinned: ["warning", "points skipped: too many near the tool", "Some were skipped to keep the servo rate"],
 };
 const kInner = new Set<Name>(["slewed", "braked", "thinned"]); // of the servo: nothing that a first visit can act on
-const kLift = "lift the tool to feel full force again"; // where the tool is this page's
+const kLift = "lift the tool to feel full force again"; // where motors push
 const kLarge = 2; // below it the hand's own depth says little more
 const kFull = 0.95; // of the stiffness
 const kLinger = 700; // ms that a flag stays readable
@@ -31,7 +31,7 @@ export class Readout {
   private readonly touch = byId("touch");
   private readonly lift = byId("lift");
   private softUntil = 0; // in contact a device's force comes back no further than motion pays for it
-  private held = false;
+  private motors = false;
   private nothing = false;
   private height: number | undefined;
   private scale = 1; // world metres of a metre of the hand
@@ -51,17 +51,17 @@ export class Readout {
     byId("flags").replaceChildren(...[...this.flags.values()].map(({ element }) => element));
   }
 
-  /** For every state, so that short flags are seen too. held: by this page; nothing: is felt where it presses. */
-  note(tool: DeviceHistory, now: number, held: boolean, nothing: boolean): void {
+  /** For every state, so that short flags are seen too. nothing: is felt where it presses. */
+  note(tool: DeviceHistory, now: number, nothing: boolean): void {
     for (const [name, flag] of this.flags) if (tool.has(name)) flag.until = now + kLinger;
-    this.held = held;
     this.nothing = nothing;
     if (tool.has("touching") && (tool.has("starting") || tool.has("softer"))) this.softUntil = now + kLinger;
   }
 
-  /** Of the device that is shown. */
-  begin(scale: number): void {
+  /** Of the device that is shown. motors: it is in a hand that they push. */
+  begin(scale: number, motors: boolean): void {
     this.scale = scale;
+    this.motors = motors;
   }
 
   /** height: of a free hand above the surface, m; stiffness: of the surface, N/m. */
@@ -70,7 +70,7 @@ export class Readout {
     const state = tool?.latest;
     for (const { element, until } of this.flags.values()) element.hidden = until < now;
     const soft = now < this.softUntil && state !== undefined ? softness(state, stiffness) : "";
-    say(this.lift, soft === "" || !this.held ? soft : `${soft}; ${kLift}`);
+    say(this.lift, soft === "" || !this.motors ? soft : `${soft}; ${kLift}`);
     if (tool === undefined || state === undefined) {
       say(this.touch, "no tool yet");
       return;

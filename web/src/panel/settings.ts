@@ -1,11 +1,11 @@
 // Controls for what `welcome` says can be set, and the presets.
 
-import type { DeviceHistory } from "../model/session";
+import type { Session } from "../model/session";
 import type { Setting, SettingValue } from "../protocol/messages";
 import { byId, make, say } from "./dom";
 import { fieldRow, type FieldRow } from "./field";
 
-const kSofter = "currently softer: stiffness rises only with motion in contact; lift and touch again";
+const kSofter = "currently softer: stiffness rises only with motion in contact; lift and touch again"; // where motors push
 const kUnit = "unit."; // of a source
 const kLinger = 700; // ms that it stays readable
 
@@ -43,8 +43,8 @@ export class SettingsPanel {
   }
 
   /** Says where what is asked for is not felt yet. */
-  watch(tool: DeviceHistory | undefined, now: number): void {
-    if (tool?.has("softer")) this.until = now + kLinger;
+  watch({ tool, motors }: Session, now: number): void {
+    if (motors && tool?.has("softer")) this.until = now + kLinger;
     say(this.softer, now < this.until ? kSofter : "");
   }
 

@@ -40,11 +40,12 @@ export function settingFromText(setting: Setting, text: string): SettingValue | 
 }
 
 /** Sets what a link asks for, and says what it cannot. What begins the run anew comes first and alone: true, and the rest
- * of the link is to be set in that run. */
+ * of the link is to be set in that run; so is all of it where there are no settings, as while clouds are read. */
 export function applyLink(
   link: Link, settings: readonly Setting[],
   set: (key: string, value: SettingValue) => void, warn: (text: string) => void,
 ): boolean {
+  if (settings.length === 0) return link.values.size > 0;
   const wanted = [...link.values].map(([key, text]) => {
     const setting = settings.find((one) => one.key === key);
     return { key, text, setting, value: setting === undefined ? undefined : settingFromText(setting, text) };

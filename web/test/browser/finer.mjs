@@ -81,22 +81,23 @@ test("a number field takes any value within its bounds and shows the one that ho
     assert.equal(stiffness(), 512.25);
   }));
 
-test("a stiffness that is asked for in contact and not felt yet is said beside it", () =>
+test("where motors push, a stiffness that is asked for in contact and not felt yet is said beside it", () =>
   withPage(kSmall, async (page, program) => {
     const softer = page.locator("#settings [role=status]");
-    await page.keyboard.press("t");
-    await until("held", () => program.servo.taken);
-    await page.keyboard.down("ArrowDown");
+    program.servo.exploring = () => [0.05, 0.1, -0.004];
     await until("in contact", () => program.servo.contact !== undefined);
-    await page.keyboard.up("ArrowDown");
-    assert.equal(await softer.innerText(), "");
-    await page.getByRole("spinbutton", { name: "Stiffness" }).fill("900");
-    await page.keyboard.press("Enter");
+    const stiffen = async (stiffness) => {
+      await page.getByRole("spinbutton", { name: "Stiffness" }).fill(stiffness);
+      await page.keyboard.press("Enter");
+      await until("softer", () => program.servo.felt < 0.9 * program.servo.stiffness);
+    };
+    await stiffen("900");
+    await page.waitForTimeout(500);
+    assert.equal(await softer.innerText(), "", "of a page's hand it is over at once");
+    program.motors = true;
+    program.beginAnew();
     await until("said", async () => /lift and touch again/.test(await softer.innerText()));
-    await page.focus("#view");
-    await page.keyboard.down("ArrowUp");
-    await until("lifted", () => program.servo.contact === undefined);
-    await page.keyboard.up("ArrowUp");
+    program.servo.exploring = () => [0.05, 0.1, 0.1];
     await until("no more", async () => (await softer.innerText()) === "");
   }));
 
@@ -226,14 +227,14 @@ test("two hands are told apart, and why one is silent is said", async () => {
   await server.close();
 });
 
-test("after the watchdog it is said beside the force how soft it is, and that the tool has to be lifted", () =>
+test("after the watchdog it is said beside the force how soft it is, and that what motors push has to be lifted", () =>
   withPage(kSmall, async (page, program) => {
     program.servo.exploring = () => [0.05, 0.1, -0.004];
     await until("in contact", () => program.servo.contact !== undefined);
     program.servo.starting = true;
     await until("said", async () => /^soft: \d+ %$/.test(await text(page, "#lift")));
-    await page.focus("#view");
-    await page.keyboard.press("t");
+    program.motors = true;
+    program.beginAnew();
     await until("said", async () => /^soft: \d+ %; lift the tool to feel full force again$/.test(await text(page, "#lift")));
     program.servo.starting = false;
     await until("gone", async () => (await text(page, "#lift")) === "");

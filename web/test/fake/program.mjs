@@ -49,6 +49,7 @@ export class FakeProgram {
     this.run = "first";
     this.opens = anew ? 2 ** 30 : undefined; // bytes
     if (anew) this.settings.push(...kAnew.map((one) => ({ ...one })));
+    this.motors = false; // does the tool have them? Then no page takes it
     this.length = length; // s, of a recording that is shown; undefined: a run
     this.moment = { time: 0, playing: false, speed: 1 };
     this.still = still;
@@ -158,10 +159,16 @@ export class FakeProgram {
   welcome() {
     return {
       type: "welcome", version: 2, run: this.run, ...(this.opens === undefined ? {} : { opens: this.opens }), scene: "table with a ball", origin: [0, 0, 0], up: [0, 0, 1], radius: 0.35,
-      devices: [{ name: "simulated", takeable: this.length === undefined }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
+      devices: [{ name: "simulated", takeable: this.length === undefined && !this.motors }, ...(this.hands > 1 ? [{ name: "remote", takeable: false }] : [])], sources: kCameras.map(({ name }) => ({ name, camera: !this.still })),
       ...(this.length === undefined ? { settings: this.settings, presets: Object.keys(kPresets) }
         : { settings: [], presets: [], timeline: { length: this.length } }),
     };
+  }
+
+  /** The next run, on the same connection. */
+  beginAnew() {
+    this.run += " and again";
+    this.tell(this.welcome());
   }
 
   set(key, value) {
