@@ -9,12 +9,15 @@ import type { Stroke } from "./stroke";
 
 const kGrasp = 24; // pixels around the hand
 const kFinger = 40;
+const kStill = 4; // pixels, below which a press was no drag
 const kNotch = 0.012; // of the distance, a notch of the wheel
 
 export class PointerInput {
   private inPlane = false; // it moves in the plane that faces the eye
   private pointer: number | undefined; // that drags the hand
   private touches = new Set<number>();
+  private began: Vector2 | undefined; // where a press beside the surface did, pixels
+  missed = -Infinity; // ms, when such a press ended that was no drag
   private readonly offset = new Vector3();
   private readonly ray = new Raycaster();
 
@@ -54,6 +57,7 @@ export class PointerInput {
     const two = this.touches.size > 1; // fingers turn the view
     this.world.navigation.turnByDrag(!mine && !(this.free ? this.hand.held && this.touches.size > 0 : two));
     if (this.touches.size > 1) this.drag(undefined);
+    this.began = plain && !mine && !this.free && this.touches.size <= 1 && this.takeable() ? new Vector2(event.clientX, event.clientY) : undefined;
     if (!mine) return;
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
@@ -85,6 +89,8 @@ export class PointerInput {
 
   private end(event: PointerEvent): void {
     this.touches.delete(event.pointerId);
+    if (this.began !== undefined && Math.hypot(event.clientX - this.began.x, event.clientY - this.began.y) < kStill) this.missed = performance.now();
+    this.began = undefined;
     if (event.pointerId === this.pointer) this.drag(undefined);
   }
 

@@ -13,6 +13,7 @@ import { recall, remember } from "../model/memory";
 import type { Notices } from "./notices";
 
 const kColours = ["red", "blue", "violet", "purple"]; // --hand-0 and those after it
+const kSaid = 3000; // ms
 const kCoarse = matchMedia("(pointer: coarse)");
 
 export class HoldPanel {
@@ -152,6 +153,8 @@ export class HoldPanel {
 
   private hint(): string {
     const free = this.pointer?.free === true;
+    const around = `drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
+    if (performance.now() < (this.pointer?.missed ?? -Infinity) + kSaid) return `No surface here: nothing was seen; ${around}`;
     if (this.hand.held && free) {
       return kCoarse.matches
         ? "One finger moves the tool, two turn the view"
@@ -163,7 +166,7 @@ export class HoldPanel {
       return this.session.tool.report.status === "silent" ? "The device of this tool is not responding" : "A device moves this tool";
     }
     if (!this.hand.held && this.session.tool.has("taken")) return "Another page holds the tool; press on the surface to take it over";
-    if (!free) return `Press on the surface to touch it; drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
+    if (!free) return `Press on the surface to touch it; ${around}`;
     const colour = kColours[this.session.device % kColours.length];
     return `Drag the ${colour} hand to touch` + (kCoarse.matches ? "" : "; drag elsewhere to look around");
   }

@@ -13,6 +13,7 @@ import { kCloudLayer } from "./layers";
 
 const kStill = 120; // ms of a still eye, before its picture becomes sharp (judgement)
 const kSharp = 8; // pictures with places in a pixel that the sharp one is the mean of
+const kAtOnce = 4; // that are enough where each pixel of the screen is four
 const kQuick = 20; // ms between two frames: a larger part is drawn in the next;
 const kSlow = 50; // a smaller one; but it ends where the machine is busy, too:
 const kLeastEffort = 1 / 6;
@@ -148,6 +149,14 @@ export class Backdrop {
     this.drawShade(renderer, camera, wanted, this.quick, 0);
     this.show(this.quick);
     return true;
+  }
+
+  /** The rest of the sharp picture, at once, for twice the screen's size. */
+  finish(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, wanted: Wanted): void {
+    const { effort } = this;
+    this.effort = 1;
+    while (this.progress.pictures < kAtOnce) this.refine(renderer, scene, camera, wanted);
+    this.effort = effort;
   }
 
   /** A part of the sharp picture: of the points of the next one that it is the mean of, or of its rows. */

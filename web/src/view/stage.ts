@@ -4,7 +4,7 @@
 import {
   DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from "three";
-import { Backdrop, type Caster } from "./backdrop";
+import { Backdrop, type Caster, type Wanted } from "./backdrop";
 import { captioned } from "./caption";
 import { colourOf } from "./colours";
 import type { Graphics } from "./graphics";
@@ -18,6 +18,7 @@ const kRest = 300; // ms between two pictures of clouds that change, where drawi
 const kPeriod = 100; // elsewhere: the program sends no more
 const kMost = 40_000; // points of a picture while the eye moves, where the processor draws: 0.8 us each (measured)
 const kQuickSharpness = 0.5; // pixels drawn for one of the style sheet while the eye moves, where the processor draws
+const kLargest = 4096; // pixels a side of a saved picture, as wide as screens are
 const kSamples = 4; // of a pixel, where a graphics card draws
 
 export class Stage {
@@ -34,7 +35,7 @@ export class Stage {
   casters: Caster[] = []; // throw shadows down on clouds
   private readonly backdrop: Backdrop;
   readonly software: boolean;
-  private readonly finest: number; // pixels drawn for one of the style sheet, once the eye stands still;
+  private finest: number; // pixels drawn for one of the style sheet, once the eye stands still;
   private sharpness: number; // while it moves
   private drawn = 0; // in the canvas
   private wanted = true;
@@ -94,20 +95,21 @@ export class Stage {
     return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
-  /** What is seen, with a caption. */
+  /** What is seen, sharp and at twice the screen's size, with a caption. */
   picture(words: string, bar: ScaleBar): Promise<Blob | null> {
-    const { sharpness } = this;
-    if (!this.backdrop.isSharp) this.sharpness = Math.max(1, sharpness); // it may be looked at for longer
-    this.wanted = true; // a canvas keeps its picture only until it is shown
+    const { sharpness, finest } = this;
+    this.finest = this.sharpness = Math.max(1, Math.min(2 * finest, kLargest / Math.max(this.width, this.height)));
     this.resize();
+    this.backdrop.finish(this.renderer, this.scene, this.camera, this.sought());
+    this.paint(); // a canvas keeps its picture only until it is shown
     const picture = captioned(this.canvas, this.canvas.width / this.width, words, bar);
-    this.sharpness = sharpness;
-    this.wanted = true;
+    Object.assign(this, { sharpness, finest });
     this.resize();
     return new Promise((resolve) => picture.toBlob(resolve, "image/png"));
   }
 
   private resize(): void {
+    this.wanted = true;
     this.width = Math.max(1, this.canvas.clientWidth);
     this.height = Math.max(1, this.canvas.clientHeight);
     this.drawn = 0;
@@ -136,9 +138,17 @@ export class Stage {
     this.beforeDraw(now);
     if (!this.wanted) return;
     this.wanted = false;
-    const { width, height, shown, clouds, grain, sharpness, finest } = this;
-    const more = this.backdrop.update(this.renderer, this.scene, this.camera, { width, height, shown, clouds, grain, sharpness, finest, rest: this.slow ? kRest : kPeriod });
+    const more = this.backdrop.update(this.renderer, this.scene, this.camera, this.sought());
     this.wanted ||= more;
+    this.paint();
+  }
+
+  private sought(): Wanted {
+    const { width, height, shown, clouds, grain, sharpness, finest } = this;
+    return { width, height, shown, clouds, grain, sharpness, finest, rest: this.slow ? kRest : kPeriod };
+  }
+
+  private paint(): void {
     this.fitCanvas();
     this.backdrop.cast(this.camera, this.up, this.casters);
     this.renderer.render(this.scene, this.camera);

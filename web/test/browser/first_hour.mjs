@@ -9,6 +9,22 @@ import { picture } from "./picture.mjs";
 import { shaded, viewOf } from "./pixels.mjs";
 import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
+test("a press beside what is seen says that there is no surface; a drag turns the view and says nothing", () =>
+  withPage(kSmall, async (page) => {
+    const hint = () => text(page, "#hint");
+    const { x, y, width } = await page.locator("#view").boundingBox();
+    const beside = [x + 0.45 * width, y + 8]; // above all that is drawn
+    await page.mouse.move(...beside);
+    await page.mouse.down();
+    await page.mouse.move(beside[0] + 30, beside[1], { steps: 4 });
+    await page.mouse.up();
+    await page.waitForTimeout(300);
+    assert.match(await hint(), /^Press on the surface/);
+    await page.mouse.click(...beside);
+    await until("said", async () => /^No surface here/.test(await hint()));
+    await until("no more", async () => /^Press on the surface/.test(await hint()));
+  }));
+
 test("work under way has one notice that stays, with a percentage, until it is done", () =>
   withPage(kSmall, async (page, program) => {
     const tell = (words, share) => program.tell({ type: "notice", level: "info", text: words, share });

@@ -5,6 +5,7 @@ import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
+import { picture } from "./picture.mjs";
 import { dark, vivid } from "./pixels.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./anew.mjs";
@@ -187,7 +188,7 @@ test("sound is off until it is asked for, and can be put off again", () =>
     await until("off", async () => (await on()) === "false");
   }));
 
-test("a picture is saved that says what is felt", () =>
+test("a picture is saved, sharp and at twice the screen's size, that says what is felt", () =>
   withPage(kSmall, async (page) => {
     await until("force", async () => Number(await text(page, "#force")) > 0);
     const download = page.waitForEvent("download");
@@ -195,8 +196,15 @@ test("a picture is saved that says what is felt", () =>
     const file = await download;
     assert.match(file.suggestedFilename(), /^palpate_table_with_a_ball_.*\.png$/);
     const saved = await readFile(await file.path());
-    assert.ok(await dark(page, saved, [16, -62, 160, 16]) > 0.05, "words");
-    assert.ok(await dark(page, saved, [16, -20, 60, 8]) > 0.05, "scale");
+    const shown = await page.evaluate(() => [document.getElementById("view").clientWidth, document.getElementById("view").clientHeight]);
+    assert.deepEqual([saved.readUInt32BE(16), saved.readUInt32BE(20)], shown.map((side) => 2 * side), "of a PNG's header");
+    assert.ok(await dark(page, saved, [32, -124, 320, 32]) > 0.05, "words");
+    assert.ok(await dark(page, saved, [32, -40, 120, 16]) > 0.05, "scale");
+    await picture(page, "after-a-saved-picture");
+    await until("the view is as it was", () => page.evaluate(() => {
+      const canvas = document.getElementById("view");
+      return canvas.width <= canvas.clientWidth;
+    }));
   }));
 
 test("a link brings its settings, says what it cannot, and a link gives them back", async () => {
