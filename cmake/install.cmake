@@ -16,13 +16,13 @@ install(TARGETS ${libraries} EXPORT palpateTargets
 install(DIRECTORY include/palpate DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT palpateTargets NAMESPACE palpate:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 
-# What static libraries are made with, those who link them need, too: pkg-config --static palpate.
+# What static libraries are made with, those who link them need, too, whether or not they ask pkg-config for --static.
 set(PALPATE_SHARED OFF)
 if(BUILD_SHARED_LIBS)
   set(PALPATE_SHARED ON)
 else()
-  set(PALPATE_PRIVATE_MODULES "tbb fmt zlib spng pugixml libbrotlidec libzstd liblz4 tomlplusplus")
-  set(PALPATE_PRIVATE_LIBRARIES "-lstdc++ -pthread -ldl ${PALPATE_DRIVER_LIBRARIES} ${PALPATE_DDS_LINK}")
+  set(PALPATE_STATIC_MODULES "tbb fmt zlib spng pugixml libbrotlidec libzstd liblz4 tomlplusplus")
+  set(PALPATE_STATIC_LIBRARIES "-lstdc++ -pthread -ldl ${PALPATE_DRIVER_LIBRARIES} ${PALPATE_DDS_LINK}")
 endif()
 file(RELATIVE_PATH PALPATE_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/palpate.pc.in palpate.pc @ONLY)
