@@ -24,8 +24,9 @@ constexpr double kNews = 0.5;  // s between two envelopes while the file is read
 
 Playback::Playback(const std::string& path)
     : run_(path), envelope_(kEnvelope, 0.0F), pasts_(run_.hands.size()) {
+  moment_.time = run_.first_surface();
   for (ShownHand& hand : run_.hands) {
-    hand.seek(run_.stretch.begin);
+    hand.seek(run_.stretch.begin + moment_.time);
     fields_.push_back({FieldChange{run_.stretch.begin, hand.servo().field()}});
   }
 }

@@ -33,7 +33,8 @@ class Playback {
   static constexpr double kPast = 5;               ///< s that a hand's past goes back
   static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
 
-  /// Shows the first moment. @throws Error when the file is no recording of a run.
+  /// Shows the first moment that has a surface. @throws Error when the file is no recording of a
+  /// run.
   explicit Playback(const std::string& path);
   ~Playback();
   Playback(const Playback&) = delete;

@@ -79,8 +79,9 @@ ShownSource::ShownSource(const Recording& recording, std::size_t index, Scene& s
   stream_.state.source = source_->name();
   stream_.state.phase = StreamState::Phase::running;
   upcoming_ = next_felt();
+  begins_ = upcoming_ ? upcoming_->use.start : std::numeric_limits<double>::infinity();
   if (!upcoming_) return;
-  shown_until_ = upcoming_->use.start;
+  shown_until_ = begins_;
   prepare(*upcoming_);
 }
 
@@ -140,6 +141,13 @@ void ShownSource::prepare(const RecordedFrame& recorded) {
 ShownSource::Stream ShownSource::stream() const {
   const std::lock_guard lock(mutex_);
   return stream_;
+}
+
+double ShownRun::first_surface() const {
+  const auto first = std::ranges::min_element(sources, {}, &ShownSource::begins);
+  if (first == sources.end() || !(first->begins() <= stretch.end)) return 0;
+  constexpr double kRounding = 1e-6;  // s: a sum of times must not be before the frame
+  return std::clamp(first->begins() + kRounding - stretch.begin, 0.0, length());
 }
 
 ShownRun::ShownRun(const std::string& path) : recording(path), stretch(recording.stretch()) {

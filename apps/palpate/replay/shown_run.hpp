@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -57,6 +58,8 @@ class ShownSource {
   void show(double time);
 
   [[nodiscard]] bool lives() const { return origin_->lives; }
+  /// When its first surface was felt, s on the run's clock; infinite where none was.
+  [[nodiscard]] double begins() const { return begins_; }
   /// State and frustum of a camera.
   [[nodiscard]] Stream stream() const;
 
@@ -67,6 +70,7 @@ class ShownSource {
   Source* source_;
   const Recording::Origin* origin_;
   Recording::Frames frames_;
+  double begins_ = -std::numeric_limits<double>::infinity();
   double shown_until_ = 0;                 // frames up to that time were looked at, s
   std::optional<RecordedFrame> upcoming_;  // the first after that
   mutable std::mutex mutex_;
@@ -79,6 +83,8 @@ struct ShownRun {
   explicit ShownRun(const std::string& path);
 
   [[nodiscard]] double length() const { return stretch.end - stretch.begin; }
+  /// When there was a surface first, s from the first step on; 0 where there was none.
+  [[nodiscard]] double first_surface() const;
 
   Recording recording;
   Recording::Stretch stretch;
