@@ -85,7 +85,7 @@ All of it in one run of
 
     bench/run_all.sh
 
-What was measured while something was decided, before and after it, is in [FINDINGS.md](FINDINGS.md).
+What was measured while something was decided, before and after it, is in [notes](notes/README.md).
 
 ## Speed beside other libraries
 

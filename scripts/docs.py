@@ -32,8 +32,10 @@ REFERENCE = {"tests/apps/golden": "program", "python/palpate/__init__.pyi": "pyt
 def pages():
     """Where each document stands in the site: what is in docs/ as there, the rest beside it."""
     found = {path: path.relative_to(ROOT / "docs") for path in (ROOT / "docs").rglob("*.md")}
-    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "bench/README.md", "bench/FINDINGS.md", "bench/RESULTS.md", "web/README.md"):
+    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "bench/README.md", "bench/RESULTS.md", "web/README.md"):
         found[ROOT / name] = pathlib.Path(name)
+    for note in (ROOT / "bench" / "notes").glob("*.md"):
+        found[note] = note.relative_to(ROOT)
     return found
 
 

@@ -58,7 +58,7 @@ bool BlockFates::keep_going(std::uint32_t first, FourWays& ways) const {
 }
 
 /// Are four live points seen again within R, as they face, beside no edge? Else there is more to
-/// decide. Worth 16 to 29 % of a frame (bench/FINDINGS.md).
+/// decide. Worth 16 to 29 % of a frame (bench/notes/2026-11-25-points-in-fours.md).
 bool BlockFates::go_on(const SeenFour& seen, FourWays& ways) const {
   if (any(~seen.edges)) return false;
   const Vectors way = ways.from.position - seen.position;

@@ -44,7 +44,7 @@ class Block:
 
 def documents(root=ROOT):
     """What is written for readers."""
-    return [path for part in ("*.md", "docs/**/*.md", "bench/*.md") for path in sorted(root.glob(part))]
+    return [path for part in ("*.md", "docs/**/*.md", "bench/**/*.md") for path in sorted(root.glob(part))]
 
 
 def blocks(path):

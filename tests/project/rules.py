@@ -272,7 +272,7 @@ def readme(root):
 
 def links(root):
     """Relative links of the documents lead to files, and those of docs/ to headings that are there."""
-    for path in (path for part in ("*.md", "docs/**/*.md", "bench/*.md", "web/*.md") for path in sorted(root.glob(part))):
+    for path in (path for part in ("*.md", "docs/**/*.md", "bench/**/*.md", "web/*.md") for path in sorted(root.glob(part))):
         for target, anchor in re.findall(r"\]\(([^)#]*)(?:#([^)]*))?\)", path.read_text(encoding="utf-8")):
             there = path.parent / target if target else path
             if "://" in target or target.startswith("mailto:"):

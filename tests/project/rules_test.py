@@ -151,7 +151,7 @@ class Rules(unittest.TestCase):
         self.assertEqual(self.found(rules.readme, {"README.md": "word\n" * 120}), [])
 
     def test_a_dead_link_is_found(self):
-        for name in ("a.md", "docs/a.md", "docs/devices/a.md", "bench/a.md"):
+        for name in ("a.md", "docs/a.md", "docs/devices/a.md", "bench/a.md", "bench/notes/a.md"):
             self.assertEqual(len(self.found(rules.links, {name: "[b](b.md)\n"})), 1)
         self.assertEqual(self.found(rules.links, {"docs/a.md": "# It is: `there`\n[a](a.md#it-is-there), [a](#it-is-there)\n"}), [])
         self.assertEqual(len(self.found(rules.links, {"docs/a.md": "# There\n[a](a.md#gone)\n[b](#gone)\n"})), 2)
