@@ -327,6 +327,17 @@ def refinements(root):
                 yield f"docs/refinements.md:{number}: there is no test {name}"
 
 
+def changelog(root):
+    """Each entry of CHANGELOG.md is one line of 160 characters at most; the newest release is the project's version."""
+    head, _, entries = (root / "CHANGELOG.md").read_text(encoding="utf-8").partition("## [Unreleased]")
+    for number, line in enumerate(entries.splitlines(), head.count("\n") + 1):
+        if line.startswith(" ") or len(line) > 160:
+            yield f"CHANGELOG.md:{number}: an entry is one line of at most 160 characters"
+    newest = re.search(r"^## \[(\d[\d.]*)\]", entries, re.MULTILINE)[1]
+    if f"project(palpate VERSION {newest} " not in (root / "CMakeLists.txt").read_text(encoding="utf-8"):
+        yield f"CMakeLists.txt: the version is not {newest}, the newest release of CHANGELOG.md"
+
+
 def text_lines(root):
     """All lines of what is written by hand, but of the tests of these rules."""
     for folder in (*SOURCE_FOLDERS, "cmake", "scripts", "web"):
@@ -341,7 +352,7 @@ def text_lines(root):
 RULES = {rule.__name__: rule
          for rule in (floors, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
-                      public_face, readme, links, documents, refinements)}
+                      public_face, readme, links, documents, refinements, changelog)}
 
 
 def main():

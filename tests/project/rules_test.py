@@ -174,6 +174,14 @@ class Rules(unittest.TestCase):
                            ("| a | b | 2.8; `a.cpp` | `Edges.AreRound` | +3 |", 1), ("| a | b | 2.8; `a.cpp` | `Edges.*` | |", 1)):
             self.assertEqual(len(self.found(rules.refinements, {**files, "docs/refinements.md": head + row + "\n"})), count, row)
 
+    def test_a_long_entry_and_another_version_are_found(self):
+        head, build = "## [Unreleased]\n\n", {"CMakeLists.txt": "project(palpate VERSION 0.2.0 LANGUAGES CXX)\n"}
+        for text, count in ((head + "- a\n\n## [0.2.0] - 2026-11-21\n\n## [0.1.0] - 2026-11-20\n", 0),
+                            (head + "- a\n  goes on\n\n## [0.2.0] - 2026-11-21\n", 1),
+                            (head + "- " + "a" * 160 + "\n\n## [0.2.0] - 2026-11-21\n", 1),
+                            (head + "## [0.1.0] - 2026-11-20\n", 1)):
+            self.assertEqual(len(self.found(rules.changelog, {"CHANGELOG.md": text, **build})), count, text)
+
 
 if __name__ == "__main__":
     unittest.main()
