@@ -22,12 +22,12 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kRoom = std::size_t{64} << 20U;  // bytes, more than the clouds here have
 
-inline double height(double x, double y) {
+inline double hill_height(double x, double y) {
   return 0.03 * std::sin(9 * x) * std::cos(7 * y);
 }
 
 /// Hills over the unit square; `spacing_at` says how far apart points are.
-inline PointCloud hills(const std::function<double(double, double)>& spacing_at) {
+inline PointCloud hill_cloud(const std::function<double(double, double)>& spacing_at) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0, 1);
   PointCloud cloud;
@@ -38,14 +38,14 @@ inline PointCloud hills(const std::function<double(double, double)>& spacing_at)
       if (share(random) > 1 / (spacing * spacing)) continue;
       const double a = x + 2e-4 * share(random);
       const double b = y + 2e-4 * share(random);
-      cloud.positions.push_back(Vector3d(a, b, height(a, b)).cast<float>());
+      cloud.positions.push_back(Vector3d(a, b, hill_height(a, b)).cast<float>());
     }
   }
   return cloud;
 }
 
 inline PointCloud even() {
-  return hills([](double, double) { return 1. / 500; });
+  return hill_cloud([](double, double) { return 1. / 500; });
 }
 
 /// A store on demand in blocks a fifth of it wide, beside the same points prepared as a whole.
@@ -91,7 +91,7 @@ struct Paged {
     for (int k = 0; k < 12; ++k) {
       const double x = share(random);
       const double y = share(random);
-      const Vector3d place = options.T_world_sensor * Vector3d(100 + x, 200 + y, height(x, y));
+      const Vector3d place = options.T_world_sensor * Vector3d(100 + x, 200 + y, hill_height(x, y));
       go(place);
       SceneField all(whole);
       const Contact expected = press(all, place);

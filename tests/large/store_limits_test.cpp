@@ -95,7 +95,7 @@ std::vector<std::string> told_at(Paged& paged, const Vector3d& place) {
 
 TEST(StoreLimits, ADamagedNodeIsToldOnceItsPlaceIsMissingAndTheRestGoesOn) {
   Paged paged(even());
-  const Vector3d broken(100.05, 200.05, height(0.05, 0.05));
+  const Vector3d broken(100.05, 200.05, hill_height(0.05, 0.05));
   const PointStore::Layout& layout = paged.store->layout();
   paged.store->on_read = [&](std::size_t node) {
     if (layout.nodes[node].level > 1 && layout.box(node).contains(broken)) {
@@ -106,7 +106,7 @@ TEST(StoreLimits, ADamagedNodeIsToldOnceItsPlaceIsMissingAndTheRestGoesOn) {
   EXPECT_TRUE(is_missing(paged, broken));
   EXPECT_LT(paged.demand->share(), 1);
   EXPECT_THAT(told_at(paged, broken + Vector3d(1e-3, 0, 0)), testing::IsEmpty());
-  const Vector3d sound(100.9, 200.9, height(0.9, 0.9));
+  const Vector3d sound(100.9, 200.9, hill_height(0.9, 0.9));
   EXPECT_THAT(told_at(paged, sound), testing::IsEmpty());
   SceneField all(paged.whole);
   const Contact expected = paged.press(all, sound);
@@ -116,7 +116,7 @@ TEST(StoreLimits, ADamagedNodeIsToldOnceItsPlaceIsMissingAndTheRestGoesOn) {
 
 TEST(StoreLimits, ANodeThatCanBeReadAgainIsFeltAfterTenSeconds) {
   Paged paged(even());
-  const Vector3d place(100.05, 200.05, height(0.05, 0.05));
+  const Vector3d place(100.05, 200.05, hill_height(0.05, 0.05));
   paged.store->on_read = [](std::size_t) { throw Error("the network is gone"); };
   EXPECT_EQ(told_at(paged, place).size(), 1u);
   EXPECT_TRUE(is_missing(paged, place));

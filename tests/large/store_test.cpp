@@ -17,7 +17,7 @@ TEST(Store, IsFeltAsTheWholeOfItsPoints) {
 }
 
 TEST(Store, IsFeltAsTheWholeWherePointsAreMuchSparser) {
-  PointCloud cloud = hills(
+  PointCloud cloud = hill_cloud(
       [](double x, double y) { return std::hypot(x - 0.5, y - 0.5) < 0.25 ? 1. / 500 : 1. / 25; });
   for (const double z : {0.2, 0.4, -0.3}) {
     cloud.positions.push_back(Vector3d(0.3, 0.7, z).cast<float>());  // strays
@@ -46,7 +46,7 @@ TEST(Store, WithLittleMemoryItIsReadMoreOften) {
 
 TEST(Store, WhatIsNotReadYetIsFreeAndSaysSo) {
   Paged paged(even());
-  const Vector3d far(100.05, 200.05, height(0.05, 0.05));
+  const Vector3d far(100.05, 200.05, hill_height(0.05, 0.05));
   EXPECT_FALSE(paged.press(*paged.field, far).touching);
   EXPECT_TRUE(has(paged.field->notes(), FieldNote::not_loaded));
 }
@@ -66,7 +66,7 @@ TEST(Store, AllOfItIsSeenThinned) {
 
 TEST(Store, NothingIsDoneWhileAHandRests) {
   Paged paged(even());
-  const Vector3d place(100.5, 200.5, height(0.5, 0.5));
+  const Vector3d place(100.5, 200.5, hill_height(0.5, 0.5));
   paged.go(place);
   const std::size_t reads = paged.store->reads();
   const auto points = paged.source->points();
@@ -84,8 +84,8 @@ TEST(Store, FarFromAllPointsThereIsNothingToFeel) {
   paged.go(place);
   EXPECT_EQ(paged.press(*paged.field, place).force, Vector3d::Zero());
   EXPECT_FALSE(has(paged.field->notes(), FieldNote::not_loaded));
-  paged.go({100.5, 200.5, height(0.5, 0.5)});
-  EXPECT_TRUE(paged.press(*paged.field, {100.5, 200.5, height(0.5, 0.5)}).touching);
+  paged.go({100.5, 200.5, hill_height(0.5, 0.5)});
+  EXPECT_TRUE(paged.press(*paged.field, {100.5, 200.5, hill_height(0.5, 0.5)}).touching);
 }
 
 /// In the cube of the surface, but farther from its points than what is prepared around a tool.
@@ -110,7 +110,7 @@ TEST(Store, ABlockUnderAHandIsKeptHoweverLittleMemoryThereIs) {
 
 TEST(Store, ASurfaceThatArrivesUnderAHandPushesNobody) {
   Paged paged(even());
-  const Vector3d hip(100.05, 200.05, height(0.05, 0.05) - 3e-3);
+  const Vector3d hip(100.05, 200.05, hill_height(0.05, 0.05) - 3e-3);
   Proxy proxy;
   proxy.reset(hip);
   double largest = 0;
@@ -131,7 +131,7 @@ TEST(Store, WhatIsFirstShownToAHandRises) {
   Scene scene;
   Source& source = scene.add("run", paged.options);
   SceneField field(scene);
-  const Vector3d hip(100.05, 200.05, height(0.05, 0.05) - 3e-3);
+  const Vector3d hip(100.05, 200.05, hill_height(0.05, 0.05) - 3e-3);
   field.update(paged.time, hip, hip);
   while (!source.points()) paged.demand->advance(source, paged.time);
   const std::vector<float>& presences = source.points()->presences;

@@ -49,14 +49,14 @@ TEST(Orientation, GivenNormalsDecideForAllThatHangsTogether) {
   Turned turned("sphere");
   std::vector<Vector3f> given(turned.truth.size(), Vector3f::Zero());
   given[7] = -turned.truth[7];  // one alone, inward
-  EXPECT_EQ(turned.alike({.given = given}), 0u);
+  EXPECT_EQ(turned.alike({given, {}, {}}), 0u);
 }
 
 TEST(Orientation, TheEyeDecidesWhereNothingIsGiven) {
   Turned below("bumps");
-  EXPECT_EQ(below.alike({.eye = Vector3f(0, 0, -1)}), 0u);
+  EXPECT_EQ(below.alike({{}, Vector3f(0, 0, -1), {}}), 0u);
   Turned above("bumps");
-  EXPECT_EQ(above.alike({.eye = Vector3f(0, 0, 1)}), above.truth.size());
+  EXPECT_EQ(above.alike({{}, Vector3f(0, 0, 1), {}}), above.truth.size());
 }
 
 TEST(Orientation, PointsWithoutAPlaneStayWithout) {

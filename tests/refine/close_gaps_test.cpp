@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "prepare/plane_fits.hpp"
 #include "refine/gaps.hpp"
 
 namespace palpate {
