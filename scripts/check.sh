@@ -7,6 +7,7 @@
 #              of what only computes
 #   programs   in a release build what runs beside other programs: the page in a browser, whole, and ROS 2's topics
 #              between processes; and long cases of a quarter of a minute
+#   core       the core alone: builds, and passes its tests
 #   bare       the program without any optional library
 #   debug      every test and the benches in a Debug build
 #   threads    every test under TSan
@@ -21,7 +22,7 @@
 #              no step be a fault
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
-all=(sanitized programs bare debug threads long embedded documents fuzz lint fresh)
+all=(sanitized programs core bare debug threads long embedded documents fuzz lint fresh)
 status=0
 
 # bare_says WORDS ARGUMENT...: the program without optional libraries does this, and says these words.
@@ -52,6 +53,12 @@ check_programs() {
   configure release -DPALPATE_BUILD_TESTS=ON
   build release
   test_preset release -R '^(page|dds)/|^(align|depth|io|large|scene)/long'
+}
+
+check_core() {
+  configure core
+  build core
+  test_preset core
 }
 
 check_bare() {
@@ -140,7 +147,7 @@ parts=("$@")
 if [ $# -eq 0 ]; then parts=("${all[@]}"); fi
 for part in "${parts[@]}"; do
   if ! declare -F "check_$part" >/dev/null; then
-    sed -n '2,21s/^# \{0,1\}//p' "$0"
+    sed -n '2,22s/^# \{0,1\}//p' "$0"
     [[ "$part" == -h || "$part" == --help ]] || fail "no part is called '$part'"
     exit
   fi

@@ -9,33 +9,12 @@
 #include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/mesh/mesh.hpp"
+#include "io/ply_points.hpp"
 #include "io/ply_rows.hpp"
 #include "io/splats/splats.hpp"
 
 namespace palpate::io {
 namespace {
-
-struct VertexColumns {
-  Roles roles;  // one a property
-  ColorScale color_scale = ColorScale::byte;
-};
-
-VertexColumns columns_of(const PlyElement& element) {
-  VertexColumns result;
-  Roles& roles = result.roles;
-  for (const PlyProperty& property : element.properties) {
-    roles.add(property.list_count ? std::nullopt : role_of(property.name));
-    if (roles[roles.size() - 1] == Role::red && property.type != NumberType::uint8) {
-      result.color_scale =
-          is_floating(property.type) ? ColorScale::guess : ColorScale::guess_integer;
-    }
-  }
-  return result;
-}
-
-bool has_points(const PlyElement& element) {
-  return columns_of(element).roles.has_point();
-}
 
 // Is it the list of a face's corners?
 bool is_corner_list(const PlyProperty& property) {
@@ -52,14 +31,6 @@ bool is_strips(const PlyElement& element) {
 bool has_faces(const PlyElement& element) {
   return (element.name == "face" || is_strips(element)) &&
          std::ranges::any_of(element.properties, is_corner_list);
-}
-
-PlyTable table_of_points(const PlyElement& element, const Roles& roles) {
-  PlyTable table{.element = &element, .row = std::vector<double>(kRoleCount, 0)};
-  for (std::size_t k = 0; k < roles.size(); ++k) {
-    table.places.push_back(roles[k] ? std::optional(index_of(*roles[k])) : std::nullopt);
-  }
-  return table;
 }
 
 PlyTable table_of_faces(const PlyElement& element) {
@@ -108,7 +79,7 @@ void add_strips(const Input& input, const PlyTable& table, std::size_t vertices,
 // `faces`: null where the file has none.
 CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElement& points,
                       const PlyElement* faces) {
-  const VertexColumns columns = columns_of(points);
+  const PlyVertices columns = columns_of(points);
   CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
                        most_rows(input, header, points));
   Mesh mesh{.columns = columns.roles.columns(), .color_scale = columns.color_scale};
@@ -139,14 +110,10 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
 CloudFile read_ply(const Input& input) {
   const PlyHeader header = read_ply_header(input);
   if (holds_splats(header)) return shell_file(input, read_splat_ply);
-  const auto points = std::ranges::find_if(header.elements, has_points);
-  if (points == header.elements.end()) {
-    fail(input, "no element of this PLY file has the properties x, y and z",
-         "Export it again with its vertices");
-  }
+  const PlyElement& points = points_of(input, header);
   const auto faces = std::ranges::find_if(header.elements, has_faces);
-  const bool has_mesh = faces != header.elements.end() && faces != points;
-  return read_points(input, header, *points, has_mesh ? &*faces : nullptr);
+  const bool has_mesh = faces != header.elements.end() && &*faces != &points;
+  return read_points(input, header, points, has_mesh ? &*faces : nullptr);
 }
 
 }  // namespace palpate::io

@@ -12,9 +12,11 @@ CODE = {".cpp", ".hpp", ".inl"}
 TINY = 30  # lines
 LONGEST_FUNCTION = 40  # lines
 # Where one begins to read who asks what becomes of a depth frame, or of a cloud, on its way to a
-# force, and the floors that it does not pass.
-FRAME = ("src/sensor/stream.cpp", "src/scene/scene_field.cpp", "src/contact/proxy.cpp"), {"prepare", "io"}
-CLOUD = ("src/prepare/prepare.cpp", "src/scene/scene_field.cpp", "src/contact/proxy.cpp"), {"depth"}
+# force, and the floors that it does not pass. The core is what is left of a cloud's way without refinements.
+FIELD = ("src/scene/scene_field.cpp", "src/contact/proxy.cpp")
+FRAME = ("src/sensor/stream.cpp", "src/stream/source_frames.cpp", *FIELD), {"prepare", "refine", "io"}
+CLOUD = ("src/large/prepare_cloud.cpp", "src/refine/refinements.cpp", *FIELD), {"depth"}
+CORE = ("src/prepare/prepare.cpp", *FIELD), {"depth"}
 
 
 def code_of(root, folders=("include", "src", "apps")):
@@ -204,6 +206,7 @@ def table(root):
     yield "public types", sum(len(types(path)) for path in code_of(root, ("include",)))
     yield "files from a depth frame to a force", len(opened(root, *FRAME))
     yield "files from a cloud to a force", len(opened(root, *CLOUD))
+    yield "files of the core alone", len(opened(root, *CORE))
     yield (f"functions above {LONGEST_FUNCTION} lines",
            sum(length > LONGEST_FUNCTION for path in code for _, _, length in functions(path)))
 
