@@ -58,9 +58,10 @@ Trace follow(const HostileScene& scene, const Field& field, Update update) {
 
 }  // namespace
 
-Rendered touch(const HostileScene& scene, const FieldOptions& options) {
+Rendered touch(const HostileScene& scene, const FieldOptions& options,
+               const PrepareOptions& prepare) {
   Scene felt;
-  const Source& source = felt.add("cloud", scene.cloud);
+  const Source& source = felt.add("cloud", scene.cloud, {.prepare = prepare});
   SceneField field(felt, options);
   const auto update = [&](double now, const Vector3d& hand, const Vector3d& proxy) {
     field.update(now, hand, proxy);

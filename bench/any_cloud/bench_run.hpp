@@ -15,13 +15,14 @@ struct Trace {
   std::vector<double> microseconds;    ///< computing time of the step
 };
 
-/// The cloud as a program would touch it: a Scene with one source, all defaults but the field's.
+/// The cloud as a program would touch it: a Scene with one source, all defaults but these.
 struct Rendered {
   Trace trace;
   Prepared::Report report;
 };
 /// @throws Error as prepare() does.
-[[nodiscard]] Rendered touch(const HostileScene& scene, const FieldOptions& field);
+[[nodiscard]] Rendered touch(const HostileScene& scene, const FieldOptions& field,
+                             const PrepareOptions& prepare = {});
 
 /// The same proxy on the exact solid. Only where there is a truth.
 [[nodiscard]] Trace touch_truth(const HostileScene& scene);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "any_cloud/ablation.hpp"
 #include "any_cloud/file_row.hpp"
 #include "any_cloud/rows.hpp"
 #include "any_cloud/table.hpp"
@@ -22,6 +23,7 @@ struct Arguments {
   std::vector<std::string> files;
   int ways = 10000;
   int roam = 0;
+  bool ablate = false;
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
@@ -37,6 +39,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--roam", arguments.roam,
                  "Ticks of a hand that roams around a closed body and in it, in place of pokes")
       ->check(CLI::Range(0, 10000000));
+  app.add_flag("--ablate", arguments.ablate,
+               "What each scene loses without each refinement of preparation, in turn");
   app.add_option("--csv", arguments.csv_file, "Write every score to this file");
 }
 
@@ -67,10 +71,22 @@ std::vector<Row> wanted_rows(const Arguments& arguments) {
   return rows;
 }
 
+int print_prices(const std::vector<Row>& rows, const Arguments& arguments) {
+  int scenes = 0;
+  const auto prices =
+      ablate(rows, arguments.first_seed, arguments.seeds, field_options(arguments.field), [&] {
+        if (++scenes % 50 == 0) fmt::print(stderr, "{} scenes\n", scenes);
+      });
+  fmt::print("Field {}, {} seeds from {}.\n{}", arguments.field, arguments.seeds,
+             arguments.first_seed, price_table(prices));
+  return 0;
+}
+
 int run(const Arguments& arguments) {
   const std::vector<Row> rows = wanted_rows(arguments);
   if (rows.empty())
     throw palpate::Error("no row matches --family and --row; leave them out to see all");
+  if (arguments.ablate) return print_prices(rows, arguments);
   std::vector<Result> all;
   fmt::print("Field {}, {} seeds from {}.\n{}\n{}", arguments.field, arguments.seeds,
              arguments.first_seed, legend(), header());

@@ -156,5 +156,31 @@ TEST(AnyCloudScore, CountsForceInFreeAirAndAgainstTheIdeals) {
   EXPECT_EQ(found.wrong_side, 1);
 }
 
+TEST(Ablation, PricesEachRefinementOnTheSameScenes) {
+  std::vector<Row> rows = all_rows();
+  std::erase_if(rows, [](const Row& row) { return row.family != "folded"; });
+  ASSERT_FALSE(rows.empty());
+  rows.resize(1);
+  int done = 0;
+  const std::vector<Price> prices = ablate(rows, 5, 2, {}, [&] { ++done; });
+  EXPECT_EQ(done, 2);
+  ASSERT_FALSE(prices.empty());
+  int differ = 0;
+  for (const Price& one : prices) {
+    EXPECT_EQ(one.scenes, 2) << one.refinement;
+    EXPECT_LE(one.better + one.worse, one.differ) << one.refinement;
+    differ += one.differ;
+  }
+  EXPECT_GT(differ, 0);  // two folded sheets need the ones that tell sheets apart
+  EXPECT_NE(price_table(prices).find("| " + prices[0].refinement + " | 2 |"), std::string::npos);
+}
+
+TEST(Ablation, SignTestIsOfASplitThatChanceMakes) {
+  EXPECT_NEAR(sign_test(10, 0), 2.0 / 1024, 1e-9);
+  EXPECT_NEAR(sign_test(1, 8), 2 * (1 + 9.0) / 512, 1e-9);
+  EXPECT_EQ(sign_test(5, 5), 1);
+  EXPECT_EQ(sign_test(0, 0), 1);
+}
+
 }  // namespace
 }  // namespace palpate::any_cloud
