@@ -1,7 +1,8 @@
 """Draws a run of palpate: the cloud, the ways of hand and proxy, the force.
 
-Usage: picture.py FOLDER PICTURE. FOLDER holds cloud.f32 (x, y, z, normal, source), steps.f32 (t, hip,
-proxy, force, touching, us) and facts.json.
+Usage: picture.py FOLDER PICTURE. FOLDER holds cloud.f32 (x, y, z, normal, source), whole.f32
+(the same of all clouds, thinned; empty where cloud.f32 is the whole), steps.f32 (t, hip, proxy,
+force, touching, us) and facts.json.
 """
 
 import os
@@ -17,10 +18,11 @@ FORCE = "#dd8a00"
 
 
 def load(folder):
-    """The facts, the cloud and the steps that the program left in a folder."""
-    cloud = np.fromfile(os.path.join(folder, "cloud.f32"), np.float32).reshape(-1, 7).astype(float)
-    steps = np.fromfile(os.path.join(folder, "steps.f32"), np.float32).reshape(-1, 12).astype(float)
-    return load_facts(folder), cloud, steps
+    """The facts, the cloud, the whole of it and the steps that the program left in a folder."""
+    columns = {"cloud.f32": 7, "whole.f32": 7, "steps.f32": 12}
+    return [load_facts(folder)] + [
+        np.fromfile(os.path.join(folder, name), np.float32).reshape(-1, count).astype(float)
+        for name, count in columns.items()]
 
 
 class Run:
@@ -53,31 +55,54 @@ def draw_path(axes, path, behind, color, width, label):
         axes.plot(places[:, 0], places[:, 1], color=color, linewidth=width, alpha=alpha, label=name)
 
 
-def draw_overview(axes, cloud, normals, run, unit_name):
-    """The cloud as seen from where it was touched, with paths and forces."""
-    if len(cloud) == 0:
-        cloud, normals = run.proxy, np.zeros_like(run.proxy)
-    pushes, total = run.force[run.touching].sum(axis=0), run.size[run.touching].sum()
-    view, height = viewpoint(cloud, pushes / max(total, 1e-9))
+def draw_cloud(axes, cloud, normals, look, room):
+    """A cloud coloured by height, in so many points of room; returns it as seen, and the dots'
+    distance."""
+    view, height = look
     seen, order = cloud @ view.T, np.argsort(cloud @ view[2])
     tall = cloud @ height
     low, high = np.percentile(tall, [1, 99])
     color = plt.get_cmap("viridis")(np.clip((tall - low) / max(high - low, 1e-9), 0, 1) * 0.92)
     color[:, :3] = 0.25 + 0.75 * color[:, :3] * lit(normals, view)[:, None]
-    dot, cell = dot_area(seen, 590, 520)
-    axes.scatter(seen[order, 0], seen[order, 1], s=dot, c=color[order], linewidths=0, rasterized=True)
+    dot, cell = dot_area(seen, *room)
+    axes.scatter(seen[order, 0], seen[order, 1], s=dot, c=color[order], linewidths=0,
+                 rasterized=True)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    return seen, cell
+
+
+def draw_contact(axes, cloud, normals, run, unit_name):
+    """The cloud as seen from where it was touched, with paths and forces; returns from where, and
+    its frame there."""
+    if len(cloud) == 0:
+        cloud, normals = run.proxy, np.zeros_like(run.proxy)
+    pushes, total = run.force[run.touching].sum(axis=0), run.size[run.touching].sum()
+    look = viewpoint(cloud, pushes / max(total, 1e-9))
+    view = look[0]
+    seen, cell = draw_cloud(axes, cloud, normals, look, (590, 520))
     hip, proxy = run.hip @ view.T, run.proxy @ view.T
     draw_path(axes, hip, hidden(hip, seen, cell), HAND, 1.1, "hand")
     touched = np.where(run.touching[:, None], proxy, np.nan)
     behind = hidden(proxy, seen, cell)
     draw_path(axes, touched, behind, PROXY, 2.0, "proxy, touching")
-    axes.set_aspect("equal")
     axes.autoscale_view()
     draw_arrows(axes, proxy, behind, run, view)
-    axes.set_axis_off()
     scale_bar(axes, unit_name)
     axes.figure.legend(loc="upper left", bbox_to_anchor=(0.014, 0.915), frameon=False, ncol=3,
                        handlelength=1.6)
+    return look, np.array([seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)])
+
+
+def draw_whole(axes, whole, normals, look, frame):
+    """All clouds, with the frame of what the other view shows of them."""
+    seen, _ = draw_cloud(axes, whole, normals, look, (380, 170))
+    least = 0.02 * np.ptp(seen[:, :2], axis=0).max()  # else it could not be found
+    size = np.maximum(frame[1] - frame[0], least)
+    corner = frame.mean(axis=0) - size / 2
+    axes.add_patch(plt.Rectangle(corner, *size, fill=False, edgecolor=PROXY, linewidth=1.8))
+    axes.set_anchor("W")
+    axes.set_title("the whole; framed: the left view", loc="left", color=INK)
 
 
 def draw_arrows(axes, proxy, behind, run, view):
@@ -168,17 +193,22 @@ def draw_force(axes, run):
 
 
 def main(folder, picture):
-    facts, cloud, steps = load(folder)
+    facts, cloud, whole, steps = load(folder)
     extent = np.ptp(np.vstack([steps[:, 1:4], steps[:, 4:7]]), axis=0).max()
     unit, unit_name = unit_of(extent)
     run = Run(steps, unit)
     use_style()
     figure = plt.figure(figsize=(14.4, 8.6), dpi=150, facecolor="white")
-    cells = figure.add_gridspec(2, 2, width_ratios=[1.55, 1], height_ratios=[1.25, 1], left=0.02,
-                                right=0.985, top=0.895, bottom=0.07, wspace=0.09, hspace=0.3)
-    draw_overview(figure.add_subplot(cells[:, 0]), cloud[:, :3] / unit, cloud[:, 3:6], run, unit_name)
-    draw_section(figure.add_subplot(cells[0, 1]), cloud[:, :3] / unit, run, unit_name)
-    draw_force(figure.add_subplot(cells[1, 1]), run)
+    heights = [1.25, 1] if len(whole) == 0 else [1, 1.1, 1]
+    cells = figure.add_gridspec(len(heights), 2, width_ratios=[1.55, 1], height_ratios=heights,
+                                left=0.02, right=0.985, top=0.895, bottom=0.07, wspace=0.09,
+                                hspace=0.3 if len(whole) == 0 else 0.45)
+    seen = draw_contact(figure.add_subplot(cells[:, 0]), cloud[:, :3] / unit, cloud[:, 3:6], run,
+                        unit_name)
+    if len(whole) > 0:
+        draw_whole(figure.add_subplot(cells[0, 1]), whole[:, :3] / unit, whole[:, 3:6], *seen)
+    draw_section(figure.add_subplot(cells[-2, 1]), cloud[:, :3] / unit, run, unit_name)
+    draw_force(figure.add_subplot(cells[-1, 1]), run)
     figure.text(0.02, 0.955, facts["title"], fontsize=17, fontweight="bold", color=INK)
     figure.text(0.02, 0.925, facts["subtitle"], fontsize=11, color=FAINT)
     figure.savefig(picture, format="png")

@@ -21,22 +21,27 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kCloudPoints = 60'000;
+constexpr std::size_t kWholePoints = 20'000;  // of a picture of a third of the size
 constexpr std::size_t kSteps = 20'000;
 constexpr double kWhole = 2.5;  // times the way: show a cloud up to this size whole
 constexpr std::size_t kCloudColumns = 7;
 
-// What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
-// is much larger, the whole cloud.
-Box view(const std::vector<ServoState>& steps, const Scene& scene) {
-  Box box;
-  for (const ServoState& step : steps) {
-    box.extend(step.hip);
-    box.extend(step.contact.proxy);
-  }
+Box bounds(const Scene& scene) {
   Box all;
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const std::shared_ptr<const SurfacePoints> source = scene.source(i).points();
     if (source) all.extend(source->bounds());
+  }
+  return all;
+}
+
+// What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
+// is much larger, the whole cloud.
+Box view(const std::vector<ServoState>& steps, const Box& all) {
+  Box box;
+  for (const ServoState& step : steps) {
+    box.extend(step.hip);
+    box.extend(step.contact.proxy);
   }
   if (!all.empty() && all.size().maxCoeff() < kWhole * box.size().maxCoeff()) {
     box.extend(all);
@@ -60,7 +65,36 @@ std::vector<float> thinned(const std::vector<float>& values) {
   return result;
 }
 
-// x, y, z, normal and source of points inside the view, thinned evenly.
+// x, y, z, normal and source of a point, from a place.
+void append(std::vector<float>& values, const SurfacePoints& points, std::size_t i,
+            const Vector3d& from, std::size_t source) {
+  const Eigen::Vector3f p =
+      (points.origin + points.grid.points()[i].cast<double>() - from).cast<float>();
+  const Eigen::Vector3f n = points.normals.empty() ? Eigen::Vector3f::Zero() : points.normals[i];
+  values.insert(values.end(),
+                {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), static_cast<float>(source)});
+}
+
+// All points, thinned evenly, to show where the view is; none where it shows them all.
+std::vector<float> whole_points(const Scene& scene, const Box& all, const Box& box) {
+  if (all.empty() || (box.contains(all.lower) && box.contains(all.upper))) return {};
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < scene.size(); ++s) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(s).points();
+    count += source ? source->size() : 0;
+  }
+  const std::size_t stride = count / kWholePoints + 1;
+  std::vector<float> values;
+  for (std::size_t s = 0; s < scene.size(); ++s) {
+    const std::shared_ptr<const SurfacePoints> source = scene.source(s).points();
+    for (std::size_t i = 0; source && i < source->size(); i += stride) {
+      append(values, *source, i, box.center(), s);
+    }
+  }
+  return values;
+}
+
+// Points inside the view, thinned evenly.
 std::vector<float> visible_points(const Scene& scene, const Box& box) {
   std::vector<float> values;
   for (std::size_t s = 0; s < scene.size(); ++s) {
@@ -69,11 +103,7 @@ std::vector<float> visible_points(const Scene& scene, const Box& box) {
     for (std::size_t i = 0; i < source->size(); ++i) {
       const Vector3d world = source->origin + source->grid.points()[i].cast<double>();
       if (!box.contains(world)) continue;
-      const Eigen::Vector3f p = (world - box.center()).cast<float>();
-      const Eigen::Vector3f n =
-          source->normals.empty() ? Eigen::Vector3f::Zero() : source->normals[i];
-      values.insert(values.end(),
-                    {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), static_cast<float>(s)});
+      append(values, *source, i, box.center(), s);
     }
   }
   return thinned(values);
@@ -101,10 +131,12 @@ std::vector<float> step_rows(const std::vector<ServoState>& steps, const Box& bo
 void Picture::draw(const Scene& scene, const std::string& title, const std::string& subtitle) {
   if (steps_.empty()) throw Error("cannot draw a picture of a run without steps");
   const Waiting waiting("drawing the picture");
-  const Box box = view(steps_, scene);
+  const Box all = bounds(scene);
+  const Box box = view(steps_, all);
   const nlohmann::json facts = {{"title", title}, {"subtitle", subtitle}};
   draw_by_python(picture_script(),
                  {{"cloud.f32", float_bytes(visible_points(scene, box))},
+                  {"whole.f32", float_bytes(whole_points(scene, all, box))},
                   {"steps.f32", float_bytes(step_rows(steps_, box))},
                   {"facts.json", facts.dump()}},
                  path_, file_);
