@@ -57,6 +57,14 @@ void append(Union& all, const SurfacePoints& source) {
   }
 }
 
+// A large cloud's surface begins around the tools; the rest of it is there soon.
+void extend_by_what_follows(const Source& source, Union& all) {
+  const std::shared_ptr<const PointCloud> overview = source.state().overview;
+  for (std::size_t k = 0; overview && k < overview->size(); ++k) {
+    all.box.extend(overview->point(k) - all.origin);
+  }
+}
+
 Union unite(const Scene& scene) {
   Union all;
   std::size_t most = 0;
@@ -69,6 +77,7 @@ Union unite(const Scene& scene) {
     const Vector3d shift = source->origin - all.origin;
     all.box.extend(root.lower.cast<double>() + shift);
     all.box.extend(root.upper.cast<double>() + shift);
+    extend_by_what_follows(scene.source(i), all);
     if (source->size() > most) {
       all.radius = source->radius;
       all.spacing = scene.source(i).report().spacing;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace palpate {
@@ -63,6 +64,20 @@ std::vector<Box> missing_boxes(std::span<const CloudBlock> blocks,
     if (boxes.size() < kMostMissing) boxes.push_back(block->box);
   }
   return boxes;
+}
+
+bool has_filled(std::span<const Box> missing, std::span<CloudBlock> blocks,
+                const std::vector<Box>& unlisted, std::span<const Ball> tools, double near) {
+  std::vector<Box> told;
+  std::ranges::copy_if(missing, std::back_inserter(told),
+                       [&](const Box& box) { return distance(box, tools) <= near; });
+  if (told.empty()) return false;
+  const std::vector<Box> now = missing_boxes(blocks, choose_shown(blocks, near), unlisted);
+  return std::ranges::any_of(told, [&](const Box& box) {
+    return std::ranges::none_of(now, [&](const Box& other) {
+      return other.lower == box.lower && other.upper == box.upper;
+    });
+  });
 }
 
 }  // namespace palpate

@@ -21,4 +21,10 @@ namespace palpate {
                                              std::span<CloudBlock* const> shown,
                                              std::vector<Box> unlisted);
 
+/// Was a place near `tools` shown as one of which nothing is known (`missing`), and is it not so
+/// any more? A block may turn out to have no points there.
+[[nodiscard]] bool has_filled(std::span<const Box> missing, std::span<CloudBlock> blocks,
+                              const std::vector<Box>& unlisted, std::span<const Ball> tools,
+                              double near);
+
 }  // namespace palpate

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "large/blocks.hpp"

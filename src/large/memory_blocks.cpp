@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -34,7 +34,8 @@ class MemoryBlocks final : public BlockSupply {
       : cloud_(std::move(cloud)),
         options_(options),
         placed_(place(*cloud_, options, pose)),
-        blocks_(placed_, options, comes_together() ? kHalvings : 0) {}
+        together_(!goes_by_blocks(placed_.cloud().size(), options)),
+        blocks_(placed_, options, together_ ? kHalvings : 0) {}
 
   [[nodiscard]] const CloudFacts& facts() const override { return blocks_.facts(); }
   [[nodiscard]] std::size_t points() const override { return cloud_->size(); }
@@ -62,19 +63,16 @@ class MemoryBlocks final : public BlockSupply {
     block.piece = blocks_.prepare(*blocks_.division().find(block.key));
   }
 
-  [[nodiscard]] std::optional<Prepared> prepare_together() const override {
-    if (!comes_together()) return {};
-    return prepare_at_once(placed_, options_, refinements(), {});
+  [[nodiscard]] bool comes_together() const override { return together_; }
+  [[nodiscard]] Prepared prepare_together(const std::stop_token& stop) const override {
+    return prepare_at_once(placed_, options_, refinements(), {.points_in = cloud_->size()}, stop);
   }
 
  private:
-  [[nodiscard]] bool comes_together() const {
-    return !goes_by_blocks(placed_.cloud().size(), options_);
-  }
-
   std::shared_ptr<const PointCloud> cloud_;
   PrepareOptions options_;
   Placed placed_;
+  bool together_;
   Blocks blocks_;
 };
 

@@ -8,15 +8,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +23,7 @@
 #include "large/block_choice.hpp"
 #include "large/block_supply.hpp"
 #include "large/change_over.hpp"
+#include "prepare/surfels.hpp"
 #include "scene/source_inside.hpp"
 
 namespace palpate {
@@ -34,23 +34,32 @@ constexpr double kLead = 0.002;  // s from publishing to being felt: a servo's s
 constexpr double kAppear = 0.1;  // s in which a block's presence rises; judgement
 // s until what could not be read is tried again: a disk or a network may be back; judgement.
 constexpr double kRetry = 10;
+// Share of the work that is done with the blocks where all is prepared together after them; on the
+// Stanford dragon both take about as long.
+constexpr double kOfBlocks = 0.5;
 
 }  // namespace
 
 struct OnDemand::Inside {
   using State = CloudBlock::State;
 
-  Inside(std::unique_ptr<BlockSupply> from, const PrepareOptions& options)
-      : supply(std::move(from)), kernel(options.kernel), near(kAhead * supply->facts().radius) {}
+  Inside(std::unique_ptr<BlockSupply> from, const PrepareOptions& options,
+         const std::optional<SurfaceEye>& seen_from)
+      : supply(std::move(from)),
+        kernel(options.kernel),
+        near(kAhead * supply->facts().radius),
+        eye(seen_from) {}
 
   void look(const Source& source, double now);
   [[nodiscard]] CloudBlock* nearest_missing(double within);
-  [[nodiscard]] bool was_missing();
+  [[nodiscard]] bool has_news(const Source& source);
   template <class Work>
   void beside_servos(const Work& work);
   void prepare(CloudBlock& block, double now);
   void show_near(Source& source, double now);
   [[nodiscard]] Prepared join_all();
+  void prepare_rest(Source& source, std::unique_lock<std::mutex>& lock,
+                    const std::stop_token& stop);
   [[nodiscard]] bool change_over(Source& source, double now);
   void publish(Source& source, Prepared::Report report, Snapshot snapshot);
   void finish();
@@ -58,6 +67,7 @@ struct OnDemand::Inside {
   std::unique_ptr<BlockSupply> supply;
   Kernel kernel;
   double near;  // how far around what tools can reach nothing is to be missing, m
+  std::optional<SurfaceEye> eye;
   std::vector<CloudBlock> blocks;
   std::vector<Box> unlisted;       // where no block is
   std::vector<Box> told_missing;   // where it was last shown that nothing is known
@@ -68,9 +78,10 @@ struct OnDemand::Inside {
   const Source* source = nullptr;  // that was shown something last
   // All but one core: that is the servos'.
   tbb::task_arena background{std::max(1, tbb::this_task_arena::max_concurrency() - 1)};
+  bool all_ready = false;  // of the blocks that are wanted
   std::atomic<double> share{0};
-  std::atomic<bool> done{false};
-  std::mutex mutex;  // of advance()
+  std::atomic<bool> done{false};  // or cancelled
+  std::mutex mutex;               // of advance()
 };
 
 /// Reads where tools are (the cloud's start before there are any), lists the blocks there and
@@ -90,7 +101,10 @@ void OnDemand::Inside::look(const Source& at, double now) {
     ready += is_ready ? 1 : 0;
     wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
   }
-  share = wanted == 0 ? 0 : static_cast<double>(ready) / static_cast<double>(wanted);
+  all_ready = wanted > 0 && ready == wanted;
+  share = wanted == 0 ? 0
+                      : (supply->comes_together() ? kOfBlocks : 1) * static_cast<double>(ready) /
+                            static_cast<double>(wanted);
 }
 
 /// The nearest block that is missing, if one is nearer than `within`, m.
@@ -103,19 +117,14 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// Was a place near shown as one of which nothing is known, and is it not so any more? A block may
-/// turn out to have no points there.
-bool OnDemand::Inside::was_missing() {
-  std::vector<Box> told;
-  std::ranges::copy_if(told_missing, std::back_inserter(told),
-                       [&](const Box& box) { return distance(box, tools) <= near; });
-  if (told.empty()) return false;
-  const std::vector<Box> now = missing_boxes(blocks, choose_shown(blocks, near), unlisted);
-  return std::ranges::any_of(told, [&](const Box& box) {
-    return std::ranges::none_of(now, [&](const Box& other) {
-      return other.lower == box.lower && other.upper == box.upper;
-    });
-  });
+/// Is there more to show than the source shows? All blocks are, before all is prepared together:
+/// nothing new is shown meanwhile.
+bool OnDemand::Inside::has_news(const Source& at) {
+  const auto is_hidden = [](const CloudBlock& block) { return block.state == State::prepared; };
+  return share > 0 &&
+         (source != &at || shows_more(blocks, near) ||
+          has_filled(told_missing, blocks, unlisted, tools, near) ||
+          (all_ready && supply->comes_together() && std::ranges::any_of(blocks, is_hidden)));
 }
 
 template <class Work>
@@ -165,6 +174,7 @@ void OnDemand::Inside::show_near(Source& to, double now) {
   snapshot.missing = told_missing = missing_boxes(blocks, chosen, unlisted);
   Prepared joined;
   beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
+  joined.points.eye = eye;
   snapshot.layers = still(std::move(joined.points)).layers;
   publish(to, joined.report, std::move(snapshot));
 }
@@ -179,7 +189,34 @@ Prepared OnDemand::Inside::join_all() {
   blocks.clear();
   Prepared joined;
   beside_servos([&] { joined = join(std::move(all), supply->facts(), supply->origin(), kernel); });
+  joined.points.eye = eye;
   return joined;
+}
+
+/// Makes the surface of all of the cloud, once all blocks are there. Where memory is short for
+/// preparing it together, the blocks stay.
+void OnDemand::Inside::prepare_rest(Source& to, std::unique_lock<std::mutex>& lock,
+                                    const std::stop_token& stop) {
+  std::optional<Prepared> together;
+  if (supply->comes_together()) {
+    lock.unlock();  // cancel() does not wait for seconds
+    try {
+      beside_servos([&] { together = supply->prepare_together(stop); });
+    } catch (const PreparationStopped&) {
+      return lock.lock();
+    } catch (const std::exception&) {
+      together.reset();  // the blocks are all that there will be
+    }
+    lock.lock();
+    if (done) return;
+  }
+  Prepared joined = join_all();
+  if (together) {
+    together->points.eye = eye;
+    return void(over.emplace(std::move(joined), std::move(*together)));
+  }
+  publish(to, joined.report, still(std::move(joined.points)));
+  finish();
 }
 
 /// @return false: the fade goes on
@@ -194,6 +231,7 @@ bool OnDemand::Inside::change_over(Source& to, double now) {
 
 void OnDemand::Inside::finish() {
   over.reset();
+  supply.reset();
   share = 1;
   done = true;
 }
@@ -211,27 +249,26 @@ void OnDemand::Inside::publish(Source& to, Prepared::Report report, Snapshot sna
   to.publish(std::make_shared<const Snapshot>(std::move(snapshot)));
 }
 
-OnDemand::OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
+OnDemand::OnDemand(const std::shared_ptr<const PointCloud>& cloud, const PrepareOptions& options,
                    const Eigen::Isometry3d& T_world_sensor)
-    : inside_(std::make_unique<Inside>(blocks_of(std::move(cloud), options, T_world_sensor),
-                                       options)) {}
+    : inside_(std::make_unique<Inside>(blocks_of(cloud, options, T_world_sensor), options,
+                                       eye_of(*cloud, options, T_world_sensor))) {}
 
 OnDemand::OnDemand(const std::shared_ptr<const PointStore>& store, const PrepareOptions& options,
                    const Eigen::Isometry3d& T_world_sensor, std::size_t memory)
-    : inside_(
-          std::make_unique<Inside>(blocks_of(store, options, T_world_sensor, memory), options)) {}
+    : inside_(std::make_unique<Inside>(blocks_of(store, options, T_world_sensor, memory), options,
+                                       std::nullopt)) {}
 
 OnDemand::~OnDemand() = default;
 
-bool OnDemand::advance(Source& source, double now, bool ahead) {
+bool OnDemand::advance(Source& source, double now, bool ahead, const std::stop_token& stop) {
   Inside& in = *inside_;
   std::unique_lock lock(in.mutex);
   if (in.done) return false;
   if (in.over) return in.change_over(source, now);
   in.look(source, now);
   CloudBlock* wanted = in.nearest_missing(in.near);
-  if (wanted == nullptr && in.share > 0 &&
-      (in.source != &source || shows_more(in.blocks, in.near) || in.was_missing())) {
+  if (wanted == nullptr && in.has_news(source)) {
     in.show_near(source, now);
     return true;
   }
@@ -242,19 +279,8 @@ bool OnDemand::advance(Source& source, double now, bool ahead) {
     in.prepare(*wanted, now);
     return true;
   }
-  if (!ahead || !in.supply->is_whole() || in.share < 1) return false;
-  lock.unlock();  // cancel() does not wait for seconds
-  std::optional<Prepared> together;
-  in.beside_servos([&] { together = in.supply->prepare_together(); });
-  lock.lock();
-  if (in.done) return false;
-  Prepared joined = in.join_all();
-  if (together) {
-    in.over.emplace(std::move(joined), std::move(*together));
-    return true;
-  }
-  in.publish(source, joined.report, still(std::move(joined.points)));
-  in.finish();
+  if (!ahead || !in.supply->is_whole() || !in.all_ready) return false;
+  in.prepare_rest(source, lock, stop);
   return true;
 }
 

@@ -31,39 +31,46 @@ void check_names(const PrepareOptions& options, Refinements refinements) {
   }
 }
 
+void stop_if(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw PreparationStopped{};
+}
+
 /// Runs the refinements of a stage, but those that the options leave out.
-void refine(Refinements refinements, Stage stage, Surfels& surfels) {
+void refine(Refinements refinements, Stage stage, Surfels& surfels, const std::stop_token& stop) {
+  stop_if(stop);
   for (const Refinement& one : refinements) {
     if (one.stage != stage || surfels.options.without.contains(one.name)) continue;
     one.refine(surfels);
+    stop_if(stop);
   }
 }
 
 }  // namespace
 
 Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
-                         std::span<const Refinement> refinements, Prepared::Report report) {
+                         std::span<const Refinement> refinements, Prepared::Report report,
+                         const std::stop_token& stop) {
   check_names(options, refinements);
   Surfels s{.placed = placed, .options = options};
   s.sampling = sample(placed, options, report);
 
   Stopwatch watch;
   s.radii = choose_radii(s.sampling, options);
-  refine(refinements, Stage::radii, s);
+  refine(refinements, Stage::radii, s, stop);
   watch.lap(report.seconds_spacing);
   s.fits = fit_planes(s.sampling, s.radii, options);
   watch.lap(report.seconds_normals);
   s.sums = WeightSums(s.sampling.grid, s.radii.values, options.kernel);
-  refine(refinements, Stage::fits, s);
+  refine(refinements, Stage::fits, s, stop);
   s.weights = weigh(s.sampling, s.radii, s.sums, options);
   watch.lap(report.seconds_weights);
-  refine(refinements, Stage::weights, s);
+  refine(refinements, Stage::weights, s, stop);
   if (s.sheets.empty()) orient(s.sampling, given_signs(placed, s.sampling, options), s.fits);
   watch.lap(report.seconds_normals);
 
   s.prepared.report = report;
   assemble(s);
-  refine(refinements, Stage::points, s);
+  refine(refinements, Stage::points, s, stop);
   complete(s.prepared);
   return std::move(s.prepared);
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -51,11 +52,15 @@ struct Refinement {
   void (*refine)(Surfels& surfels);
 };
 
+/// Thrown by a preparation that was told to stop.
+struct PreparationStopped {};
+
 /// Takes all steps of prepare() but place(), with these refinements in their order. `report`: what
 /// is known so far.
-/// @throws Error as prepare() does.
+/// @throws Error as prepare() does, and PreparationStopped between two steps once `stop` is
+///   requested.
 [[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
                                        std::span<const Refinement> refinements,
-                                       Prepared::Report report);
+                                       Prepared::Report report, const std::stop_token& stop = {});
 
 }  // namespace palpate

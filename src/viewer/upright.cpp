@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,22 +23,30 @@ constexpr double kFoot = 0.02;  // share of the height that counts as the foot (
 // planes goes with their distance): then it is flat there.
 constexpr double kFlat = 2;
 
+// Points that are felt, or that are to be.
+struct Part {
+  Eigen::Vector3d origin;
+  std::span<const Eigen::Vector3f> points;
+  std::shared_ptr<const void> owner;
+};
+
 // Relative to some origin.
 std::vector<Eigen::Vector3f> some_points(const Scene& scene) {
-  std::vector<std::shared_ptr<const SurfacePoints>> sources;
-  std::size_t all = 0;
+  std::vector<Part> parts;
   for (std::size_t i = 0; i < scene.size(); ++i) {
-    std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
-    if (!points) continue;
-    all += points->size();
-    sources.push_back(std::move(points));
+    const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
+    const std::shared_ptr<const PointCloud> rest = scene.source(i).state().overview;
+    if (points) parts.push_back({points->origin, points->grid.points(), points});
+    if (points && rest) parts.push_back({rest->origin, rest->positions, rest});
   }
+  std::size_t all = 0;
+  for (const Part& part : parts) all += part.points.size();
   const std::size_t every = all / kEnough + 1;
   std::vector<Eigen::Vector3f> some;
-  for (const auto& source : sources) {
-    const Eigen::Vector3f shift = (source->origin - sources.front()->origin).cast<float>();
-    for (std::size_t k = 0; k < source->size(); k += every) {
-      some.push_back(source->grid.points()[k] + shift);
+  for (const Part& part : parts) {
+    const Eigen::Vector3f shift = (part.origin - parts.front().origin).cast<float>();
+    for (std::size_t k = 0; k < part.points.size(); k += every) {
+      some.push_back(part.points[k] + shift);
     }
   }
   return some;

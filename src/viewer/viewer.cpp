@@ -17,6 +17,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/shapes.hpp"
+#include "scene/bounds.hpp"
 #include "viewer/access.hpp"
 #include "viewer/client_sessions.hpp"
 #include "viewer/messages.hpp"
@@ -38,11 +39,7 @@ constexpr double kEmptyRadius = 1;         // m, shown while there are no points
 Box scene_box(const Scene& scene) {
   Box box;
   for (std::size_t i = 0; i < scene.size(); ++i) {
-    const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
-    if (points) box.extend(points->bounds());
-    const std::shared_ptr<const PointCloud> overview = scene.source(i).state().overview;
-    if (!overview) continue;
-    for (const auto& p : overview->positions) box.extend(overview->origin + p.cast<double>());
+    box.extend(bounds_of(scene.source(i)));
   }
   return box;
 }

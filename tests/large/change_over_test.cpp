@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <stop_token>
+#include <thread>
 
 #include "large/hills.hpp"
 
@@ -84,6 +87,60 @@ TEST(ChangeOver, AHandThatPressesFeelsNoStepWhereTheWholeTakesThePlaceOfBlocks) 
   for (int k = 0; k < 100; ++k) step(hip);
   EXPECT_GT(last.norm(), 1);
   EXPECT_LT(most, 0.01);  // N: far below what a finger feels
+}
+
+TEST(ChangeOver, AllIsShownBeforeAllIsPreparedTogether) {
+  Begun begun(hills());
+  SceneField field(begun.scene);
+  double time = 1;
+  while (begun.demand->share() < 0.5) begun.demand->advance(*begun.source, time += 0.2);
+  EXPECT_LT(begun.source->points()->size(), 80'000u);
+  EXPECT_TRUE(begun.demand->advance(*begun.source, time += 0.2));
+  EXPECT_GT(begun.source->points()->size(), 80'000u);
+  EXPECT_FALSE(begun.demand->done());
+  EXPECT_LT(begun.demand->share(), 1);
+  const Vector3d corner(0.05, 0.05, height(0.05, 0.05));
+  EXPECT_GT(press(field, corner, 2e-3, time + 1).force.norm(), 0.5);
+}
+
+TEST(ChangeOver, CanBeLeftWhileAllIsPreparedTogether) {
+  Begun begun(hills());
+  std::stop_source stopped;
+  stopped.request_stop();
+  double time = 1;
+  for (int k = 0; k < 1000; ++k) {
+    begun.demand->advance(*begun.source, time += 0.2, true, stopped.get_token());
+  }
+  EXPECT_FALSE(begun.demand->done());
+  EXPECT_EQ(begun.demand->share(), 0.5);
+  change_over(begun, time + 1);
+  EXPECT_TRUE(begun.demand->done());
+}
+
+TEST(ChangeOver, IsCancelledFromAnotherThread) {
+  Begun begun(hills());
+  std::jthread other([&] { begun.demand->cancel(); });
+  double time = 1;
+  for (int k = 0; k < 1000 && begun.demand->advance(*begun.source, time); ++k) time += 0.2;
+  other.join();
+  EXPECT_TRUE(begun.demand->done());
+  EXPECT_FALSE(begun.demand->advance(*begun.source, time + 1));
+  EXPECT_LT(begun.source->points()->size(), 90'000u);
+}
+
+TEST(ChangeOver, WhatAnEyeSawHoldsTowardsItFromTheFirstBlockOn) {
+  const auto cloud = hills();
+  SourceOptions options;
+  options.prepare.viewpoint = Vector3d(0.5, 0.5, 1);
+  Scene scene;
+  scene.add("whole", *cloud, options);
+  const auto& expected = scene.source(0).points()->eye;
+  ASSERT_TRUE(expected);
+  Begun begun(cloud, options);
+  ASSERT_TRUE(begun.source->points()->eye);
+  EXPECT_EQ(begun.source->points()->eye->place, expected->place);
+  change_over(begun, 2);
+  ASSERT_TRUE(begun.source->points()->eye);
 }
 
 }  // namespace

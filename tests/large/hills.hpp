@@ -34,7 +34,8 @@ inline std::shared_ptr<const PointCloud> hills(int side = 300) {
 /// A cloud on demand as far as it comes at first: in blocks that are `wide`, m, or, without that,
 /// in small ones until all of it is prepared together.
 struct Begun {
-  explicit Begun(const std::shared_ptr<const PointCloud>& cloud) {
+  explicit Begun(const std::shared_ptr<const PointCloud>& cloud, SourceOptions given = {})
+      : options(std::move(given)) {
     demand = std::make_unique<OnDemand>(cloud, options.prepare);
     begin();
   }

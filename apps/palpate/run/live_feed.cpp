@@ -43,7 +43,7 @@ void LiveFeed::prepare(std::size_t index, const std::stop_token& stop) {
   Source& source = loaded_.scene.source(index);
   while (!cloud.done() && !stop.stop_requested()) {
     try {
-      if (!cloud.advance(source, clock_.now())) std::this_thread::sleep_for(kIdle);
+      if (!cloud.advance(source, clock_.now(), true, stop)) std::this_thread::sleep_for(kIdle);
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
       problems_.push_back(missing_part(source, error));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <utility>
 
@@ -224,70 +223,6 @@ double deepest_texture(const Scene& scene) {
     if (points && points->size() > 0) largest = std::min(largest, kDeepest * points->radius);
   }
   return largest;
-}
-
-Preparer::Preparer(Run& run, const Preparation& initial, Failed failed)
-    : run_(run),
-      initial_(initial),
-      held_(initial),
-      failed_(std::move(failed)),
-      thread_([this](const std::stop_token& stop) { work(stop); }) {}
-
-Preparer::~Preparer() = default;
-
-void Preparer::stop() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-}
-
-void Preparer::want(const Preparation& wanted) {
-  {
-    const std::lock_guard lock(mutex_);
-    wanted_ = wanted;
-  }
-  changed_.notify_one();
-}
-
-void Preparer::work(const std::stop_token& stop) {
-  while (true) {
-    Preparation wanted;
-    {
-      std::unique_lock lock(mutex_);
-      if (!changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) return;
-      wanted = *std::exchange(wanted_, std::nullopt);
-    }
-    try {
-      prepare(wanted);
-      held_ = wanted;
-    } catch (const std::exception& error) {
-      // What could not be prepared has left its surface as it was; frames to come go on as before.
-      change_all(held_);
-      failed_(error.what(), held_);
-    }
-  }
-}
-
-// Streams are prepared so from their next frame on.
-void Preparer::change_all(const Preparation& wanted) {
-  for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
-    const SourceOptions& options = run_.loaded.sources[i].plan.options;
-    run_.loaded.scene.source(i).change(prepared_by(wanted, initial_, options));
-  }
-}
-
-void Preparer::prepare(const Preparation& wanted) {
-  for (const LoadedSource& loaded : run_.loaded.sources) {
-    if (!loaded.paged) continue;
-    throw Error(
-        fmt::format("{} is read from disk as it was opened; start again to prepare it otherwise",
-                    loaded.plan.argument.name));
-  }
-  change_all(wanted);
-  for (std::size_t i = 0; i < run_.loaded.sources.size(); ++i) {
-    const LoadedSource& loaded = run_.loaded.sources[i];
-    if (loaded.on_demand) loaded.on_demand->cancel();
-    if (loaded.cloud) run_.loaded.scene.source(i).set(*loaded.cloud);
-  }
 }
 
 }  // namespace palpate::app

@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -96,10 +97,12 @@ class Preparer {
   void work(const std::stop_token& stop);
   void prepare(const Preparation& wanted);
   void change_all(const Preparation& wanted);
+  void finish_cut_off();
 
   Run& run_;
   Preparation initial_;
-  Preparation held_;  // the last that sources could be prepared by
+  Preparation held_;               // the last that sources could be prepared by
+  std::set<std::size_t> cut_off_;  // sources that were being prepared when another way was wanted
   Failed failed_;
   std::mutex mutex_;
   std::condition_variable_any changed_;

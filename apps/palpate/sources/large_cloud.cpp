@@ -36,6 +36,7 @@ const Source& first_surface(Scene& scene, LoadedSource& result) {
   std::exception_ptr first;
   std::vector<std::string> problems;
   for (bool more = true; more && is_empty();) {
+    if (result.plan.reading.progress) result.plan.reading.progress(1);  // it was read
     try {
       more = result.on_demand->advance(source, 0);
     } catch (const std::exception& error) {
@@ -79,6 +80,11 @@ bool advance(OnDemand& cloud, Source& source, double now) {
     tell(missing_part(source, error));
     return true;
   }
+}
+
+bool show_again(OnDemand& cloud, Source& source) {
+  while (!source.points() && advance(cloud, source, 0)) continue;
+  return source.points() != nullptr;
 }
 
 const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud>& cloud,

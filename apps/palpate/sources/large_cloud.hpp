@@ -26,4 +26,8 @@ const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud
 /// Reads what tools may need; says on standard error what could not be read, and goes on.
 bool advance(OnDemand& cloud, Source& source, double now);
 
+/// Shows a source of a new run what was prepared so far, and what is missing. @return false:
+/// nothing
+[[nodiscard]] bool show_again(OnDemand& cloud, Source& source);
+
 }  // namespace palpate::app

@@ -15,6 +15,7 @@
 #include "palpate/contact/proxy.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/spacing.hpp"
+#include "scene/bounds.hpp"
 
 namespace palpate::app {
 
@@ -68,11 +69,10 @@ void check_range(const CloudArgument& source, const DepthFrame& frame,
 }
 
 // Farther away the proxy would fault in every step.
-void check_place(const CloudArgument& cloud, const SurfacePoints& points) {
-  if (points.size() == 0) return;
-  const Box box = points.bounds();
+void check_place(const CloudArgument& cloud, const Source& source) {
+  const Box box = bounds_of(source);
   const double far = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
-  if (far <= Proxy::kLargestCoordinate) return;
+  if (box.empty() || far <= Proxy::kLargestCoordinate) return;
   throw Error(fmt::format(
       "{} extends {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be resolved: {} right?",
       cloud.path, far, Proxy::kLargestCoordinate,
@@ -101,7 +101,7 @@ void check_felt(const Source& source, LoadedSource& result) {
         "{} contains no surface, so there is nothing to touch; check its units and range",
         result.plan.argument.path));
   }
-  check_place(result.plan.argument, *points);
+  check_place(result.plan.argument, source);
   check_radius(result.plan.argument, result.plan.options.prepare, points->grid);
   result.state = source.state();
 }
@@ -112,7 +112,6 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
     return check_felt(scene.source(scene.size() - 1), result);
   }
   LoadedCloud loaded = load(plan.argument, plan.reading);
-  result.plan.reading.progress = {};  // nobody waits for it any more
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   check_voxel(loaded, plan.options.prepare);
   result.format = loaded.file.format;
@@ -134,12 +133,13 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
   const Source& source = large ? add_on_demand(scene, cloud, result)
                                : scene.add(loaded.argument.name, *cloud, plan.options);
+  result.plan.reading.progress = {};  // nobody waits for it any more
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
   result.state = source.state();
   result.depth_image = result.state.depth > 0;
   if (result.depth_image) result.lens = depth_frame_of(*cloud).frame->camera;
-  check_place(plan.argument, *source.points());
+  check_place(plan.argument, source);
   if (options.keep_clouds || large) result.cloud = cloud;
 }
 
@@ -278,7 +278,7 @@ void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft) {
     SourceOptions options = from.plan.options;
     options.soft = soft;
     Source& source = scene.add(from.plan.argument.name, options);
-    if (from.camera) continue;
+    if (from.camera || (from.on_demand && show_again(*from.on_demand, source))) continue;
     auto snapshot = std::make_unique<Snapshot>();
     snapshot->layers.push_back({loaded.scene.source(i).points(), 1, 1});
     source.publish(std::move(snapshot));

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <memory>
+#include <stop_token>
 
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/point_store.hpp"
@@ -29,7 +30,7 @@ class OnDemand {
 
   /// Measures the cloud's facts and divides it, which takes about a second for 10 million points.
   /// @throws Error as prepare() does.
-  OnDemand(std::shared_ptr<const PointCloud> cloud, const PrepareOptions& options,
+  OnDemand(const std::shared_ptr<const PointCloud>& cloud, const PrepareOptions& options,
            const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity());
 
   /// Reads some hundred nodes to measure the facts, if the options give none. Nodes and prepared
@@ -50,14 +51,15 @@ class OnDemand {
   ///   a tool moves.
   /// @throws Error as prepare() and PointStore::read() do, once for each thing that is wrong. The
   ///   next call goes on: what could not be read counts as missing, and is tried again after 10 s.
-  bool advance(Source& source, double now, bool ahead = true);
+  bool advance(Source& source, double now, bool ahead = true, const std::stop_token& stop = {});
 
   /// Waits until a block or a join is through, and publishes nothing from then on: the source
   /// becomes somebody else's. Any thread.
   void cancel();
 
-  /// The share of the blocks that is prepared, 0-1; 1 once it is done. Of a store, of those around
-  /// the tools. Any thread.
+  /// The share of the work that is done, 0-1: of the blocks, which are half of it where all is
+  /// prepared together after them; 1 once it is done. Of a store, of the blocks around the tools.
+  /// Any thread.
   [[nodiscard]] double share() const noexcept;
 
   /// Is all of the cloud there, or was it cancelled? Any thread.
