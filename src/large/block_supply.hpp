@@ -74,9 +74,13 @@ class BlockSupply {
   /// @throws Error as PointStore::read() does; then the block is as it was.
   virtual void prepare(CloudBlock& block) = 0;
 
-  /// All of the cloud prepared together, where prepare() would do so; empty where it goes by
-  /// blocks.
-  [[nodiscard]] virtual std::optional<Prepared> prepare_together() const { return {}; }
+  /// Does prepare() prepare all of the cloud together? Then blocks serve until that is done.
+  [[nodiscard]] virtual bool comes_together() const { return false; }
+
+  /// @throws PreparationStopped once `stop` is requested.
+  [[nodiscard]] virtual Prepared prepare_together(const std::stop_token& /*stop*/) const {
+    return {};
+  }
 };
 
 /// All of a cloud in memory.
