@@ -14,11 +14,10 @@ struct Larger {
 };
 [[gnu::always_inline]] inline Larger larger(const Lanes& h, const Lanes& k, const Lanes& width) {
   const Lanes d = k - h;
-  const Lanes inside = width - stdx::abs(d);
-  const Lanes t = 0.5 * (inside + stdx::abs(inside));
-  const Lanes past = stdx::abs(d + width) - stdx::abs(d - width);  // 2 width beyond the rounding
+  const Lanes t = positive(width - absolute(d));
+  const Lanes past = absolute(d + width) - absolute(d - width);  // 2 width beyond the rounding
   const Lanes inverse = 1.0 / width;
-  return {0.5 * (h + k + stdx::abs(d)) + 0.25 * inverse * t * t, 0.5 + 0.25 * inverse * past};
+  return {0.5 * (h + k + absolute(d)) + 0.25 * inverse * t * t, 0.5 + 0.25 * inverse * past};
 }
 
 // The widths that edges and creases are rounded over, R_i, so that heights have gradients.
@@ -30,22 +29,21 @@ constexpr double kNoWidth = 1e-12;
 template <bool kWendland>
 void edges(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],
            EdgeSums& out) noexcept {
-  Lanes v = 0;
-  Lanes vh = 0;
+  Lanes v{};
+  Lanes vh{};
   Vector grad_v;
   Vector grad_vh;
   for (std::uint32_t k = begin; k < end; ++k) {
     const std::uint32_t i = c.near[k];
     const Lanes signed_share = load(c.edge_share + i);
-    const Lanes share = stdx::abs(signed_share);
+    const Lanes share = absolute(signed_share);
     if (!(sum(share) > 0)) continue;
-    const Lanes sign = stdx::copysign(Lanes(1.0), signed_share);
+    const Lanes sign = (Lanes)(((Mask)signed_share & kSign) | (Mask)same(1));
     const Vector q = offsets(c, i, x);
     const Vector n = load3(c.normal, i);
     const Vector m = load3(c.edge_normal, i);
-    Lanes width = kRoundEdge;
-    stdx::where(sign < 0, width) = kRoundCrease;
-    width = width * load(c.radius + i) + kNoWidth;
+    const Lanes round = sign < 0.0 ? same(kRoundCrease) : same(kRoundEdge);
+    const Lanes width = round * load(c.radius + i) + kNoWidth;
     const Lanes beyond = load(c.edge_height + i) - dot(m, q);
     const Larger both = larger(-sign * dot(n, q), sign * beyond, width);
     const Lanes height = sign * both.height;

@@ -2,50 +2,10 @@
 // set. Everything stands in an anonymous namespace: code for a newer processor must never be
 // merged into what an older one runs.
 
-#include <experimental/simd>
-
-#include "field/simd/sums.hpp"
+#include "field/simd/lanes.inl"
 
 namespace palpate::simd {
 namespace {
-
-namespace stdx = std::experimental;
-using Lanes = stdx::simd<double, stdx::simd_abi::deduce_t<double, kLanes>>;
-
-inline Lanes load(const double* p) {
-  return Lanes(p, stdx::element_aligned);
-}
-
-// In a fixed order, so that every level gives the same bits.
-inline double sum(const Lanes& v) {
-  return (v[0] + v[1]) + (v[2] + v[3]);
-}
-
-struct Vector {
-  Lanes x = 0;
-  Lanes y = 0;
-  Lanes z = 0;
-};
-inline Lanes dot(const Vector& a, const Vector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline void add(Vector& to, const Lanes& w, const Vector& v) {
-  to.x += w * v.x;
-  to.y += w * v.y;
-  to.z += w * v.z;
-}
-inline void store(const Vector& v, double scale, double out[3]) {
-  out[0] = scale * sum(v.x);
-  out[1] = scale * sum(v.y);
-  out[2] = scale * sum(v.z);
-}
-inline Vector load3(const double* const column[3], std::uint32_t i) {
-  return {load(column[0] + i), load(column[1] + i), load(column[2] + i)};
-}
-inline Vector offsets(const Columns& c, std::uint32_t i, const double x[3]) {
-  const Vector p = load3(c.position, i);
-  return {p.x - x[0], p.y - x[1], p.z - x[2]};
-}
 
 // w and -g up to the factors below (derived: docs/method.md 2.1), which multiply finished sums.
 struct Weight {
@@ -61,9 +21,8 @@ constexpr double kScaleSteep = kWendland ? 20 : 4. / 9;  // -g = 20 s^3 or 4 / 9
 // Without the attribute it is called and not inlined, which costs more than it computes.
 template <bool kWendland>
 [[gnu::always_inline]] inline Weight kernel(const Lanes& q) {
-  const Lanes r = kWendland ? Lanes(stdx::sqrt(q)) : q;
-  Lanes s = 1.0 - r;
-  s = 0.5 * (s + stdx::abs(s));  // max(s, 0), without a detour through masks
+  const Lanes r = kWendland ? root(q) : q;
+  const Lanes s = positive(1.0 - r);
   if constexpr (kWendland) {
     const Lanes s3 = s * s * s;
     return {s * s3 * (4.0 * r + 1.0), s3};
@@ -76,9 +35,9 @@ template <bool kWendland>
 // sum w and sum w R with their gradients. Where all radii are equal, the latter follow.
 template <bool kUneven>
 struct WeightSums {
-  Lanes w = 0;
+  Lanes w{};
   Vector grad_w;
-  Lanes wr = 0;
+  Lanes wr{};
   Vector grad_wr;
 
   void add_point(const Columns& c, std::uint32_t i, const Vector& q, const Lanes& wi,
@@ -138,8 +97,8 @@ void weights(const Columns& c, const double x[3], Sums& out) noexcept {
 
 // Terms that need normals, beside those of `weights`.
 struct NormalSums {
-  Lanes v = 0;
-  Lanes vnq = 0;
+  Lanes v{};
+  Lanes vnq{};
   Vector grad_v;
   Vector vq;
   Vector vn;
@@ -189,7 +148,7 @@ inline void find_near(const Columns& c, const double x[3], Sums& out) noexcept {
     for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
       c.near[count] = i;
-      count += stdx::any_of(dot(q, q) * load(c.inverse_r2 + i) < 1.0) ? 1 : 0;
+      count += any(dot(q, q) * load(c.inverse_r2 + i) < 1.0) ? 1 : 0;
     }
   }
   out.near_begin[c.labels * c.sources] = count;
@@ -210,7 +169,7 @@ void all(const Columns& c, const double x[3], Sums& out) noexcept {
       const Weight k = kernel<kWendland>(dot(q, q) * inverse_r2);
       const Lanes weight = load(c.weight + i);
       const Lanes slope = kScaleSteep<kWendland> * (weight * k.steep * inverse_r2);
-      slope.copy_to(c.slope + i, stdx::element_aligned);
+      std::memcpy(c.slope + i, &slope, sizeof slope);
       const Lanes w = kScaleW<kWendland> * (weight * k.w);
       sums.add_point(c, i, q, w, slope);
       normals.add_point(c, i, q, w, slope);
@@ -222,8 +181,8 @@ void all(const Columns& c, const double x[3], Sums& out) noexcept {
 
 void gradient(const Columns& c, std::uint32_t begin, std::uint32_t end, const double x[3],
               const Linear& b, double out[3]) noexcept {
-  const Vector alpha{b.alpha[0], b.alpha[1], b.alpha[2]};
-  const Vector beta{b.beta[0], b.beta[1], b.beta[2]};
+  const Vector alpha = same(b.alpha);
+  const Vector beta = same(b.beta);
   Vector total;
   for (std::uint32_t k = begin; k < end; ++k) {
     const std::uint32_t i = c.near[k];
@@ -239,11 +198,10 @@ template <bool kWendland>
 void bound(const Columns& c, const double x[3], double h, double out[kMaxSources]) noexcept {
   for (int s = 0; s < c.sources; ++s) out[s] = 0;
   for (int run = 0; run < c.labels * c.sources; ++run) {
-    Lanes w = 0;
+    Lanes w{};
     for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; i += kLanes) {
       const Vector q = offsets(c, i, x);
-      Lanes nearest = stdx::sqrt(dot(q, q)) - h;
-      nearest = 0.5 * (nearest + stdx::abs(nearest));
+      const Lanes nearest = positive(root(dot(q, q)) - h);
       const Lanes r2 = nearest * nearest * load(c.inverse_r2 + i);
       w += load(c.weight + i) * kernel<kWendland>(r2).w;
     }

@@ -4,17 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <experimental/simd>
 #include <limits>
 
+#include "base/cpu.hpp"
 #include "geometry/simd/joins.hpp"
 #include "geometry/simd/planes.inl"
 
 namespace palpate::simd {
 namespace {
-
-// Floats that one instruction takes. Another number would give the same sums.
-constexpr std::size_t kNativeLanes = std::experimental::native_simd<float>::size();
 
 template <std::size_t kLanes>
 struct Joins {
