@@ -1,12 +1,11 @@
 // Fits a plane to each block's window, in the region that is asked for.
 #include "depth/window_fits.hpp"
 
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "depth/blocks.hpp"
+#include "geometry/parallel.hpp"
 
 namespace palpate::depth {
 namespace {
@@ -168,8 +167,8 @@ BlockRange WindowFits::fit(const Blocks& blocks, const NoiseModel& noise, double
       fit_plain(blocks, noise, row, first_column, count, fits);
     });
   };
-  tbb::parallel_invoke([&] { functions_->table(in.table, rows_of(filled_)); },
-                       [&] { for_rows(range, fit_plainly); });
+  detail::parallel_pair([&] { functions_->table(in.table, rows_of(filled_)); },
+                        [&] { for_rows(range, fit_plainly); });
   for_rows(range, [&](int row) {
     const std::size_t first = grid.index(0, row);
     std::int32_t* const columns = &columns_[first];

@@ -1,7 +1,14 @@
 #pragma once
 
+// What runs side by side, by TBB. Only extras/tile/in_order.hpp knows TBB as well. PALPATE_SERIAL,
+// as a machine without threads has it: one thread does all in turn, with the same results.
+#ifndef PALPATE_SERIAL
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+#include <oneapi/tbb/parallel_sort.h>
+#include <oneapi/tbb/task_arena.h>
+#endif
 
 #include <algorithm>
 #include <cstddef>
@@ -10,6 +17,35 @@
 #include <vector>
 
 namespace palpate::detail {
+
+#ifdef PALPATE_SERIAL
+
+template <class Body>
+void parallel_ranges(std::size_t count, std::size_t /*grain*/, const Body& body) {
+  if (count > 0) body(std::size_t{0}, count);
+}
+template <class Iterator>
+void parallel_sort(Iterator begin, Iterator end) {
+  std::sort(begin, end);
+}
+template <class First, class Second>
+void parallel_pair(const First& first, const Second& second) {
+  first();
+  second();
+}
+template <class Work>
+void isolated(const Work& work) {
+  work();
+}
+class Background {
+ public:
+  template <class Work>
+  void run(const Work& work) {
+    work();
+  }
+};
+
+#else
 
 /// Calls body(begin, end) for pieces of [0, count), on several threads when there is more than one
 /// piece of `grain`. Bodies write what belongs to their piece and nothing else, so results do not
@@ -23,6 +59,38 @@ void parallel_ranges(std::size_t count, std::size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const auto& range) { body(range.begin(), range.end()); });
 }
+
+/// Sorts. Where no two are equal, the order does not depend on the number of threads.
+template <class Iterator>
+void parallel_sort(Iterator begin, Iterator end) {
+  tbb::parallel_sort(begin, end);
+}
+
+/// Calls both, side by side where there are threads for it.
+template <class First, class Second>
+void parallel_pair(const First& first, const Second& second) {
+  tbb::parallel_invoke(first, second);
+}
+
+/// Calls work(). While this thread waits for parts of it, it begins nothing else.
+template <class Work>
+void isolated(const Work& work) {
+  tbb::this_task_arena::isolate(work);
+}
+
+/// All cores but one: that is the servos'.
+class Background {
+ public:
+  template <class Work>
+  void run(const Work& work) {
+    arena_.execute(work);
+  }
+
+ private:
+  tbb::task_arena arena_{std::max(1, tbb::this_task_arena::max_concurrency() - 1)};
+};
+
+#endif
 
 /// Calls body(i) for each of [0, count) in the same way.
 template <class Body>

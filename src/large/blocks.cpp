@@ -2,9 +2,6 @@
 
 #include "large/blocks.hpp"
 
-#include <malloc.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -20,8 +17,16 @@
 #include "prepare/surfels.hpp"
 #include "refine/refinements.hpp"
 
+// Null where the C library has none; glibc has.
+extern "C" [[gnu::weak]] int malloc_trim(std::size_t) noexcept;
+
 namespace palpate {
 namespace {
+
+// Gives free memory back to the system, where the heap can.
+void trim_heap() {
+  if (malloc_trim != nullptr) malloc_trim(0);
+}
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -198,7 +203,7 @@ std::vector<Piece> Blocks::prepare_all() const {
   std::vector<Piece> pieces(size());
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
     // A thread that waits for parts of this block is not to begin another one.
-    tbb::this_task_arena::isolate([&] { pieces[k] = prepare(k); });
+    detail::isolated([&] { pieces[k] = prepare(k); });
   });
   double seconds = 0;
   watch.lap(seconds);
@@ -280,11 +285,11 @@ Prepared join(std::vector<Piece> pieces, const CloudFacts& facts, const Vector3d
     freed += piece.positions.size();
     piece = {};
     if (freed < kFreed) continue;
-    malloc_trim(0);  // many small pieces would stay in the heap
+    trim_heap();  // many small pieces would stay in the heap
     freed = 0;
   }
   pieces = {};
-  malloc_trim(0);
+  trim_heap();
   return joining.end(facts, origin, kernel);
 }
 

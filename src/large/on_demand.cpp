@@ -2,8 +2,6 @@
 
 #include "palpate/scene/on_demand.hpp"
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -20,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/parallel.hpp"
 #include "large/block_choice.hpp"
 #include "large/block_supply.hpp"
 #include "large/change_over.hpp"
@@ -76,8 +75,7 @@ struct OnDemand::Inside {
   std::set<std::string> errors;    // that were thrown
   std::vector<Reach> tools;
   const Source* source = nullptr;  // that was shown something last
-  // All but one core: that is the servos'.
-  tbb::task_arena background{std::max(1, tbb::this_task_arena::max_concurrency() - 1)};
+  detail::Background background;
   bool all_ready = false;  // of the blocks that are wanted
   std::atomic<double> share{0};
   std::atomic<bool> done{false};  // or cancelled
@@ -132,7 +130,7 @@ void OnDemand::Inside::beside_servos(const Work& work) {
   if (tools.empty()) {
     work();
   } else {
-    background.execute(work);
+    background.run(work);
   }
 }
 

@@ -1,8 +1,6 @@
 // Makes the surface of a depth frame out of the one before it.
 #include "stream/morph.hpp"
 
-#include <oneapi/tbb/parallel_invoke.h>
-
 #include <algorithm>
 
 #include "geometry/parallel.hpp"
@@ -57,10 +55,10 @@ void Morph::fill(const MorphInput& input, const FrameTiming& moment,
     for (const Piece& piece : pieces) extremes.add(piece.extremes);
   }
   unseen_.write(writer_, extremes, entries_);
-  tbb::parallel_invoke([&] { writer_.end(extremes); },
-                       [&] {
-                         if (!still) matches_.end(entries_);
-                       });
+  detail::parallel_pair([&] { writer_.end(extremes); },
+                        [&] {
+                          if (!still) matches_.end(entries_);
+                        });
   shown_.replace(points, moment, entries_);
 }
 

@@ -60,8 +60,8 @@ ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "tile"
 ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth_camera.hpp"),
            ("scene", "palpate/depth/depth_filter.hpp")}
 
-# The one file that asks what machine it is compiled for.
-PLATFORM_FILES = {"src/base/cpu.hpp"}
+# What asks what machine it is compiled for, and whether that has threads.
+PLATFORM_FILES = {"src/base/cpu.hpp", "src/geometry/parallel.hpp"}
 
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "python", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}

@@ -1,8 +1,6 @@
 // Samples each splat in its plane and adds the samples up in cells.
 #include "extras/splats/splat_cells.hpp"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
@@ -173,7 +171,7 @@ std::vector<SplatShare> shares_of(std::span<const Splat> splats, const SplatGrid
     shares.insert(shares.end(), part.begin(), part.end());
     part = {};
   }
-  tbb::parallel_sort(shares.begin(), shares.end());
+  detail::parallel_sort(shares.begin(), shares.end());
   return shares;
 }
 
