@@ -67,7 +67,7 @@ class CopcReader {
     }
     page_bytes_ += bytes;  // so pages that overlap cannot grow without end
     if (page_bytes_ > size) wrong(at, "more bytes in pages than in the file");
-    pages_.push_back({place, bytes});
+    pages_.push_back({static_cast<std::size_t>(place), static_cast<std::size_t>(bytes)});
   }
 
   void read_page() {

@@ -19,7 +19,7 @@ namespace palpate::io {
 namespace {
 
 // Bytes; a pipe may never end (judgement)
-constexpr std::size_t kLongestStream = std::size_t{16} << 30U;
+constexpr std::uint64_t kLongestStream = std::uint64_t{16} << 30U;
 constexpr std::size_t kBlock = std::size_t{1} << 20U;  // bytes read at once (judgement)
 
 class Descriptor {
@@ -103,7 +103,7 @@ Bytes read_stream(int fd, const std::string& name) {
   while (true) {
     done += read_full(fd, bytes.span().subspan(done), name);
     if (done < bytes.size()) break;
-    if (done >= kLongestStream) {
+    if (std::uint64_t{done} >= kLongestStream) {
       throw Error(
           name +
           ": still not finished after 16 GiB. Write it to a file and split it into tiles first.");
@@ -194,8 +194,7 @@ Parts parts_of(std::span<const std::byte> bytes) {
 
 namespace {
 
-constexpr std::size_t kAlwaysAllowed = std::size_t{64} << 20U;
-constexpr std::size_t kLargestRatio = 250;
+constexpr std::size_t kAlwaysAllowed = std::size_t{64} << 20U, kLargestRatio = 250;
 constexpr int kGzipWindow = 15 + 16;  // zlib's way of saying "gzip header, largest window"
 
 // zlib's state, released whatever happens. A gzip member ends; the next one needs a reset.
@@ -290,7 +289,8 @@ class Gunzip {
 }  // namespace
 
 std::size_t largest_unpacked(std::size_t packed) {
-  return std::max(kAlwaysAllowed, kLargestRatio * packed);
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  return std::max(kAlwaysAllowed, kLargestRatio * std::min(packed, kMost / kLargestRatio));
 }
 
 Bytes gunzip(const Input& input, std::size_t most) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "io/formats.hpp"
@@ -99,7 +101,10 @@ class LasHeaderParser {
     header_.points = load_as<std::uint32_t>(data_ + kLegacyCount);
     if (header_.minor_version < 4) return;
     const std::uint64_t count = load_as<std::uint64_t>(data_ + kCount14);
-    if (count > 0) header_.points = count;  // some writers of 1.4 fill in the old field alone
+    if (count == 0) return;  // some writers of 1.4 fill in the old field alone
+    // More than memory addresses: too many for any file's bytes, which is told later.
+    constexpr std::uint64_t kMost = std::numeric_limits<std::size_t>::max();
+    header_.points = static_cast<std::size_t>(std::min(count, kMost));
   }
 
   [[noreturn]] void wrong(std::size_t offset, std::string_view what) const {

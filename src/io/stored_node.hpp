@@ -12,8 +12,8 @@ namespace palpate::io {
 
 struct StoredNode {
   PointStore::Node node;
-  std::size_t place = 0;  ///< bytes from the start of the file
-  std::size_t bytes = 0;
+  std::uint64_t place = 0;  ///< bytes from the start of the file, as that says it
+  std::uint64_t bytes = 0;
 };
 
 /// Makes colours bytes, by one rule for all nodes of a store.

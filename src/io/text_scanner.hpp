@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -123,6 +124,10 @@ class TextScanner {
 /// which are all not finite. What is too large for a double becomes infinite, what is too small
 /// zero.
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
+
+/// Does what std::from_chars() does for a double, by strtod(): C++ libraries have had the former
+/// late.
+std::from_chars_result number_by_strtod(std::string_view text, double& value);
 
 /// A whole token as a count.
 [[nodiscard]] std::optional<std::size_t> parse_count(std::string_view token);

@@ -57,8 +57,8 @@ class HierarchyReader {
   };
 
   // `at`: the byte that says where the chunk is.
-  void add_chunk(std::size_t at, const PointStore::Node& top, std::size_t place,
-                 std::size_t bytes) {
+  void add_chunk(std::size_t at, const PointStore::Node& top, std::uint64_t place,
+                 std::uint64_t bytes) {
     const std::size_t size = input_.bytes.size();
     if (place > size || bytes > size - place || bytes == 0 || bytes % kNodeSize != 0) {
       wrong(at, fmt::format("the nodes below {} are {} bytes at byte {} of a file of {}",
@@ -69,7 +69,7 @@ class HierarchyReader {
     }
     chunk_bytes_ += bytes;  // so chunks that overlap cannot grow without end
     if (chunk_bytes_ > size) wrong(at, "more bytes in chunks of nodes than in the file");
-    chunks_.push_back({top, place, bytes});
+    chunks_.push_back({top, static_cast<std::size_t>(place), static_cast<std::size_t>(bytes)});
   }
 
   void read_chunk() {
@@ -155,7 +155,7 @@ void check_nodes(const std::vector<StoredNode>& nodes, const Metadata& metadata,
     end = each.place + each.bytes;
     points += each.node.points;
     const std::size_t most = metadata.packed ? largest_unpacked(each.bytes) : each.bytes;
-    if (each.node.points * metadata.point_size > most) {
+    if (std::uint64_t{each.node.points} * metadata.point_size > most) {
       wrong(fmt::format("node {} has {} points in {} bytes, which cannot hold them", name,
                         each.node.points, each.bytes));
     }
