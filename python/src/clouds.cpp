@@ -143,9 +143,7 @@ Arrays are views that cannot be written to.)";
 constexpr const char* kPrepare = R"(Filters and indexes a cloud and finds its sheets, on every core.
 
 cloud: a PointCloud, a file, or an (n, 3) array with the keywords of PointCloud. pose: (4, 4), cloud to world.
-Keywords: voxel (m), radius (m), smoothing (factor on the R that is chosen), minimum_radius (m), normal_error (rad), viewpoint (3,), orientation
-(automatic, viewpoint, outward, given), clip (lower, upper), remove_speckle, estimate_normals,
-material_from_intensity, paper, kernel (wyvill, wendland).)";
+Keywords: {}.)";
 
 void define_cloud(py::module_& module) {
   using Cloud = PointCloud;
@@ -239,7 +237,8 @@ void define_clouds(py::module_& module) {
   define_surface_points(module);
   define_report(module);
   module.def("prepare", &prepare_cloud, py::arg("cloud"),
-             py::arg("pose") = Eigen::Matrix4d::Identity().eval(), kPrepare);
+             py::arg("pose") = Eigen::Matrix4d::Identity().eval(),
+             fmt::format(kPrepare, listed(keywords_of<PrepareOptions>())).c_str());
 }
 
 }  // namespace palpate::python

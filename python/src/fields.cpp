@@ -127,10 +127,10 @@ void define_fields(py::module_& module) {
            fmt::format("(n, 3) float64, outward, d value / d x. {}", kAsked).c_str());
   py::class_<ScenesField, AnyField, std::shared_ptr<ScenesField>>(
       module, "Field",
-      "The surface of a scene, by kind: balanced, pointset or metaball. Keywords: paper, kernel, "
-      "gradient, threshold, "
-      "minimum_support, tool_radius (m), capped, sharp_edges. One thread uses it at a time; others "
-      "wait.")
+      fmt::format("The surface of a scene, by kind. Keywords: paper, {}. One thread uses it at a "
+                  "time; others wait.",
+                  listed(keywords_of<FieldOptions>()))
+          .c_str())
       .def(py::init(&scene_field), py::arg("scene"))
       .def("__repr__", [](const ScenesField& field) {
         return fmt::format("<palpate.Field: tool radius {} m>",

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "options.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::python {
@@ -52,5 +53,6 @@ PYBIND11_MODULE(_palpate, module) {
   python::define_fields(module);
   python::define_proxy(module);
   python::define_servo(module);
+  python::define_keywords(module);
   python::refuse_pickling(module);
 }

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <pybind11/eigen.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
@@ -14,7 +15,7 @@
 namespace palpate::python {
 
 bool Keywords::offer(const char* name) {
-  offered_.emplace_back(name);
+  if (std::ranges::find(offered_, name) == offered_.end()) offered_.emplace_back(name);
   return given_.contains(name);
 }
 
@@ -38,107 +39,70 @@ void Keywords::finish() const {
   }
 }
 
-namespace {
-
-constexpr std::initializer_list<Named<Kernel>> kKernels = {{"wyvill", Kernel::wyvill},
-                                                           {"wendland", Kernel::wendland}};
-
-}  // namespace
-
-void take(Keywords& keywords, PrepareOptions& options) {
-  using Orientation = PrepareOptions::Orientation;
-  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> clip;
-  keywords.take("voxel", options.voxel);
-  keywords.take("radius", options.radius);
-  keywords.take("smoothing", options.smoothing);
-  keywords.take("minimum_radius", options.minimum_radius);
-  keywords.take("normal_error", options.normal_error);
-  keywords.take("viewpoint", options.viewpoint);
-  keywords.take("orientation", options.orientation,
-                {{"automatic", Orientation::automatic},
-                 {"viewpoint", Orientation::viewpoint},
-                 {"outward", Orientation::outward},
-                 {"given", Orientation::given}});
-  keywords.take("clip", clip);
-  if (clip) options.clip = Box{clip->first, clip->second};
-  keywords.take("remove_speckle", options.remove_speckle);
-  keywords.take("estimate_normals", options.estimate_normals);
-  keywords.take("material_from_intensity", options.material_from_intensity);
-  keywords.take("paper", options.paper);
-  keywords.take("kernel", options.kernel, kKernels);
+bool Keywords::take(const char* name, std::optional<Box>& into) {
+  std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> corners;
+  const bool taken = take(name, corners);
+  if (corners) into = Box{corners->first, corners->second};
+  return taken;
 }
 
-void take(Keywords& keywords, PolicyOptions& options) {
-  Policy policy{};
-  if (keywords.take("policy", policy,
-                    {{"replace", Policy::replace},
-                     {"average", Policy::average},
-                     {"crossfade", Policy::crossfade},
-                     {"morph", Policy::morph}})) {
-    options.policy = policy;
-  }
-  keywords.take("history", options.history);
-  keywords.take("silence", options.silence);
-  keywords.take("fade", options.fade);
-  keywords.take("fit_everywhere", options.fit_everywhere);
-  keywords.take("clip_to_reach", options.clip_to_reach);
-}
-
-void take(Keywords& keywords, DepthFilterOptions& options) {
+bool Keywords::take(const char* name, std::optional<NoiseModel>& into) {
   std::variant<std::monostate, std::string, std::array<double, 3>> noise;
-  keywords.take("noise", noise);
-  if (const auto* const name = std::get_if<std::string>(&noise))
-    options.noise = sensor_noise(*name);
+  const bool taken = take(name, noise);
+  if (const auto* const sensor = std::get_if<std::string>(&noise)) into = sensor_noise(*sensor);
   if (const auto* const sigma = std::get_if<std::array<double, 3>>(&noise)) {
-    options.noise = NoiseModel{.coefficients = *sigma};
+    into = NoiseModel{.coefficients = *sigma};
   }
-  keywords.take("normal_error", options.normal_error);
-  keywords.take("memory", options.memory);
-  keywords.take("nearest", options.nearest);
-  keywords.take("farthest", options.farthest);
+  return taken;
 }
 
 void take(Keywords& keywords, FieldOptions& options) {
-  using Kind = FieldOptions::Kind;
-  using Gradient = FieldOptions::Gradient;
-  keywords.take(
-      "kind", options.kind,
-      {{"balanced", Kind::balanced}, {"pointset", Kind::pointset}, {"metaball", Kind::metaball}});
+  keywords.take("kind", options.kind);
   bool paper = false;
   keywords.take("paper", paper);
   if (paper) options = paper_field(options.kind);
-  keywords.take("kernel", options.kernel, kKernels);
-  keywords.take(
-      "gradient", options.gradient,
-      {{"exact", Gradient::exact}, {"normal", Gradient::normal}, {"printed", Gradient::printed}});
-  keywords.take("threshold", options.threshold);
-  keywords.take("minimum_support", options.minimum_support);
-  keywords.take("tool_radius", options.tool_radius);
-  keywords.take("capped", options.capped);
-  keywords.take("sharp_edges", options.sharp_edges);
+  take<FieldOptions>(keywords, options);
 }
 
-void take(Keywords& keywords, ProxyOptions& options) {
-  using Method = ProxyOptions::Method;
-  keywords.take("stiffness", options.stiffness);
-  keywords.take("friction_static", options.friction.static_coefficient);
-  keywords.take("friction_dynamic", options.friction.dynamic_coefficient);
-  keywords.take("friction_viscous", options.friction.viscous);
-  keywords.take("texture_amplitude", options.texture.amplitude);
-  keywords.take("texture_wavelength", options.texture.wavelength);
-  keywords.take("method", options.method,
-                {{"converged", Method::converged}, {"single_step", Method::single_step}});
-  keywords.take("max_iterations", options.max_iterations);
-  keywords.take("tangent_tolerance", options.tangent_tolerance);
-  keywords.take("rise_time", options.rise_time);
+TypeWords choice_words(const std::vector<std::string>& names) {
+  return {fmt::format("Literal['{}']", fmt::join(names, "', '")),
+          fmt::format("({})", fmt::join(names, ", "))};
 }
 
-void take(Keywords& keywords, GuardOptions& options) {
-  keywords.take("maximum_force", options.maximum_force);
-  keywords.take("slew", options.slew);
-  keywords.take("damping", options.damping);
-  keywords.take("soft_start", options.soft_start);
-  keywords.take("stiffness_share", options.stiffness_share);
+std::string listed(const std::vector<Keyword>& keywords) {
+  std::string text;
+  for (const Keyword& each : keywords) {
+    text += text.empty() ? each.name : ", " + each.name;
+    if (!each.unit.empty() && each.type.words.empty()) text += fmt::format(" ({})", each.unit);
+    if (!each.type.words.empty()) text += " " + each.type.words;
+  }
+  return text;
+}
+
+namespace {
+
+template <Described Options>
+void put(py::dict& all, const char* name) {
+  py::dict types;
+  for (const Keyword& each : keywords_of<Options>()) types[each.name.c_str()] = each.type.stub;
+  all[name] = types;
+}
+
+py::dict all_keywords() {
+  py::dict all;
+  put<PrepareOptions>(all, "PrepareOptions");
+  put<PolicyOptions>(all, "PolicyOptions");
+  put<DepthFilterOptions>(all, "DepthFilterOptions");
+  put<FieldOptions>(all, "FieldOptions");
+  put<ProxyOptions>(all, "ProxyOptions");
+  put<GuardOptions>(all, "GuardOptions");
+  return all;
+}
+
+}  // namespace
+
+void define_keywords(py::module_& module) {
+  module.def("_keywords", &all_keywords, "Keywords of each struct of options, with their types");
 }
 
 }  // namespace palpate::python

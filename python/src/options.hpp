@@ -3,29 +3,22 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <initializer_list>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "palpate/contact/proxy.hpp"
-#include "palpate/depth/depth_filter.hpp"
-#include "palpate/field/field_options.hpp"
-#include "palpate/prepare/prepare.hpp"
-#include "palpate/scene/source.hpp"
-#include "palpate/servo/guard.hpp"
+#include "contact/description.hpp"
+#include "depth/description.hpp"
+#include "field/description.hpp"
+#include "prepare/description.hpp"
+#include "scene/description.hpp"
+#include "servo/description.hpp"
 
 namespace palpate::python {
 
 namespace py = pybind11;
-
-/// A choice of an option, by its name.
-template <class Choice>
-struct Named {
-  const char* name;
-  Choice choice;
-};
 
 /// Keyword arguments on their way into the library's option structs.
 class Keywords {
@@ -47,20 +40,30 @@ class Keywords {
     return true;
   }
 
-  /// The same of a choice. @throws Error that lists them.
+  /// The same of a choice, by its name. @throws Error that lists them.
   template <class Choice>
-  bool take(const char* name, Choice& into, std::initializer_list<Named<Choice>> choices) {
+  requires std::is_enum_v<Choice>
+  bool take(const char* name, Choice& into) {
     std::string wanted;
     if (!take(name, wanted)) return false;
-    const auto* const found = std::ranges::find(choices, wanted, &Named<Choice>::name);
-    if (found != choices.end()) {
-      into = found->choice;
-      return true;
-    }
-    std::vector<std::string> names;
-    for (const Named<Choice>& each : choices) names.emplace_back(each.name);
-    refuse_choice(name, wanted, names);
+    const auto& table = choices(Choice());
+    const std::optional<Choice> found = choice_of(table, wanted);
+    if (!found) refuse_choice(name, wanted, names_of(table));
+    into = *found;
+    return true;
   }
+  template <class Choice>
+  requires std::is_enum_v<Choice>
+  bool take(const char* name, std::optional<Choice>& into) {
+    Choice choice{};
+    const bool taken = take(name, choice);
+    if (taken) into = choice;
+    return taken;
+  }
+  /// (lower, upper), each (3,).
+  bool take(const char* name, std::optional<Box>& into);
+  /// The name of a sensor, or (s0, s1, s2).
+  bool take(const char* name, std::optional<NoiseModel>& into);
 
   /// @throws py::type_error for arguments that nobody took; lists those that could be.
   void finish() const;
@@ -76,12 +79,65 @@ class Keywords {
   std::vector<std::string> offered_;
 };
 
-/// Each takes the keywords that stand for the members of its struct.
-void take(Keywords& keywords, PrepareOptions& options);
-void take(Keywords& keywords, PolicyOptions& options);
-void take(Keywords& keywords, DepthFilterOptions& options);
+/// Takes the keywords that stand for the members of a described struct.
+template <Described Options>
+void take(Keywords& keywords, Options& options) {
+  each_option(options, [&](const std::string& name, const About& about, auto& member) {
+    using Member = std::remove_reference_t<decltype(member)>;
+    if constexpr (!std::is_same_v<Member, std::optional<CloudFacts>>) {
+      if (about.offered != Offered::recordings) keywords.take(name.c_str(), member);
+    }
+  });
+}
+/// The same, and `paper`: paper_field().
 void take(Keywords& keywords, FieldOptions& options);
-void take(Keywords& keywords, ProxyOptions& options);
-void take(Keywords& keywords, GuardOptions& options);
+
+/// What Python says of a member's type: in stubs, and in docstrings where it has no unit.
+struct TypeWords {
+  std::string stub;
+  std::string words = {};
+};
+[[nodiscard]] TypeWords choice_words(const std::vector<std::string>& names);
+template <class Member>
+[[nodiscard]] TypeWords type_words() {
+  if constexpr (std::is_same_v<Member, std::optional<double>>) return {"float | None"};
+  if constexpr (std::is_same_v<Member, double>) return {"float"};
+  if constexpr (std::is_same_v<Member, bool>) return {"bool"};
+  if constexpr (std::is_same_v<Member, int>) return {"int"};
+  if constexpr (std::is_same_v<Member, std::optional<Eigen::Vector3d>>)
+    return {"_Three | None", "(3,)"};
+  if constexpr (std::is_same_v<Member, std::optional<Box>>)
+    return {"tuple[_Three, _Three] | None", "(lower, upper)"};
+  if constexpr (std::is_same_v<Member, std::optional<NoiseModel>>)
+    return {"str | Sequence[float] | None", "(name of a sensor or (s0, s1, s2))"};
+  if constexpr (std::is_enum_v<Member>) return choice_words(names_of(choices(Member())));
+  if constexpr (std::is_same_v<Member, std::optional<Policy>>) return type_words<Policy>();
+}
+
+/// The keywords of a described struct: name and what is said of it, in its order.
+struct Keyword {
+  std::string name;
+  std::string unit;
+  TypeWords type;
+};
+template <Described Options>
+[[nodiscard]] std::vector<Keyword> keywords_of() {
+  std::vector<Keyword> keywords;
+  Options options;
+  each_option(options, [&](const std::string& name, const About& about, auto& member) {
+    using Member = std::remove_reference_t<decltype(member)>;
+    if (about.offered == Offered::recordings) return;
+    if constexpr (!std::is_same_v<Member, std::optional<CloudFacts>>) {
+      keywords.push_back({name, about.unit, type_words<Member>()});
+    }
+  });
+  return keywords;
+}
+
+/// "policy (replace, average, crossfade, morph), history, silence (s)", for docstrings.
+[[nodiscard]] std::string listed(const std::vector<Keyword>& keywords);
+
+/// `_keywords()`, by which a test compares the stubs.
+void define_keywords(py::module_& module);
 
 }  // namespace palpate::python

@@ -113,9 +113,7 @@ void define_results(py::module_& module) {
 
 constexpr const char* kProxy = R"(The point that follows the hand and stays on the surface.
 
-Keywords: stiffness (500 N/m), friction_static, friction_dynamic, friction_viscous (N s/m), texture_amplitude (m),
-texture_wavelength (m), method (converged, single_step), max_iterations, tangent_tolerance, rise_time (s). Input that is not
-finite is a fault: zero force until reset().)";
+Keywords: {}. Input that is not finite is a fault: zero force until reset().)";
 
 constexpr const char* kRollout = R"(All ticks of a hand, without the GIL.
 
@@ -133,7 +131,8 @@ void define_proxy(py::module_& module) {
   using Bound = TimedProxy;
   using Free = py::call_guard<py::gil_scoped_release>;
   define_results(module);
-  py::class_<Bound>(module, "Proxy", kProxy)
+  py::class_<Bound>(module, "Proxy",
+                    fmt::format(kProxy, listed(keywords_of<ProxyOptions>())).c_str())
       .def(py::init(&new_proxy))
       .def("__repr__", [](const Bound& proxy) { return words(proxy); })
       .def("step", &step, arg("field"), arg("hip"), arg("dt") = 1e-3,

@@ -213,13 +213,13 @@ Sources are added before the first Field or Servo.)";
 
 constexpr const char* kAddStream = R"(A sensor whose clouds are pushed.
 
-Keywords: policy (crossfade, average, replace), history, silence (s), fade (s), those of prepare().)";
+Keywords: {}, those of prepare().)";
 
 constexpr const char* kAddCamera = R"(A depth camera whose images are pushed.
 
 K: (fx, fy, cx, cy), pixels; size: (width, height); pose: (4, 4), camera (x right, y down, z forward) to world;
-unit: metres a step of uint16 images; distortion: (k1, k2, p1, p2, k3). Keywords: policy (morph), history,
-silence (s), fade (s), noise (name of a sensor or (s0, s1, s2)), memory, nearest (m), farthest (m), radius (m).)";
+unit: metres a step of uint16 images; distortion: (k1, k2, p1, p2, k3). Keywords: radius (m),
+{}, {}.)";
 
 void define_sources(py::module_& module) {
   using py::arg;
@@ -274,10 +274,13 @@ void define_scene(py::module_& module) {
       .def("__len__", &size_of)
       .def("__repr__", [](SharedScene& scene) { return words(scene); })
       .def("add", &add_cloud, arg("name"), arg("cloud"), arg("pose") = identity, kAdd)
-      .def("add_stream", &add_stream, arg("name"), arg("pose") = identity, kAddStream)
+      .def("add_stream", &add_stream, arg("name"), arg("pose") = identity,
+           fmt::format(kAddStream, listed(keywords_of<PolicyOptions>())).c_str())
       .def("add_camera", &add_camera, arg("name"), py::kw_only(), arg("K"), arg("size"),
            arg("pose") = identity, arg("unit") = 1e-3, arg("distortion") = std::array<double, 5>{},
-           kAddCamera)
+           fmt::format(kAddCamera, listed(keywords_of<PolicyOptions>()),
+                       listed(keywords_of<DepthFilterOptions>()))
+               .c_str())
       .def("state", &state_of, arg("index"), "SourceState, with its distance to other sources");
 }
 

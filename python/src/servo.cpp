@@ -134,7 +134,7 @@ constexpr const char* kServo =
 device: simulated (a mass that a hand pulls along `hand`, (n, 3) m, a row each dt s, again and again, or to where
 move() says), remote[:PATH], forcedimension, openhaptics, haply, ros:PRESET. pose: (4, 4) of the device's frame in the
 world; scale: metres in the world for one at the hand. Keywords: those of Field and Proxy; of the guard
-maximum_force (N), slew (N/s), damping (N s/m), soft_start (s), stiffness_share; clutch_button, rate (Hz),
+{}; clutch_button, rate (Hz),
 realtime_priority, lock_memory, processor.)";
 
 constexpr const char* kTicks = R"(Record array of the steps since the last call.
@@ -180,7 +180,8 @@ void define_servo(py::module_& module) {
   using Handle = ServoHandle;
   register_tick();
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
-  py::class_<Handle> servo(module, "Servo", kServo);
+  py::class_<Handle> servo(module, "Servo",
+                           fmt::format(kServo, listed(keywords_of<GuardOptions>())).c_str());
   servo
       .def(py::init(&new_servo), arg("scene"), arg("device") = "simulated", py::kw_only(),
            arg("hand") = py::none(), arg("dt") = 1e-3, arg("pose") = identity, arg("scale") = 1.0)

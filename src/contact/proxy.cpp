@@ -5,32 +5,18 @@
 #include <cmath>
 
 #include "base/requirement.hpp"
+#include "contact/description.hpp"
 #include "contact/proxy_inside.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr int kMostIterations = 1000;  // fifty times the default; more is a mistake (judgement)
-
 const ProxyOptions& checked(const ProxyOptions& options) {
-  const Requirement require{"proxy"};
-  // The remedy in errors about numbers.
-  constexpr const char* kAtLeastZero = "give a number that is 0 or more";
-  require.not_negative("stiffness (N/m)", options.stiffness, kAtLeastZero);
+  check_described("proxy", options);
   const Friction& friction = options.friction;
-  require.not_negative("static friction", friction.static_coefficient, kAtLeastZero);
-  require.not_negative("dynamic friction", friction.dynamic_coefficient, kAtLeastZero);
-  require.not_negative("viscous friction (N s/m)", friction.viscous, kAtLeastZero);
-  require(friction.dynamic_coefficient <= friction.static_coefficient, "dynamic friction",
+  const Requirement require{"proxy"};
+  require(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
           friction.dynamic_coefficient, "give at most the static coefficient, or raise that");
-  require.not_negative("texture amplitude (m)", options.texture.amplitude, kAtLeastZero);
-  require.positive("texture wavelength (m)", options.texture.wavelength, "give a length above 0");
-  require(options.max_iterations >= 1 && options.max_iterations <= kMostIterations,
-          "max_iterations", options.max_iterations, "give 1 to 1000");
-  require(options.tangent_tolerance >= 1e-6 && options.tangent_tolerance <= 0.1,
-          "tangent_tolerance", options.tangent_tolerance, "give 1e-6 to 0.1 support radii");
-  require(options.rise_time > 0, "rise_time (s)", options.rise_time,
-          "give a time above 0, infinity for no rise that nothing pays for");
   return options;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "depth/blocks.hpp"
+#include "depth/description.hpp"
 #include "geometry/rotation.hpp"
 #include "palpate/base/error.hpp"
 
@@ -33,17 +34,8 @@ void check(const NoiseModel& noise, const DepthFilterOptions& options) {
 }  // namespace
 
 void check(const DepthFilterOptions& options) {
-  if (!(options.normal_error > 0 && options.normal_error < 1)) {
-    throw Error(fmt::format("depth filter: normal_error is {} rad; give a value from 0.001 to 0.1",
-                            options.normal_error));
-  }
-  if (options.memory < 1) {
-    throw Error(fmt::format("depth filter: memory is {} frames; give 1 or more", options.memory));
-  }
-  constexpr double kClosest = 1e-3;  // m; inverse depths are counted in 31 bits of 2^-20 / m
-  const bool range = options.nearest >= kClosest && options.farthest > options.nearest &&
-                     std::isfinite(options.farthest);
-  if (!range) {
+  check_described("depth filter", options);
+  if (!(options.farthest > options.nearest)) {
     throw Error(fmt::format(
         "depth filter: {} to {} m is not a valid depth range; give 0.001 <= nearest < farthest",
         options.nearest, options.farthest));

@@ -3,6 +3,7 @@
 #include "palpate/field/field_options.hpp"
 
 #include "base/requirement.hpp"
+#include "field/description.hpp"
 #include "field/formulas.hpp"
 
 namespace palpate {
@@ -32,13 +33,10 @@ double plane_offset(Kernel kernel, double threshold) noexcept {
 }
 
 void check(const FieldOptions& options) {
+  check_described("field", options);
   const Requirement require{"field"};
-  require.positive("threshold", options.threshold, "give a number above 0");
   require(options.raw_weights || options.threshold < 1, "threshold", options.threshold,
           "give less than 1 with density-normalised weights (usually 0.4)");
-  require(options.minimum_support > 0 && options.minimum_support < 1, "minimum_support",
-          options.minimum_support, "give a number between 0 and 1");
-  require.not_negative("tool_radius", options.tool_radius, "give 0 or more, in metres");
   require(options.tool_radius == 0 || !options.raw_weights, "tool_radius", options.tool_radius,
           "give 0 with raw weights (the preset `paper` uses a point tool)");
 }

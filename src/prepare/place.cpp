@@ -9,6 +9,7 @@
 
 #include "base/requirement.hpp"
 #include "palpate/base/error.hpp"
+#include "prepare/description.hpp"
 #include "prepare/given_normals.hpp"
 
 namespace palpate {
@@ -66,18 +67,9 @@ void check_pose(const Eigen::Isometry3d& pose) {
 
 void check(const PrepareOptions& options, const PointCloud& cloud) {
   check(cloud);
-  const Requirement require{"preparation"};
-  if (options.voxel) {
-    require.not_negative("voxel", *options.voxel,
-                         "give 0 (keep every point) or a length in metres");
-  }
-  if (options.radius) {
-    require.positive("radius", *options.radius, "give a length above 0, in metres");
-  }
-  require.positive("smoothing", options.smoothing, "give a factor above 0 (usually 1)");
-  require.not_negative("minimum_radius", options.minimum_radius, "give 0 or a length in metres");
-  require.positive("normal_error", options.normal_error, "give an angle above 0, in radians");
+  check_described("preparation", options);
   if (options.facts) {
+    const Requirement require{"preparation"};
     require.not_negative("facts.noise.sigma", options.facts->noise.sigma, "give metres, 0 or more");
   }
   if (options.orientation == PrepareOptions::Orientation::viewpoint && !options.viewpoint &&

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/requirement.hpp"
+#include "servo/description.hpp"
 #include "servo/passivity.hpp"
 #include "servo/sliding_share.hpp"
 
@@ -12,26 +12,6 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-void validate(const GuardOptions& options) {
-  const Requirement require{"guard"};
-  require(options.maximum_force > 0, "maximum_force (N)", options.maximum_force,
-          "give a force above 0, infinity for no limit");
-  require.positive("slew (N/s)", options.slew, "give a rate above 0");
-  require.not_negative("damping (N s/m)", options.damping, "give a number that is 0 or more");
-  require(options.silence > 0, "silence (s)", options.silence,
-          "give a time above 0, infinity for no watchdog");
-  require.not_negative("soft_start (s)", options.soft_start, "give a time that is 0 or more");
-  require(options.stiffness_share > 0, "stiffness_share", options.stiffness_share,
-          "give a number above 0, infinity for no limit");
-  const GuardOptions::Passivity& passivity = options.passivity;
-  require.positive("passivity.mass (kg)", passivity.mass, "give a mass above 0");
-  require.not_negative("passivity.memory (J)", passivity.memory,
-                       "give an energy that is 0 or more");
-  require(passivity.delay >= 0 && passivity.delay <= Passivity::kMaximumDelay, "passivity.delay",
-          passivity.delay, "give 0 to 16 steps");
-  require(passivity.forget > 0, "passivity.forget (s)", passivity.forget, "give a time above 0");
-}
 
 // False for NaN, too.
 bool sane(const Vector3d& v) noexcept {
@@ -65,7 +45,7 @@ void note(Guard::State& state, GuardNote bit, std::uint64_t& count) noexcept {
 class Guard::Inside {
  public:
   explicit Inside(const GuardOptions& options) : options_(options), passivity_(options.passivity) {
-    validate(options);
+    check_described("guard", options);
   }
 
   [[nodiscard]] Vector3d pass(const Guard::Input& input) noexcept;

@@ -8,6 +8,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "prepare/place.hpp"
+#include "scene/description.hpp"
 #include "stream/streaming.hpp"
 
 namespace palpate {
@@ -34,19 +35,7 @@ const SourceOptions& checked(const SourceOptions& source) {
     if (radius >= 0 && std::isfinite(radius)) continue;
     throw Error(fmt::format("invalid support radius of {} m; give a length in metres", radius));
   }
-  const PolicyOptions& options = source.policy;
-  const Policy policy = options.policy.value_or(Policy::morph);
-  if (policy > Policy::crossfade && policy != Policy::morph)  // a recording may hold fusion, 3
-    throw Error("policy: unknown or removed; give replace, average, crossfade or morph");
-  if (options.history < 1 || options.history > static_cast<int>(Snapshot::kMaxLayers) - 1) {
-    throw Error(fmt::format("policy: invalid history of {} clouds; give 1 to {}", options.history,
-                            Snapshot::kMaxLayers - 1));
-  }
-  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
-  if (!positive(options.silence) || !positive(options.fade)) {
-    throw Error(fmt::format("policy: invalid silence of {} s or fade of {} s; give times above 0",
-                            options.silence, options.fade));
-  }
+  check_described("policy", source.policy);
   return source;
 }
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,11 @@
 #include "apps/palpate/options/touch_options.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
+#include "depth/description.hpp"
+#include "field/description.hpp"
+#include "prepare/description.hpp"
+#include "scene/description.hpp"
+#include "servo/description.hpp"
 
 namespace palpate::app {
 namespace {
@@ -137,6 +143,26 @@ TEST(SetupFile, EveryPartAndKeyIsDocumented) {
   EXPECT_EQ(sections, (std::set<std::string>{"reading", "stream", "surface", "material", "hand",
                                              "guard", "servo", "ros"}));
   EXPECT_EQ(of_sources, 22);
+}
+
+template <class Options>
+void expect_explained(const std::string& text) {
+  const Options options;
+  each_option(options, [&](const std::string& key, const About& about, const auto& /*member*/) {
+    if (about.offered != Offered::files) return;
+    EXPECT_NE(text.find(fmt::format("| `{}` |", key)), std::string::npos) << key;
+    EXPECT_NE(text.find(fmt::format("| {}", about.help)), std::string::npos) << about.help;
+  });
+}
+
+TEST(SetupFile, KeysOfTheFileAloneAreExplainedAsTheyAreDescribed) {
+  std::ifstream file(PALPATE_DOCS "/setup.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  expect_explained<PrepareOptions>(text);
+  expect_explained<PolicyOptions>(text);
+  expect_explained<DepthFilterOptions>(text);
+  expect_explained<FieldOptions>(text);
+  expect_explained<GuardOptions>(text);
 }
 
 TEST(SetupFile, CommandLineWins) {

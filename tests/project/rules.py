@@ -46,7 +46,7 @@ FLOORS = CORE | {
 }
 # The files of two floors from the first step on: what stands in one line sees what stands above it.
 STEPS = {
-    "prepare": [{"stopwatch", "point_fits", "places", "height_groups"},
+    "prepare": [{"description", "stopwatch", "point_fits", "places", "height_groups"},
                 {"given_normals", "lines", "sheet_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
     "refine": [{"said_by_sets", "holes"}, {"bonds", "layered_sets"}, {"strays"}, {"gaps"}, {"sheets"},

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "apps/palpate/cli/errors.hpp"
 #include "palpate/base/error.hpp"
@@ -65,6 +66,26 @@ std::function<void(const std::string&)> checked(const std::string& name,
 }
 
 }  // namespace
+
+std::string option_name(std::string key) {
+  std::ranges::replace(key, '_', '-');
+  return "--" + key;
+}
+
+std::string type_of(const About& about) {
+  std::string unit = about.unit;
+  if (unit.empty()) return about.value;
+  if (unit == "m") return "METRES";
+  if (unit == "s") return "SECONDS";
+  std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return std::toupper(c); });
+  return unit;
+}
+
+CLI::Validator check_of(const Range& range, bool whole) {
+  if (!whole) return number(range.text(), [range](double x) { return range.contains(x); });
+  return whole_number(static_cast<std::int64_t>(range.least),
+                      static_cast<std::int64_t>(range.most));
+}
 
 std::string Registration::key() const {
   std::string key = name.substr(2);

@@ -5,14 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/checks.hpp"
-#include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/options/run_facts.hpp"
+#include "base/description.hpp"
 
 namespace palpate::app {
 
@@ -36,6 +37,25 @@ struct Registration {
   /// The key in a set-up file: "tool_radius".
   [[nodiscard]] std::string key() const;
 };
+
+/// What an optional holds, and anything else itself.
+template <class Value>
+struct HeldBy {
+  using type = Value;
+};
+template <class Value>
+struct HeldBy<std::optional<Value>> {
+  using type = Value;
+};
+
+/// "--soft-start" of the key soft_start.
+[[nodiscard]] std::string option_name(std::string key);
+
+/// What stands for the value of a described option in help: "SECONDS".
+[[nodiscard]] std::string type_of(const About& about);
+
+/// The check of a number of that range.
+[[nodiscard]] CLI::Validator check_of(const Range& range, bool whole);
 
 /// The options of a command line and the keys of a set-up file, each registered once: name, where
 /// it stands, type, check, help, scope, and the variable that it sets. Variables outlive the
@@ -66,6 +86,34 @@ class OptionTable {
   Registration& add(const std::string& name, Value& value, const std::string& type,
                     const std::string& help) {
     return add(name, value, type, CLI::Validator(), help);
+  }
+
+  /// One of described options: what is said of it tells name, type, check and help, and whether
+  /// set-up files alone have it. `check` holds instead of its range.
+  template <class Value>
+  Registration& add(const KeyedAbout& option, Value& value, const CLI::Validator& check) {
+    const About& about = option.about;
+    const std::string name = option_name(option.key);
+    if (about.offered == Offered::files) return add_key(name, value, check);
+    return add(name, value, type_of(about), check, about.help);
+  }
+  template <class Value>
+  Registration& add(const KeyedAbout& option, Value& value) {
+    const About& about = option.about;
+    const std::string name = option_name(option.key);
+    using Held = typename HeldBy<Value>::type;
+    if constexpr (std::is_same_v<Held, bool>) {
+      return about.offered == Offered::files ? add_key(name, value)
+                                             : add_flag(name, value, about.help);
+    } else if constexpr (std::is_enum_v<Held>) {
+      return add_choice(name, value, choices(Held()), about.help);
+    } else {
+      return add(option, value, check_of(about.range, std::is_integral_v<Held>));
+    }
+  }
+  template <class Options, class Member>
+  Registration& add(const Options& options, Member& member) requires Described<const Options> {
+    return add(described(options, member), member);
   }
 
   /// One without a value.

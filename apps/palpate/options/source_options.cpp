@@ -5,8 +5,11 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
+#include "depth/description.hpp"
 #include "io/input.hpp"
 #include "palpate/io/synthetic.hpp"
+#include "prepare/description.hpp"
+#include "scene/description.hpp"
 
 namespace palpate::app {
 
@@ -32,13 +35,9 @@ constexpr Scope kCloud{
 
 void add_surface_of_source(OptionTable& table, SourcePlan& s) {
   table.under("Surface (chosen from the data unless given)", "surface", true);
-  table.add("--radius", s.options.prepare.radius, "METRES", positive(),
-            "support radius R of every point (for depth images and streams: the smallest R); "
-            "larger is smoother");
-  table
-      .add("--voxel", s.options.prepare.voxel, "METRES", not_negative(),
-           "voxel size of the voxel filter for clouds; 0: no filter")
-      .only_for(kCloud);
+  PrepareOptions& prepare = s.options.prepare;
+  table.add(prepare, prepare.radius);
+  table.add(prepare, prepare.voxel).only_for(kCloud);
   table.add_key(
       "--normal-error",
       [&s](const double& angle) {
@@ -49,24 +48,13 @@ void add_surface_of_source(OptionTable& table, SourcePlan& s) {
 }
 
 void add_time_of_source(OptionTable& table, PolicyOptions& policy) {
-  table
-      .add_choice(
-          "--policy", policy.policy, kPolicies,
-          "how successive frames update the surface: replace (hard swap), average (of N frames, as "
-          "in the paper), crossfade or morph (default for depth cameras)")
-      .only_for(kStream);
-  table
-      .add("--history", policy.history, "N", whole_number(1, 7),
-           "number of frames N for average and crossfade, 1 to 7 (4)")
+  table.add(policy, policy.policy).only_for(kStream);
+  table.add(policy, policy.history)
       .only_for(kStream)
       .only_for({&RunFacts::history,
                  "applies only to the policies average and crossfade; add --policy average"});
-  table
-      .add("--silence", policy.silence, "SECONDS", positive(),
-           "fade a surface after this long without new data (0.3)")
-      .only_for(kStream);
-  table.add("--fade", policy.fade, "SECONDS", positive(), "duration of that fade (0.5)")
-      .only_for(kStream);
+  table.add(policy, policy.silence).only_for(kStream);
+  table.add(policy, policy.fade).only_for(kStream);
 }
 
 void add_depth_filter(OptionTable& table, SourcePlan& s) {
@@ -75,33 +63,22 @@ void add_depth_filter(OptionTable& table, SourcePlan& s) {
       .add_text(
           "--noise", KeyKind::numbers_or_text, "S0,S1,S2[,C]",
           [&depth](const std::string& text) { depth.noise = parse_noise(text); },
-          "standard deviation of a depth pixel, S0 + S1 z + S2 z^2 at z metres, and the noise "
-          "correlation C >= 1 of neighbouring pixels; or a sensor: kinect1, xtion, realsense, tof. "
-          "Default: measured from the frames")
+          described(depth, depth.noise).about.help)
       .only_for({&RunFacts::depth,
                  "applies only to depth images, organised clouds and streams; no source is one"});
-  table
-      .add("--nearest", depth.nearest, "METRES",
-           number("a depth of 0.001 m or more", [](double x) { return x >= 1e-3; }),
-           "the depth filter ignores smaller depths (0.1)")
-      .only_for(kFiltered);
-  table
-      .add("--farthest", s.farthest, "METRES", positive(),
-           "the depth filter ignores larger depths (20, or ten times the first frame's median if "
-           "that is less)")
-      .only_for(kFiltered);
-  table.add_key("--memory", depth.memory, whole_number(1, 255)).only_for(kFilteredFrames);
-  table.add_key("--fit-everywhere", s.options.policy.fit_everywhere).only_for(kFilteredFrames);
+  table.add(depth, depth.nearest).only_for(kFiltered);
+  table.add(described(depth, depth.farthest), s.farthest).only_for(kFiltered);
+  // A block's frames are counted in eight bits.
+  table.add(described(depth, depth.memory), depth.memory, whole_number(1, 255))
+      .only_for(kFilteredFrames);
+  table.add(s.options.policy, s.options.policy.fit_everywhere).only_for(kFilteredFrames);
 }
 
 void add_stream_options(OptionTable& table, SourcePlan& s) {
   table.under("Streams", "stream", true);
   add_time_of_source(table, s.options.policy);
   add_depth_filter(table, s);
-  table
-      .add_flag("--clip-to-reach", s.options.policy.clip_to_reach,
-                "for frames processed as clouds: prepare only what the tool can reach before the "
-                "next frame, as in the paper. Live, that begins once surfaces come 0.1 s late")
+  table.add(s.options.policy, s.options.policy.clip_to_reach)
       .only_for({&RunFacts::cloud_frames,
                  "applies only to frames processed as clouds; add --unorganised, or remove it: the "
                  "depth filter always limits its costly steps to the tool's reach"});
@@ -203,7 +180,7 @@ void add_source_options(OptionTable& table, SourcePlan& s) {
             prepare.viewpoint = parse_point(text, "--viewpoint");
             prepare.orientation = PrepareOptions::Orientation::viewpoint;
           },
-          "sensor position in the cloud's frame; orients the normals")
+          described(prepare, prepare.viewpoint).about.help)
       .only_for(kCloud);
   table
       .add_flag("--unorganised", s.as_cloud,

@@ -9,6 +9,9 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
 #include "apps/palpate/options/page_options.hpp"
+#include "contact/description.hpp"
+#include "field/description.hpp"
+#include "servo/description.hpp"
 
 namespace palpate::app {
 
@@ -21,49 +24,35 @@ constexpr std::array<Named<bool>, 2> kPresets = {{{"default", false}, {"paper", 
 void add_field_options(OptionTable& table, TouchChoices& o) {
   FieldOptions& field = o.plan.surface.field;
   table.under("Surface (chosen from the data unless given)", "surface");
-  table.add_choice("--field", o.field, kFields,
-                   "implicit function of the surface: balanced (default), pointset or metaball");
+  table.add_choice("--field", o.field, kFields, described(field, field.kind).about.help);
   table.add_choice(
       "--preset", o.plan.surface.paper, kPresets,
       "default, or paper: the method of Leeper, Chan and Salisbury 2012 with their settings");
-  table.add_choice("--kernel", field.kernel, kKernels, "wyvill (default) or wendland");
-  table.add_choice("--gradient", o.gradient, kGradients,
-                   "gradient of the field: exact (default), or as in the paper: normal (eq. 8, "
-                   "point-set) or printed (eq. 4 of the metaball as printed, which points inward)");
-  table.add("--threshold", o.threshold, "LEVEL",
-            number("between 0 and 1", [](double x) { return x > 0 && x < 1; }),
-            "iso-level of the metaball, 0 to 1; lower moves the surface outward (0.4). Other "
-            "fields become a metaball where normals are unreliable");
-  table.add("--tool-radius", field.tool_radius, "METRES", not_negative(),
-            "radius of the spherical tool; 0: a point");
-  table.add_key("--sharp-edges", field.sharp_edges);
+  table.add(field, field.kernel);
+  table.add(described(field, field.gradient), o.gradient);
+  table.add(described(field, field.threshold), o.threshold,
+            number("between 0 and 1", [](double x) { return x > 0 && x < 1; }));
+  table.add(field, field.tool_radius);
+  table.add(field, field.sharp_edges);
 }
 
 void add_material_options(OptionTable& table, TouchChoices& o) {
   SurfacePlan& surface = o.plan.surface;
-  Friction& friction = surface.proxy.friction;
-  Texture& texture = surface.proxy.texture;
+  ProxyOptions& proxy = surface.proxy;
   table.under("Feel", "material");
-  table.add(
-      "--stiffness", surface.stiffness, "N/M",
-      number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }),
-      "stiffness K of the surface, in the cloud's metres (500; less if a large cloud is explored)");
+  table.add(described(proxy, proxy.stiffness), surface.stiffness,
+            number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }));
   table.add("--soft-stiffness", surface.soft_stiffness, "N/M", not_negative(),
             "stiffness at the cloud's lowest intensity; rises to --stiffness at the highest");
-  table.add("--friction-static", o.friction_static, "MU", not_negative(),
-            "friction coefficient while the proxy sticks (default: --friction-dynamic)");
-  table.add("--friction-dynamic", friction.dynamic_coefficient, "MU", not_negative(),
-            "friction coefficient while the proxy slides (0)");
-  table.add("--friction-viscous", friction.viscous, "N S/M", not_negative(),
-            "viscous friction, proportional to the sliding speed (0)");
+  table.add(described(proxy, proxy.friction.static_coefficient), o.friction_static);
+  table.add(proxy, proxy.friction.dynamic_coefficient);
+  table.add(proxy, proxy.friction.viscous);
   table.add("--soft-friction", surface.soft_friction, "SHARE",
             number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
             "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
             "friction at the highest");
-  table.add("--texture-amplitude", texture.amplitude, "METRES", not_negative(),
-            "amplitude of a fine texture on the surface (0: none)");
-  table.add("--texture-wavelength", texture.wavelength, "METRES", positive(),
-            "wavelength of that texture (0.004)");
+  table.add(proxy, proxy.texture.amplitude);
+  table.add(proxy, proxy.texture.wavelength);
 }
 
 std::vector<std::string> list_of(const std::string& text) {
@@ -205,20 +194,17 @@ void add_live_options(OptionTable& table, TimePlan& time) {
   GuardOptions& guard = time.guard;
   RealtimeOptions& realtime = time.realtime;
   table.under("Real time", "guard");
-  table
-      .add("--maximum-force", guard.maximum_force, "N", positive(),
-           "largest force sent to the device, capped at what it can sustain (default: that limit)")
-      .only_for(kGuarded);
-  table.add_key("--slew", guard.slew, positive());
+  table.add(guard, guard.maximum_force).only_for(kGuarded);
+  table.add(guard, guard.slew);
   const std::function<void(const double&)> watch = [&time](double silence) {
     time.guard.silence = silence;
     time.own_watchdog = true;
   };
   table.add_key("--watchdog", watch,
                 number("a time from 0.001 to 1 s", [](double x) { return x >= 1e-3 && x <= 1; }));
-  table.add_key("--damping", guard.damping, not_negative());
-  table.add_key("--soft-start", guard.soft_start,
-                number("a time from 0 to 60 s", [](double x) { return x >= 0 && x <= 60; }));
+  table.add(guard, guard.damping);
+  table.add(described(guard, guard.soft_start), guard.soft_start,
+            number("a time from 0 to 60 s", [](double x) { return x >= 0 && x <= 60; }));
   table.add_key("--passivity", guard.passivity.on);
   table.under("Real time", "servo");
   table

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -12,13 +13,19 @@
 #include <type_traits>
 
 #include "apps/palpate/cli/output.hpp"
+#include "contact/description.hpp"
+#include "depth/description.hpp"
+#include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/device/device.hpp"
-#include "palpate/scene/source.hpp"
 #include "palpate/servo/servo.hpp"
+#include "prepare/description.hpp"
+#include "scene/description.hpp"
+#include "servo/description.hpp"
 
-/// Options as JSON and back, bit for bit. members() names the members of each struct once; a member
-/// that is new there does not compile before it is named here.
+/// Options as JSON and back, bit for bit, by what describe() says of them. members() names those of
+/// structs that are no options; a member that is new there does not compile before it is named
+/// here.
 namespace palpate::app {
 
 // `f` is handed the names and then the members, in one order.
@@ -34,39 +41,9 @@ void members(auto f, CameraModel& o) {
   auto& [width, height, pinhole, distortion] = o;
   f({"width", "height", "pinhole", "distortion"}, width, height, pinhole, distortion);
 }
-void members(auto f, Friction& o) {
-  auto& [resting, dynamic, viscous] = o;
-  f({"static", "dynamic", "viscous"}, resting, dynamic, viscous);
-}
-void members(auto f, Texture& o) {
-  auto& [amplitude, wavelength] = o;
-  f({"amplitude", "wavelength"}, amplitude, wavelength);
-}
 void members(auto f, ContactSettings& o) {
   auto& [stiffness, friction, texture] = o;
   f({"stiffness", "friction", "texture"}, stiffness, friction, texture);
-}
-void members(auto f, FieldOptions& o) {
-  auto& [kind, kernel, gradient, threshold, support, tool, capped, sharp, raw, nearest] = o;
-  f({"kind", "kernel", "gradient", "threshold", "minimum_support", "tool_radius", "capped",
-     "sharp_edges", "raw_weights", "nearest_radius"},
-    kind, kernel, gradient, threshold, support, tool, capped, sharp, raw, nearest);
-}
-void members(auto f, ProxyOptions& o) {
-  auto& [stiffness, friction, texture, method, iterations, tolerance, rise] = o;
-  f({"stiffness", "friction", "texture", "method", "max_iterations", "tangent_tolerance",
-     "rise_time"},
-    stiffness, friction, texture, method, iterations, tolerance, rise);
-}
-void members(auto f, GuardOptions::Passivity& o) {
-  auto& [on, mass, memory, forget, delay] = o;
-  f({"on", "mass", "memory", "forget", "delay"}, on, mass, memory, forget, delay);
-}
-void members(auto f, GuardOptions& o) {
-  auto& [on, force, slew, damping, silence, start, share, passivity] = o;
-  f({"on", "maximum_force", "slew", "damping", "silence", "soft_start", "stiffness_share",
-     "passivity"},
-    on, force, slew, damping, silence, start, share, passivity);
 }
 void members(auto f, Workspace& o) {
   auto& [pose, scale] = o;
@@ -94,32 +71,13 @@ void members(auto f, CloudFacts& o) {
   auto& [spacing, noise, lines, extent, radius] = o;
   f({"spacing", "noise", "in_lines", "extent", "radius"}, spacing, noise, lines, extent, radius);
 }
-void members(auto f, PrepareOptions& o) {
-  auto& [voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
-         paper, kernel, facts, without] = o;  // the last is for benches alone
-  f({"voxel", "radius", "smoothing", "minimum_radius", "normal_error", "viewpoint", "orientation",
-     "clip", "remove_speckle", "estimate_normals", "material_from_intensity", "paper", "kernel",
-     "facts"},
-    voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
-    paper, kernel, facts);
-}
 void members(auto f, SourceOptions::SoftMaterial& o) {
   auto& [stiffness, friction] = o;
   f({"stiffness_factor", "friction_factor"}, stiffness, friction);
 }
-void members(auto f, PolicyOptions& o) {
-  auto& [policy, history, silence, fade, everywhere, clips] = o;
-  f({"policy", "history", "silence", "fade", "fit_everywhere", "clip_to_reach"}, policy, history,
-    silence, fade, everywhere, clips);
-}
 void members(auto f, NoiseModel& o) {
   auto& [coefficients, correlation] = o;
   f({"coefficients", "correlation"}, coefficients, correlation);
-}
-void members(auto f, DepthFilterOptions& o) {
-  auto& [noise, error, memory, nearest, farthest] = o;
-  f({"noise", "normal_error", "memory", "nearest", "farthest"}, noise, error, memory, nearest,
-    farthest);
 }
 void members(auto f, SourceOptions& o) {
   auto& [pose, prepare, soft, policy, depth, organised] = o;
@@ -135,10 +93,6 @@ concept Listed = requires(T& value) {
   members(Unlisted(), value);
 };
 template <class T>
-inline constexpr bool kIsOptional = false;
-template <class T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
-template <class T>
 concept Numbers = std::is_same_v<T, Eigen::Vector3d> || std::is_same_v<T, std::array<double, 3>>;
 
 /// Numbers that JSON has not are written as texts: "inf".
@@ -148,13 +102,17 @@ template <class T>
   if constexpr (std::is_same_v<T, double>) {
     json = std::isfinite(value) ? Json(value) : Json(fmt::format("{}", value));
   } else if constexpr (std::is_enum_v<T>) {
-    json = static_cast<int>(value);
-  } else if constexpr (kIsOptional<T>) {
+    json = name_in(choices(value), value);
+  } else if constexpr (IsOptional<T>::value) {
     if (value) json = exact_json(*value);
   } else if constexpr (Numbers<T>) {
     for (const double number : value) json.push_back(exact_json(number));
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
     for (int i = 0; i < 12; ++i) json.push_back(value.matrix()(i / 4, i % 4));
+  } else if constexpr (Described<const T>) {
+    describe(value, [&json](const About& about, const auto& member) {
+      json[about.name] = exact_json(member);
+    });
   } else if constexpr (Listed<T>) {
     T copy = value;
     members(
@@ -169,15 +127,27 @@ template <class T>
   return json;
 }
 
-/// Reads what exact_json() wrote. @throws nlohmann::json::exception when it is something else.
+/// A choice by its name, or, as earlier versions wrote it, by its number.
+/// @throws Error when there is none of it.
+template <class Choice>
+[[nodiscard]] Choice choice_in(const Json& json) {
+  const auto& table = choices(Choice());
+  for (const Named<Choice>& each : table) {
+    if (json == each.name || json == static_cast<int>(each.choice)) return each.choice;
+  }
+  throw Error(fmt::format("{} is none of {}", json.dump(), fmt::join(names_of(table), ", ")));
+}
+
+/// Reads what exact_json() wrote. @throws Error when a choice is unknown, nlohmann::json::exception
+/// when it is something else.
 template <class T>
 void take_exact(const Json& json, T& value) {
   if constexpr (std::is_same_v<T, double>) {
     value = json.is_string() ? std::strtod(json.get<std::string>().c_str(), nullptr)
                              : json.get<double>();
   } else if constexpr (std::is_enum_v<T>) {
-    value = static_cast<T>(json.get<int>());
-  } else if constexpr (kIsOptional<T>) {
+    value = choice_in<T>(json);
+  } else if constexpr (IsOptional<T>::value) {
     value.reset();
     if (!json.is_null()) take_exact(json, value.emplace());
   } else if constexpr (Numbers<T>) {
@@ -186,7 +156,7 @@ void take_exact(const Json& json, T& value) {
     value.setIdentity();
     for (int i = 0; i < 12; ++i)
       take_exact(json.at(static_cast<std::size_t>(i)), value.matrix()(i / 4, i % 4));
-  } else if constexpr (Listed<T>) {
+  } else if constexpr (Described<T> || Listed<T>) {
     // What older recordings do not know keeps its default, which is how they were made.
     const auto& object = json.template get_ref<const Json::object_t&>();
     const auto take = [&object](const char* name, auto& member) {
@@ -194,12 +164,16 @@ void take_exact(const Json& json, T& value) {
         take_exact(found->second, member);
       }
     };
-    members(
-        [&](std::initializer_list<const char*> names, auto&... member) {
-          const char* const* name = names.begin();
-          (take(*name++, member), ...);
-        },
-        value);
+    if constexpr (Described<T>) {
+      describe(value, [&take](const About& about, auto& member) { take(about.name, member); });
+    } else {
+      members(
+          [&](std::initializer_list<const char*> names, auto&... member) {
+            const char* const* name = names.begin();
+            (take(*name++, member), ...);
+          },
+          value);
+    }
   } else {
     value = json.get<T>();
   }

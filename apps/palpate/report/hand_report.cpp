@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/source_report.hpp"
+#include "field/description.hpp"
 
 namespace palpate::app {
 

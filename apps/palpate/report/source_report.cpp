@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/options/source_options.hpp"
+#include "scene/description.hpp"
 
 namespace palpate::app {
 

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/cli/version.hpp"
 #include "apps/palpate/plot/python_drawing.hpp"
 #include "apps/palpate/report/source_report.hpp"
+#include "field/description.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/shapes.hpp"
 

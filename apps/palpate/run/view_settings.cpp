@@ -8,9 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "apps/palpate/cli/names.hpp"
 #include "apps/palpate/run/materials.hpp"
+#include "field/description.hpp"
 #include "palpate/base/error.hpp"
+#include "scene/description.hpp"
 
 namespace palpate::app {
 

@@ -1,0 +1,69 @@
+// Options in recordings: exact numbers, and choices that are names.
+#include "apps/palpate/record/options_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "palpate/base/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(OptionsJson, OptionsComeBackAsTheyWere) {
+  PrepareOptions prepare;
+  prepare.radius = 0.1 + 0.2;
+  prepare.orientation = PrepareOptions::Orientation::outward;
+  prepare.clip = Box{{0, 0, -1}, {1, 2, 1. / 3}};
+  prepare.facts = CloudFacts{};
+  ProxyOptions proxy;
+  proxy.friction.viscous = 1e-300;
+  proxy.rise_time = std::numeric_limits<double>::infinity();
+  proxy.method = ProxyOptions::Method::single_step;
+  ServoOptions servo{.proxy = proxy};
+  servo.guard.passivity.delay = 3;
+  const SourceOptions source{.prepare = prepare, .policy = {.policy = Policy::average, .fade = 2}};
+
+  const Json json = {{"servo", exact_json(servo)}, {"source", exact_json(source)}};
+  const Json read = Json::parse(json.dump());
+  ServoOptions servo_again;
+  SourceOptions source_again;
+  take_exact(read.at("servo"), servo_again);
+  take_exact(read.at("source"), source_again);
+  EXPECT_EQ(exact_json(servo_again), exact_json(servo));
+  EXPECT_EQ(exact_json(source_again), exact_json(source));
+  EXPECT_EQ(source_again.prepare.radius, 0.1 + 0.2);
+  EXPECT_EQ(source_again.prepare.clip->upper.z(), 1. / 3);
+  EXPECT_EQ(source_again.policy.fade, 2);
+  EXPECT_EQ(servo_again.guard.passivity.delay, 3);
+  EXPECT_EQ(servo_again.proxy.method, ProxyOptions::Method::single_step);
+  EXPECT_EQ(servo_again.proxy.rise_time, std::numeric_limits<double>::infinity());
+}
+
+TEST(OptionsJson, ChoicesAreNamesAndNumbersOfEarlierVersionsAreRead) {
+  EXPECT_EQ(exact_json(PolicyOptions{.policy = Policy::morph}).at("policy"), "morph");
+  PolicyOptions options;
+  take_exact(Json::parse(R"({"policy": "average"})"), options);
+  EXPECT_EQ(options.policy, Policy::average);
+  take_exact(Json::parse(R"({"policy": 4})"), options);
+  EXPECT_EQ(options.policy, Policy::morph);
+  take_exact(Json::parse(R"({"policy": null})"), options);
+  EXPECT_FALSE(options.policy);
+}
+
+TEST(OptionsJson, ChoicesThatThereAreNotAreRefused) {
+  for (const char* json : {R"({"policy": 3})", R"({"policy": "fusion"})", R"({"policy": 1e9})",
+                           R"({"policy": true})", R"({"policy": []})"}) {
+    PolicyOptions options;
+    EXPECT_THROW(take_exact(Json::parse(json), options), Error) << json;
+  }
+}
+
+TEST(OptionsJson, WhatARecordingDoesNotHaveKeepsItsDefault) {
+  FieldOptions options;
+  take_exact(Json::parse(R"({"kind": "metaball"})"), options);
+  EXPECT_EQ(options, FieldOptions{.kind = FieldOptions::Kind::metaball});
+}
+
+}  // namespace
+}  // namespace palpate::app
