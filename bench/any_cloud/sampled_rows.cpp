@@ -1,4 +1,5 @@
-// Rows of badly sampled bodies: scanned twice, in slices, rounded, of uneven density, with strays.
+// Rows of badly sampled bodies: scanned twice, in slices, rounded, of uneven density, with
+// outliers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -101,7 +102,7 @@ void slice(Draft& draft, const Body& body, double ratio) {
   for (const Vector3d& p : sliced) draft.add(p, body.shape(p).gradient.normalized());
 }
 
-void stray(Draft& draft, const Body& body, double share) {
+void outlier(Draft& draft, const Body& body, double share) {
   poke_around(draft);
   const auto count = static_cast<std::size_t>(share * static_cast<double>(draft.points.size()));
   for (std::size_t i = 0; i < count; ++i) {
@@ -146,7 +147,7 @@ void add_sampled_rows(std::vector<Row>& rows) {
   }
   for (const int percent : {1, 5, 15, 30}) {
     add(fmt::format("outliers {} %", percent),
-        [=](Draft& draft, const Body& body) { stray(draft, body, 0.01 * percent); });
+        [=](Draft& draft, const Body& body) { outlier(draft, body, 0.01 * percent); });
   }
   add("rounded 0.5", [](Draft& draft, const Body&) { round_to(draft, 0.5); });
   add("density 1:20 patches", [](Draft& draft, const Body&) { thin_out(draft, 20); });

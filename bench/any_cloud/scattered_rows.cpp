@@ -1,4 +1,4 @@
-// Rows of points that lie on no surface: volumes, and strays over a sheet.
+// Rows of points that lie on no surface: volumes, and outliers over a sheet.
 #include <algorithm>
 #include <limits>
 
@@ -25,9 +25,9 @@ void draw_volume(Draft& draft, bool bush) {
   }
 }
 
-constexpr double kSheet = 80;        // side of the sheet among strays
-constexpr double kStraysAway = 400;  // strays lie so far at most
-constexpr double kClear = 20;        // of any point: free air
+constexpr double kSheet = 80;          // side of the sheet among outliers
+constexpr double kOutliersAway = 400;  // outliers lie so far at most
+constexpr double kClear = 20;          // of any point: free air
 
 // A sheet has two sides: solid is what is very thin.
 Shape make_sheet(Draft& draft) {
@@ -47,10 +47,10 @@ bool way_is_clear(const Draft& draft, const Vector3d& from, const Vector3d& to) 
                      [&](const Vector3d& point) { return way_distance(point, from, to) > kClear; });
 }
 
-// Strays come alone, in pairs, or in clusters of 3 to 6, none near the sheet.
-void draw_stray(Draft& draft, int least, int most) {
+// Outliers come alone, in pairs, or in clusters of 3 to 6, none near the sheet.
+void draw_outliers(Draft& draft, int least, int most) {
   draft.truth = make_sheet(draft);
-  const Vector3d far = Vector3d::Constant(kStraysAway);
+  const Vector3d far = Vector3d::Constant(kOutliersAway);
   for (int i = 0; i < 40;) {
     const Vector3d middle = draft.within(-far, far);
     if (draft.truth(middle).value < 3 * kClear) continue;
@@ -76,9 +76,9 @@ void draw_stray(Draft& draft, int least, int most) {
 void add_scattered_rows(std::vector<Row>& rows) {
   rows.push_back({"volume", "volume lawn", [](Draft& draft) { draw_volume(draft, false); }});
   rows.push_back({"volume", "volume bush", [](Draft& draft) { draw_volume(draft, true); }});
-  rows.push_back({"stray", "stray single", [](Draft& draft) { draw_stray(draft, 1, 1); }});
-  rows.push_back({"stray", "stray pairs", [](Draft& draft) { draw_stray(draft, 2, 2); }});
-  rows.push_back({"stray", "stray clusters", [](Draft& draft) { draw_stray(draft, 3, 6); }});
+  rows.push_back({"stray", "stray single", [](Draft& draft) { draw_outliers(draft, 1, 1); }});
+  rows.push_back({"stray", "stray pairs", [](Draft& draft) { draw_outliers(draft, 2, 2); }});
+  rows.push_back({"stray", "stray clusters", [](Draft& draft) { draw_outliers(draft, 3, 6); }});
 }
 
 }  // namespace palpate::any_cloud

@@ -95,7 +95,7 @@ class Pokes {
 
  private:
   static constexpr double kOutside = 8;     // s
-  static constexpr double kAtBody = 4;      // s; a proxy farther out touches strays, not the body
+  static constexpr double kAtBody = 4;      // s; a proxy farther out touches outliers, not the body
   static constexpr double kMostOver = 1.3;  // times the force wanted
   static constexpr double kRough = 0.5;     // s: what a surface of points may be off its solid
 

@@ -74,7 +74,7 @@ constexpr float kMinChange = 0.75f;  // of a spacing by averaging, at least (doc
 constexpr float kMaxChange = 1.5f;   // of a spacing by averaging, at most (docs/method.md 5.1)
 constexpr float kMaxRatio = 2;       // to the spacing around it (docs/method.md 5.1)
 constexpr float kLargestSpacing = 1e18f;  // m; its sums stay in float's range (derived)
-constexpr float kStray = 8;               // times its block's spacing: a stray point (judgement)
+constexpr float kOutlier = 8;             // times its block's spacing: an outlier (judgement)
 // Share of the distance to the nearest other, if fewer than eight give no area: R, which is 2.5
 // spacings, is then half of that distance (derived).
 constexpr float kGapShare = 0.2f;
@@ -178,15 +178,15 @@ float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std:
   return smoothed(spacings[i], weight, sum);
 }
 
-// Within how much of its surroundings each point is averaged, m; 0 for stray points, whose
-// surroundings at their scale may hold a whole surface.
+// Within how much of its surroundings each point is averaged, m; 0 for outliers, whose surroundings
+// at their scale may hold a whole surface.
 std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> spacings) {
   std::vector<float> radii(grid.size());
   detail::for_each_block(grid, [&](const Block& block, Surroundings&) {
     const auto own = spacings.subspan(block.begin, block.size());
-    const auto stray = kStray * static_cast<float>(median(own));
+    const auto outlier = kOutlier * static_cast<float>(median(own));
     for (std::uint32_t i = block.begin; i < block.end; ++i) {
-      radii[i] = spacings[i] > stray ? 0 : kSmoothing * spacings[i];
+      radii[i] = spacings[i] > outlier ? 0 : kSmoothing * spacings[i];
     }
   });
   return radii;

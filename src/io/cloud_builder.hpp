@@ -71,7 +71,7 @@ inline constexpr double kLargestCoordinate = 1e12;
 
 /// The origin for a cloud: zero where floats around zero lose at most four bits, otherwise a round
 /// point (1, 10, 100 ... metres, as the cloud's size is) near the median. Medians, of a sample of
-/// about a thousand points, because one stray point at zero must not cost a survey its digits.
+/// about a thousand points, because one outlier at zero must not cost a survey its digits.
 /// @param point_at the i-th of `count` points in metres; points that are not usable are left out.
 [[nodiscard]] Eigen::Vector3d choose_origin(
     std::size_t count, const std::function<Eigen::Vector3d(std::size_t)>& point_at);

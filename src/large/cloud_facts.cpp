@@ -26,10 +26,10 @@ using Eigen::Vector3f;
 
 constexpr std::size_t kDrawnPlaces = 32;  // places; judgement
 constexpr std::size_t kPointsAround =
-    4096;                                  // points around each: windows of 20 s fit in; judgement
-constexpr std::size_t kRun = 256;          // points that are passed over together; judgement
-constexpr std::size_t kAsked = 1 << 17;    // points that are asked how far that is; judgement
-constexpr std::size_t kOneStrayOf = 1000;  // points, one a stray, at either end; judgement
+    4096;                                // points around each: windows of 20 s fit in; judgement
+constexpr std::size_t kRun = 256;        // points that are passed over together; judgement
+constexpr std::size_t kAsked = 1 << 17;  // points that are asked how far that is; judgement
+constexpr std::size_t kOneOutlierOf = 1000;  // points, one an outlier, at either end; judgement
 
 /// How far from a place `share` of the sampled points lie, m^2.
 float reach(std::span<const Vector3f> sample, const Vector3f& place, double share) {
@@ -94,7 +94,7 @@ PointCloud draw(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
 }
 
 Box extent_of(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
-  const Box box = detail::inner_box(sample, sample.size() / kOneStrayOf);
+  const Box box = detail::inner_box(sample, sample.size() / kOneOutlierOf);
   return {cloud.origin + box.lower, cloud.origin + box.upper};
 }
 

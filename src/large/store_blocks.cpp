@@ -38,7 +38,7 @@ constexpr int kSoon = 1;
 constexpr int kMostSoon = 2;
 
 // Points that are read for a block of a further level at most: a second's work; judgement. Only
-// strays and single things far above a dense surface are then without one.
+// outliers and single things far above a dense surface are then without one.
 constexpr std::size_t kMostRead = std::size_t{1} << 22;
 // The same on level 0: beyond it R is so large that all memory would go into one block; judgement.
 constexpr std::size_t kMostReadAtOnce = std::size_t{1} << 24;

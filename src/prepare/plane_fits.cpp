@@ -66,8 +66,8 @@ PointFits fit_planes(const Sampling& sampling, const Radii& radii, const Prepare
   if (!sampling.normals.empty()) {
     take_given_normals(sampling.grid, sampling.normals, fits.normals);
   }
-  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
-    if (radii.strays[i] != 0) fits.confidences[i] = 0;
+  for (std::size_t i = 0; i < radii.outliers.size(); ++i) {
+    if (radii.outliers[i] != 0) fits.confidences[i] = 0;
   }
   return fits;
 }

@@ -29,8 +29,8 @@ inline constexpr float kNormalsReach = 1.15f;
 [[nodiscard]] PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                                    std::span<const float> radii, std::span<const float> noise);
 
-/// Fits the points' planes and lets given normals take part; strays get no confidence. Empty where
-/// no normals are asked for.
+/// Fits the points' planes and lets given normals take part; outliers get no confidence. Empty
+/// where no normals are asked for.
 [[nodiscard]] PointFits fit_planes(const Sampling& sampling, const Radii& radii,
                                    const PrepareOptions& options);
 

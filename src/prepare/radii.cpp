@@ -81,7 +81,7 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
   return noisy_radii(sampling.grid, sampling.local, options.normal_error, std::move(radii));
 }
 
-/// R of all points; which of them are strays is not known yet.
+/// R of all points; which of them are outliers is not known yet.
 std::vector<float> radii_of(const Sampling& sampling, const PrepareOptions& options) {
   const auto all = [&](double radius) {
     return std::vector<float>(sampling.grid.size(), static_cast<float>(radius));

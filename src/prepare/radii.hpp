@@ -15,9 +15,9 @@ inline constexpr float kUsualMultiple = 2.5f;  ///< m in R = m s: the paper's (s
 
 /// The support radii.
 struct Radii {
-  std::vector<float> values;         ///< R_i in sorted order, m
-  std::vector<std::uint8_t> strays;  ///< 1: a stray, whose R is small unless one is given; empty:
-                                     ///< nobody looked for them
+  std::vector<float> values;           ///< R_i in sorted order, m
+  std::vector<std::uint8_t> outliers;  ///< 1: an outlier, whose R is small unless one is given;
+                                       ///< empty: nobody looked for them
 };
 
 /// The largest R that a point may have, m: 12 of the typical ones that the facts tell, since a

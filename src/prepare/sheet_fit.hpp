@@ -57,8 +57,8 @@ class SheetFitter {
 
   /// Points of a quadric, which has six terms, at least; judgement.
   static constexpr std::size_t kEnough = 10;
-  /// The window of a stray far away may hold a whole scan: of more points, every n-th is looked at
-  /// (judgement, for time).
+  /// The window of an outlier far away may hold a whole scan: of more points, every n-th is looked
+  /// at (judgement, for time).
   static constexpr std::size_t kMostPoints = 1 << 14;
 
  private:

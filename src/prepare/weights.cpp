@@ -191,10 +191,10 @@ Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& su
   }
   if (!options.remove_speckle || options.paper) return weights;
   auto mask = speckle_mask(sampling.grid, radii.values, sums.own);
-  for (std::size_t i = 0; i < radii.strays.size(); ++i) mask[i] |= radii.strays[i];
+  for (std::size_t i = 0; i < radii.outliers.size(); ++i) mask[i] |= radii.outliers[i];
   const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
   // A whole cloud of nothing but speckle is a sparse one and keeps its weights. A part of a cloud,
-  // which has facts, does consist of strays.
+  // which has facts, does consist of outliers.
   if (speckle == mask.size() && !options.facts) return weights;
   weights.speckle = speckle;
   for (std::size_t i = 0; i < mask.size(); ++i) {

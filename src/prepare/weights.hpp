@@ -58,7 +58,7 @@ struct Weights {
 };
 
 /// Density weights (docs/method.md 2.2) by the `sums` of the radii, by how many points each stands
-/// for, and 0 for speckle and strays, which stay in the index.
+/// for, and 0 for speckle and outliers, which stay in the index.
 [[nodiscard]] Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
                             const PrepareOptions& options);
 

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "refine/gaps.hpp"
+#include "refine/outliers.hpp"
 #include "refine/sheets.hpp"
-#include "refine/strays.hpp"
 #include "refine/twins.hpp"
 
 namespace palpate {
@@ -13,10 +13,10 @@ namespace {
 
 // Derived: each runs once what it reads is there.
 constexpr std::array kRefinements{
-    Refinement{"strays", Stage::radii, &refine_strays},
+    Refinement{"outliers", Stage::radii, &refine_outliers},
     Refinement{"gaps", Stage::fits, &refine_gaps},
     Refinement{"sheets", Stage::weights, &refine_sheets},
-    Refinement{"strays_off_sheets", Stage::weights, &refine_strays_off_sheets},
+    Refinement{"outliers_off_segments", Stage::weights, &refine_outliers_off_sheets},
     Refinement{"twins", Stage::points, &refine_twins},
 };
 

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kEnough = 100'000;  // points; more are thinned out (judgement)
 // Points; fewer decide nothing: an even spread has only 20 of these in the foot (judgement)
 constexpr std::size_t kFew = 1000;
-// Share of the points at either end that may be strays (judgement)
-constexpr double kStray = 0.005;
+// Share of the points at either end that may be outliers (judgement)
+constexpr double kOutlier = 0.005;
 constexpr double kFoot = 0.02;  // share of the height that counts as the foot (judgement)
 // Times what an even spread has at the foot, as a ball has at any (Archimedes: the area between two
 // planes goes with their distance): then it is flat there.
@@ -63,9 +63,9 @@ Spread spread_along(const std::vector<Eigen::Vector3f>& points, int axis) {
   places.reserve(points.size());
   for (const Eigen::Vector3f& p : points) places.push_back(p[axis]);
   std::ranges::sort(places);
-  const auto strays = static_cast<std::size_t>(kStray * static_cast<double>(places.size()));
-  const float lower = places[strays];
-  const float upper = places[places.size() - 1 - strays];
+  const auto outliers = static_cast<std::size_t>(kOutlier * static_cast<double>(places.size()));
+  const float lower = places[outliers];
+  const float upper = places[places.size() - 1 - outliers];
   const auto foot = static_cast<float>(kFoot) * (upper - lower);
   const auto even = kFoot * static_cast<double>(places.size());
   const auto low = std::ranges::upper_bound(places, lower + foot) - places.begin();

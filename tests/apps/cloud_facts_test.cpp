@@ -92,7 +92,7 @@ TEST(CloudFacts, OnePointIsAllRim) {
   EXPECT_EQ(rim_share(prepare(cloud).points), 1);
 }
 
-TEST(CloudFacts, StrayPointSaysNothingOfTheCore) {
+TEST(CloudFacts, OutlierSaysNothingOfTheCore) {
   PointCloud cloud = synthetic_cloud("bumps");
   const Box all = bounds_of(cloud);
   EXPECT_EQ(core_of(cloud).lower, all.lower);

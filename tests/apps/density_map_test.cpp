@@ -38,7 +38,7 @@ TEST(DensityMap, OnePointIsOneLetter) {
   EXPECT_EQ(draw(map_density(cloud, 72), false), "  @\n");
 }
 
-TEST(DensityMap, StrayPointIsLeftOut) {
+TEST(DensityMap, OutlierIsLeftOut) {
   PointCloud cloud = synthetic_cloud("bumps");
   const DensityMap before = map_density(cloud, 40);
   cloud.positions.push_back({500, -300, 200});

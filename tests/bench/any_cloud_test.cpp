@@ -138,7 +138,7 @@ TEST(AnyCloudScore, CountsPokesThatPassAndHandsThatAreHeldOutside) {
   press.scene.ticks[3].hand = Vector3d(0, 0, 9);
   press.rendered.trace.force[3] = Vector3d(0, 0, 2);
   press.rendered.trace.proxy[3] = Vector3d(0, 0, 5);
-  EXPECT_EQ(press.scored().held, 0);  // by a stray, farther than 4 spacings from the body
+  EXPECT_EQ(press.scored().held, 0);  // by an outlier, farther than 4 spacings from the body
   press.rendered.trace.proxy[3] = Vector3d(0, 0, 3);
   const Score found = press.scored();
   EXPECT_EQ(found.held, 1);

@@ -87,7 +87,7 @@ TEST(LocalSpacings, FollowGradedDensity) {
   }
 }
 
-TEST(LocalSpacings, OfAStrayPointStayNearThoseOfTheSurface) {
+TEST(LocalSpacings, OfAnOutlierStayNearThoseOfTheSurface) {
   Points points = Clouds(1).plane(60, 2e-3);
   points.push_back(Vector3f(0.06f, 0.06f, 0.5f));
   const CellGrid grid(points);

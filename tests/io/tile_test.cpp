@@ -106,7 +106,7 @@ TEST(Tile, MetadataDescribeThePoints) {
   EXPECT_EQ(attributes[2]["max"], nlohmann::json({300, 5, 600}));
 }
 
-TEST(Tile, LazAndLasOfTheSamePointsGiveTheSameStoreWithStraysFarAway) {
+TEST(Tile, LazAndLasOfTheSamePointsGiveTheSameStoreWithOutliersFarAway) {
   for (const int format : {0, 3, 6, 7}) {
     const Folder folder;
     const std::string las = survey_of({.format = format, .points = 12000});
@@ -123,7 +123,7 @@ TEST(Tile, LazAndLasOfTheSamePointsGiveTheSameStoreWithStraysFarAway) {
   }
 }
 
-TEST(Tile, ACrowdFarFromAStrayIsSplitIntoChunksAllTheSame) {
+TEST(Tile, ACrowdFarFromAnOutlierIsSplitIntoChunksAllTheSame) {
   const Folder folder;
   std::vector<LasPoint> points = ground(9000);
   points.push_back({.number = {500'000'000, 0, 0}, .intensity = 1, .color = {1, 1, 1}});

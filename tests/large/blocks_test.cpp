@@ -42,7 +42,7 @@ PointCloud field(const Height& height, double noise = 0) {
   return cloud;
 }
 
-/// Steps, two layers, hills, strays above them, and noise that is thinned.
+/// Steps, two layers, hills, outliers above them, and noise that is thinned.
 std::vector<PointCloud> made_clouds() {
   const auto hills = [](double x, double y) { return 0.05 * std::sin(9 * x) * std::cos(7 * y); };
   std::vector<PointCloud> clouds;

@@ -30,8 +30,8 @@ PointCloud ground() {
   return cloud;
 }
 
-/// Strays anywhere up to `high` above the ground.
-PointCloud with_strays(PointCloud cloud, int count, double high) {
+/// Outliers anywhere up to `high` above the ground.
+PointCloud with_outliers(PointCloud cloud, int count, double high) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> share(0, 1);
   for (int i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ std::size_t work(const PointCloud& cloud) {
 }
 
 TEST(Division, EachPointBelongsToOneBlock) {
-  const PointCloud cloud = with_strays(ground(), 300, 0.5);
+  const PointCloud cloud = with_outliers(ground(), 300, 0.5);
   const Division division(cloud, measure_facts(cloud, {}));
   std::size_t points = 0;
   for (std::size_t k = 0; k < division.size(); ++k) points += division.points(k);
@@ -86,11 +86,11 @@ TEST(Division, BlocksOfAnEvenSheetAreOfOneSize) {
   }
 }
 
-TEST(Division, StraysOverDenseGroundCostLittle) {
+TEST(Division, OutliersOverDenseGroundCostLittle) {
   const auto plain = static_cast<double>(work(ground()));
   for (const double high : {0.02, 0.1, 0.3, 1., 10.}) {
     for (const int count : {5, 50, 500}) {
-      const auto more = static_cast<double>(work(with_strays(ground(), count, high)));
+      const auto more = static_cast<double>(work(with_outliers(ground(), count, high)));
       EXPECT_LT(more, 1.05 * plain) << count << " up to " << high << " m";
     }
   }

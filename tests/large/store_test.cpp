@@ -20,7 +20,7 @@ TEST(Store, IsFeltAsTheWholeWherePointsAreMuchSparser) {
   PointCloud cloud = hill_cloud(
       [](double x, double y) { return std::hypot(x - 0.5, y - 0.5) < 0.25 ? 1. / 500 : 1. / 25; });
   for (const double z : {0.2, 0.4, -0.3}) {
-    cloud.positions.push_back(Vector3d(0.3, 0.7, z).cast<float>());  // strays
+    cloud.positions.push_back(Vector3d(0.3, 0.7, z).cast<float>());  // outliers
   }
   Paged paged(std::move(cloud));
   paged.expect_whole(2);

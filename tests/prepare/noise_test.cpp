@@ -85,7 +85,7 @@ TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
   EXPECT_NEAR(shared, 1, 0.2);
 }
 
-TEST(SheetFit, LooksAtAScanThatAStraySeesAsAWholeByASample) {
+TEST(SheetFit, LooksAtAScanThatAnOutlierSeesAsAWholeByASample) {
   const CellGrid grid(sheet(300, 0));
   SheetFitter fitter;
   const SheetFit fit = fitter.fit(grid, Vector3f(0, 0, 1), 3, 0.5);

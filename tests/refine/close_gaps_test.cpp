@@ -57,7 +57,7 @@ TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {
   EXPECT_GT(own.confidences[made.odd], 0.9f);
 }
 
-TEST(CloseGaps, LeavesStrayPointsAndWholeSheetsAlone) {
+TEST(CloseGaps, LeavesOutliersAndWholeSheetsAlone) {
   for (const float height : {0.0f, 3 * kGapSpacing}) {
     Case made = make_case({0, 0, height}, 2.5f * kGapSpacing);
     const std::vector<float> before = made.radii;

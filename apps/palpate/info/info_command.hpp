@@ -33,7 +33,7 @@ void add_info_options(CLI::App& command, InfoOptions& options);
 /// `palpate info`. @throws UsageError, Error.
 void info(const InfoOptions& options);
 
-/// A cloud without stray points seen along its shortest side, as counts on a grid.
+/// A cloud without outliers seen along its shortest side, as counts on a grid.
 struct DensityMap {
   int columns = 0;
   int rows = 0;
@@ -58,7 +58,7 @@ struct DensityMap {
 struct InfoReport {
   LoadedCloud loaded;
   Box bounds;
-  Box core;  ///< without stray points
+  Box core;  ///< without outliers
   UnitsGuess units;
   OrganisedFrame organised;  ///< of a cloud with rows and columns
   Source::State image;       ///< felt as that frame; depth 0: it is not

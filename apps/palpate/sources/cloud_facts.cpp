@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kSample = 20'000;
 constexpr std::size_t kNeighbors = 8;
 constexpr std::size_t kLookedAt = 200'000;  // points for the core
-constexpr std::size_t kFewest = 50;         // points of which some can be called stray
-constexpr std::ptrdiff_t kStrays = 1000;    // one in so many may be, at either end
+constexpr std::size_t kFewest = 50;         // points of which some can be called outliers
+constexpr std::ptrdiff_t kOutliers = 1000;  // one in so many may be, at either end
 
 double at_share(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -182,14 +182,14 @@ Box core_of(const PointCloud& cloud) {
   const std::size_t stride = cloud.size() / kLookedAt + 1;
   std::vector<double> values((cloud.size() - 1) / stride + 1);
   const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-  const std::ptrdiff_t strays = last / kStrays + 1;
+  const std::ptrdiff_t outliers = last / kOutliers + 1;
   Box core = all;
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.point(i * stride)[axis];
-    std::nth_element(values.begin(), values.begin() + strays, values.end());
-    core.lower[axis] = values[static_cast<std::size_t>(strays)];
-    std::nth_element(values.begin() + strays, values.begin() + (last - strays), values.end());
-    core.upper[axis] = values[static_cast<std::size_t>(last - strays)];
+    std::nth_element(values.begin(), values.begin() + outliers, values.end());
+    core.lower[axis] = values[static_cast<std::size_t>(outliers)];
+    std::nth_element(values.begin() + outliers, values.begin() + (last - outliers), values.end());
+    core.upper[axis] = values[static_cast<std::size_t>(last - outliers)];
   }
   return all.size().maxCoeff() > 2 * core.size().maxCoeff() ? core : all;
 }

@@ -55,7 +55,7 @@ struct SpacingFacts {
 [[nodiscard]] Box bounds_of(const PointCloud& cloud);
 
 /// The box of all points but the outermost thousandth at either end of each axis where those make
-/// the box more than twice as long, m: a few stray points say nothing of what a cloud is.
+/// the box more than twice as long, m: a few outliers say nothing of what a cloud is.
 [[nodiscard]] Box core_of(const PointCloud& cloud);
 
 }  // namespace palpate::app

@@ -22,7 +22,7 @@ inline constexpr double kLoneSpacing = 1e-3;
 /// of the way to the nearest, with none the kLoneSpacing.
 ///
 /// A point beside a surface that is sampled much more densely gets twice that surface's spacing at
-/// most, so that a stray point does not reach far.
+/// most, so that an outlier does not reach far.
 [[nodiscard]] std::vector<float> local_spacings(const CellGrid& grid);
 
 /// The median; 0 of none.

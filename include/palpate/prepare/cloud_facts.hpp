@@ -27,13 +27,13 @@ struct CloudFacts {
   double spacing = 0;     ///< s of the points as given, the median, m
   Noise noise = {};       ///< of the points as given
   bool in_lines = false;  ///< do they lie on lines, nearer to each other than the lines are?
-  Box extent = {};        ///< of all but a few strays, world frame, m
+  Box extent = {};        ///< of all but a few outliers, world frame, m
   double radius = 0;      ///< a typical R, m; 0: not known, and R has no cap
 };
 
 /// Measures the facts of a cloud in places that are drawn, always the same of the same cloud: some
 /// thousand points around each, which takes a few tenths of a second whatever the cloud's size.
-/// A few strays change nothing, and crops of one scan have nearly the same facts.
+/// A few outliers change nothing, and crops of one scan have nearly the same facts.
 /// @throws Error as prepare() does.
 [[nodiscard]] CloudFacts measure_facts(
     const PointCloud& cloud, const PrepareOptions& options,

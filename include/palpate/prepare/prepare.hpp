@@ -44,8 +44,8 @@ struct PrepareOptions {
   bool paper = false;                    ///< the paper's s (mean of k = 3 neighbours), R = 2.5 s
   Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
   std::optional<CloudFacts> facts = {};  ///< of the whole that the cloud is a part of
-  /// Names of refinements that are left out, for benches that ask what each is worth: strays, gaps,
-  /// sheets, strays_off_sheets, twins.
+  /// Names of refinements that are left out, for benches that measure what each is worth: outliers,
+  /// gaps, segments, outliers_off_segments, second_planes.
   std::set<std::string, std::less<>> without = {};
 };
 

@@ -6,7 +6,7 @@ import type { CloudMessage } from "../protocol/decode";
 
 const kSamples = 500; // of one cloud
 const kTail = 0.02; // of heights, left out at each end
-const kKept = 0.8; // of the points: what lies thin, such as a far floor or strays, is left out (judgement)
+const kKept = 0.8; // of the points: what lies thin, such as a far floor or outliers, is left out (judgement)
 const kNeighbours = 6; // that tell how densely points lie (judgement)
 
 export interface Sample {
@@ -33,7 +33,7 @@ export function samplesOf(message: CloudMessage): Sample[] {
   return samples;
 }
 
-/** Along up, low and high, without strays, m. */
+/** Along up, low and high, without outliers, m. */
 export function heightsOf(samples: readonly Sample[], up: Vector3): Vector2 {
   const heights = samples.map(({ place }) => place.dot(up)).sort((a, b) => a - b);
   const at = (q: number) => heights[Math.round(q * (heights.length - 1))] ?? 0;

@@ -5,7 +5,7 @@ import type { Cloud } from "./cloud";
 
 const kMost = 100_000; // points of a cloud that are looked at
 const kReach = 1.5; // spacings around a ray in which a surface has some points for certain
-const kFew = 3; // points that are a surface, not strays
+const kFew = 3; // points that are a surface, not outliers
 const kMany = 2000; // that are enough of one
 const kLayer = 3; // reaches along a ray that one surface takes
 const kStiff = 0.02; // of the reach, squared: how little few points tilt a surface

@@ -1,5 +1,6 @@
-// What is a stray: a point far from others whose nearest make neither a sheet nor a line.
-#include "refine/strays.hpp"
+// What is an isolated outlier: a point far from others whose nearest make neither a surface nor a
+// line.
+#include "refine/outliers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,9 +19,9 @@ using Eigen::Vector3f;
 constexpr float kGridSpacing = 0.01f;
 
 /// A grid of 60 x 60 points, and others of which the test asks.
-class Strays : public testing::Test {
+class Outliers : public testing::Test {
  protected:
-  Strays() {
+  Outliers() {
     for (int i = 0; i < 60; ++i) {
       for (int j = 0; j < 60; ++j) add(static_cast<float>(i), static_cast<float>(j), 0);
     }
@@ -33,14 +34,14 @@ class Strays : public testing::Test {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
 
-  /// How many of the grid's points and how many of the others are strays.
+  /// How many of the grid's points and how many of the others are outliers.
   std::pair<int, int> count() {
     const CellGrid grid(points_);
     const std::vector<float> spacings = local_spacings(grid);
-    const std::vector<std::uint8_t> strays = find_strays(grid, spacings, median(spacings));
+    const std::vector<std::uint8_t> outliers = find_outliers(grid, spacings, median(spacings));
     std::pair<int, int> counts{0, 0};
-    for (std::size_t i = 0; i < strays.size(); ++i) {
-      (grid.order()[i] < first_ ? counts.first : counts.second) += strays[i];
+    for (std::size_t i = 0; i < outliers.size(); ++i) {
+      (grid.order()[i] < first_ ? counts.first : counts.second) += outliers[i];
     }
     return counts;
   }
@@ -77,7 +78,7 @@ class Strays : public testing::Test {
   std::mt19937 random_{4};
 };
 
-TEST_F(Strays, AreWhatLiesEverywhereAroundASheet) {
+TEST_F(Outliers, AreWhatLiesEverywhereAroundASheet) {
   scatter(500, 0, 5, 30);
   const auto [own, others] = count();
   EXPECT_EQ(own, 0);
@@ -86,7 +87,7 @@ TEST_F(Strays, AreWhatLiesEverywhereAroundASheet) {
 
 // Such is an object far from the scanner, beside one that is near. Along its edges the nearest
 // make no sheet, and most of them are in none: some are lost there.
-TEST_F(Strays, AreNoFacesOfABoxThatIsSparse) {
+TEST_F(Outliers, AreNoFacesOfABoxThatIsSparse) {
   for (int i = 0; i < 12; ++i) {
     for (int j = 0; j < 12; ++j) {
       const float a = 4 * static_cast<float>(i);
@@ -101,7 +102,7 @@ TEST_F(Strays, AreNoFacesOfABoxThatIsSparse) {
   EXPECT_LE(others, 90);  // of 397
 }
 
-TEST_F(Strays, AreNoSparsePartsWhosePointsLieAnywhere) {
+TEST_F(Outliers, AreNoSparsePartsWhosePointsLieAnywhere) {
   for (int i = 0; i < 300; ++i) {
     const float x = between(70, 140);
     const float y = between(0, 70);
@@ -113,7 +114,7 @@ TEST_F(Strays, AreNoSparsePartsWhosePointsLieAnywhere) {
   EXPECT_LE(others, 4);
 }
 
-TEST_F(Strays, AreNoPartsOfASheetThatAreSparse) {
+TEST_F(Outliers, AreNoPartsOfASheetThatAreSparse) {
   for (int i = 0; i < 8; ++i) {
     for (int j = 0; j < 16; ++j) {
       const float x = static_cast<float>(i) + between(-0.3f, 0.3f);
@@ -123,35 +124,35 @@ TEST_F(Strays, AreNoPartsOfASheetThatAreSparse) {
   EXPECT_EQ(count(), std::pair(0, 0));
 }
 
-TEST_F(Strays, AreNoPointsWithinASparseWire) {
+TEST_F(Outliers, AreNoPointsWithinASparseWire) {
   for (int i = 0; i < 30; ++i) add(0, 4 * static_cast<float>(i), 40);
   const auto [own, others] = count();
   EXPECT_EQ(own, 0);
   EXPECT_LE(others, 8);  // its ends, where the nearest lie on one side
 }
 
-TEST_F(Strays, AreClustersFarFromTheRest) {
+TEST_F(Outliers, AreClustersFarFromTheRest) {
   for (int i = 0; i < 4; ++i) add(200 + 0.4f * static_cast<float>(i), 200, i % 2 == 0 ? 0.f : 0.7f);
   add(-300, 0, 20);
   EXPECT_EQ(count(), std::pair(0, 5));
 }
 
-// The sheet's points are their nearest, so they are strays among what is on no sheet alone.
-TEST_F(Strays, BesideASheetWeighNothing) {
+// The sheet's points are their nearest, so they are outliers among what is on no sheet alone.
+TEST_F(Outliers, BesideASheetWeighNothing) {
   scatter(300, 3, 1.3f, 4);
   const auto [own, others] = count_weightless();
   EXPECT_EQ(own, 0);
   EXPECT_GE(others, 200);
 }
 
-TEST_F(Strays, WeighNothingWhereTheRadiusIsGiven) {
+TEST_F(Outliers, WeighNothingWhereTheRadiusIsGiven) {
   scatter(500, 0, 5, 30);
   const auto [own, others] = count_weightless({.radius = 3 * kGridSpacing});
   EXPECT_EQ(own, 0);
   EXPECT_GT(others, 400);
 }
 
-TEST_F(Strays, AreNoWiresThatBeginAtASheet) {
+TEST_F(Outliers, AreNoWiresThatBeginAtASheet) {
   for (int i = 1; i < 25; ++i) add(30.4f, 30.3f, static_cast<float>(i));
   EXPECT_EQ(count_weightless(), std::pair(0, 0));
 }

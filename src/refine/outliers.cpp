@@ -1,6 +1,6 @@
-// Finds strays: points around which the others form neither a sheet nor a line.
+// Finds isolated outliers: points around which the others form neither a surface nor a line.
 
-#include "refine/strays.hpp"
+#include "refine/outliers.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -13,20 +13,21 @@
 namespace palpate {
 namespace {
 
-// A point this many typical spacings from its neighbours has to be on a sheet or a line with them:
-// beside a surface local_spacings() gives a stray twice that surface's, less what it averages.
-constexpr float kStraySpacings = 1.8f;  // measured (tests/refine/strays_test.cpp)
-constexpr std::size_t kNeighbors = 9;   // derived: a point of a grid and the eight around it
-constexpr float kSlender = 1.f / 3;     // judgement: of a sheet's width, and of a line's length
-// The square of how far the neighbours' middle is, against theirs: 0.6 at a sheet's corner, less
+// A point this many typical spacings from its neighbours has to be on a surface or a line with
+// them: beside a surface local_spacings() gives an outlier twice that surface's, less what it
+// averages.
+constexpr float kOutlierSpacings = 1.8f;  // measured (tests/refine/outliers_test.cpp)
+constexpr std::size_t kNeighbors = 9;     // derived: a point of a grid and the eight around it
+constexpr float kSlender = 1.f / 3;       // judgement: of a surface's width, and of a line's length
+// The square of how far the neighbours' middle is, against theirs: 0.6 at a surface's corner, less
 // where they lie around.
-constexpr float kAround = 0.5f;  // judgement: no corner of a sheet
+constexpr float kAround = 0.5f;  // judgement: no corner of a surface
 // Points, more than half of kNeighbors, the point itself among them; judgement.
 constexpr std::ptrdiff_t kMostOfNearest = 5;
 
 /// How the places nearest to a point lie.
 struct Neighborhood {
-  bool like_a_surface = false;  ///< in a sheet or along a line
+  bool like_a_surface = false;  ///< on a surface or along a line
   float aside = 1;              ///< 0: all around the point; 1: all far away on one side
 };
 
@@ -49,8 +50,8 @@ Neighborhood neighborhood(const CellGrid& grid, std::uint32_t i,
 
 }  // namespace
 
-std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const float> spacings,
-                                      double typical) {
+std::vector<std::uint8_t> find_outliers(const CellGrid& grid, std::span<const float> spacings,
+                                        double typical) {
   const auto near = static_cast<float>(typical);
   std::vector<std::uint8_t> doubted(grid.size());
   const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& places) {
@@ -62,40 +63,40 @@ std::vector<std::uint8_t> find_strays(const CellGrid& grid, std::span<const floa
     detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(grid.size(), 4096, decide);
   };
   each([&](std::size_t i, auto& places) {
-    if (spacings[i] <= kStraySpacings * near) return;
+    if (spacings[i] <= kOutlierSpacings * near) return;
     const Neighborhood around = look(i, places);
     const bool company = places.size() > 1 && places[1].squared_distance <= near * near;
     doubted[i] = !company && !around.like_a_surface ? 1 : 0;
   });
-  // Where sheets meet, the nearest are in no sheet, but most of them are.
-  std::vector<std::uint8_t> strays(grid.size());
+  // Where surfaces meet, the nearest points lie on no one surface, but most of them lie on one.
+  std::vector<std::uint8_t> outliers(grid.size());
   each([&](std::size_t i, auto& places) {
     if (doubted[i] == 0) return;
     const Neighborhood around = look(i, places);
     const auto sure = std::ranges::count_if(
         places, [&](const CellGrid::Neighbor& place) { return doubted[place.index] == 0; });
     const bool edge = around.aside < kAround && sure >= kMostOfNearest;
-    strays[i] = edge ? 0 : 1;
+    outliers[i] = edge ? 0 : 1;
   });
-  return strays;
+  return outliers;
 }
 
-void refine_strays(Surfels& s) {
+void refine_outliers(Surfels& s) {
   const PrepareOptions& options = s.options;
   if (options.paper || !options.remove_speckle || !options.estimate_normals) return;
   Radii& radii = s.radii;
-  radii.strays = find_strays(s.sampling.grid, s.sampling.spacings, s.sampling.spacing);
+  radii.outliers = find_outliers(s.sampling.grid, s.sampling.spacings, s.sampling.spacing);
   if (options.radius) return;
-  for (std::size_t i = 0; i < radii.strays.size(); ++i) {
-    if (radii.strays[i] != 0) {
-      // Strays are not to reach what is sampled finely.
+  for (std::size_t i = 0; i < radii.outliers.size(); ++i) {
+    if (radii.outliers[i] != 0) {
+      // Outliers are not to reach what is sampled finely.
       radii.values[i] = kUsualMultiple * static_cast<float>(s.sampling.spacing);
     }
   }
 }
 
-void refine_strays_off_sheets(Surfels& s) {
-  if (s.radii.strays.empty()) return;
+void refine_outliers_off_sheets(Surfels& s) {
+  if (s.radii.outliers.empty()) return;
   const Sampling& sampling = s.sampling;
   Weights& weights = s.weights;
   const std::vector<std::uint32_t>& sheet = s.sheets.sheet;
@@ -110,12 +111,12 @@ void refine_strays_off_sheets(Surfels& s) {
   const CellGrid grid(positions);
   std::vector<float> spacings = local_spacings(grid);
   widen_to_lines(grid, spacings);
-  const std::vector<std::uint8_t> strays = find_strays(grid, spacings, sampling.spacing);
+  const std::vector<std::uint8_t> outliers = find_outliers(grid, spacings, sampling.spacing);
   const double typical_squared = sampling.spacing * sampling.spacing;
   std::vector<CellGrid::Neighbor> places;
-  for (std::size_t k = 0; k < strays.size(); ++k) {
+  for (std::size_t k = 0; k < outliers.size(); ++k) {
     const std::uint32_t i = off[grid.order()[k]];
-    if (strays[k] == 0) continue;
+    if (outliers[k] == 0) continue;
     nearest_places(sampling.grid, i, 2, places);
     if (places.size() > 1 && places[1].squared_distance <= typical_squared) continue;
     weights.values[i] = 0;
