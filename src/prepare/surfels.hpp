@@ -17,10 +17,10 @@
 
 namespace palpate {
 
-/// A point that lies on a second sheet, too, where two meet in a crease or at an edge.
-struct Twin {
+/// The second plane of a point where two sheets meet in a crease or at an edge.
+struct SecondPlane {
   std::uint32_t point = 0;
-  std::uint32_t host = 0;  ///< a point that is surely on that sheet
+  std::uint32_t owner = 0;  ///< a point that is surely on that plane
 };
 
 /// What the steps of prepare() have made of a cloud so far. Columns are in sorted order.
@@ -33,8 +33,8 @@ struct Surfels {
   WeightSums sums = {};
   Weights weights = {};
   SurfacePoints::Sheets sheets = {};  ///< empty: all points are one, and their signs agree
-  std::vector<Twin> twins = {};       ///< in rising order
-  Prepared prepared = {};             ///< the report from the start, the points at the end
+  std::vector<SecondPlane> second_planes = {};  ///< in rising order
+  Prepared prepared = {};  ///< the report from the start, the points at the end
 };
 
 /// The step of prepare() after which a refinement runs.

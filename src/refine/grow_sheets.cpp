@@ -51,9 +51,9 @@ struct Later {
 /// part where normals turn the most.
 class Growth {
  public:
-  /// `hosts`: of each point the one whose fit it has; kNoHost: it is on no sheet.
-  Growth(const SheetInput& input, const PointFits& own, const std::vector<std::uint32_t>& hosts)
-      : input_(input), own_(own), hosts_(hosts), sets_(input.grid.size()) {}
+  /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no sheet.
+  Growth(const SheetInput& input, const PointFits& own, const std::vector<std::uint32_t>& assigned)
+      : input_(input), own_(own), assigned_(assigned), sets_(input.grid.size()) {}
 
   detail::SignedSets& run() {
     const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
@@ -99,14 +99,14 @@ class Growth {
         });
   }
 
-  /// Joins i and j, which are near each other, if they lie on one sheet. Compares their hosts: at a
-  /// sharp rim, where two sides meet, these are as far apart as the sides are.
+  /// Joins i and j, which are near each other, if they lie on one sheet. Compares their assigned
+  /// planes: at a sharp rim, where two sides meet, these are as far apart as the sides are.
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
-    if (i == j || hosts_[i] == kNoHost || hosts_[j] == kNoHost) return;
+    if (i == j || assigned_[i] == kUnassigned || assigned_[j] == kUnassigned) return;
     const bool inside = j >= block.begin && j < block.end;
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
-    const std::uint32_t a = hosts_[i];
-    const std::uint32_t b = hosts_[j];
+    const std::uint32_t a = assigned_[i];
+    const std::uint32_t b = assigned_[j];
     const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
     const float length = way.norm();
     const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
@@ -143,7 +143,7 @@ class Growth {
 
   const SheetInput& input_;
   const PointFits& own_;
-  const std::vector<std::uint32_t>& hosts_;
+  const std::vector<std::uint32_t>& assigned_;
   detail::SignedSets sets_;
 };
 
@@ -158,15 +158,15 @@ Growths grow_sheets(const SheetInput& input, PointFits& own) {
   Growths result;
   Snapped snapped = snap_to_planes(input, own);
   result.sure = std::move(snapped.sure);
-  result.twins = std::move(snapped.twins);
-  Growth growth(input, own, snapped.hosts);
+  result.second_planes = std::move(snapped.second_planes);
+  Growth growth(input, own, snapped.assigned);
   detail::SignedSets& sets = growth.run();
   const std::size_t count = input.grid.size();
   std::vector<std::uint32_t>& sheet = result.sheets.sheet;
   sheet.assign(count, SurfacePoints::Sheets::kNone);
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (snapped.hosts[i] == kNoHost) continue;
+    if (snapped.assigned[i] == kUnassigned) continue;
     const auto [root, sign] = sets.find(i);
     if (sign < 0) own.normals[i] = -own.normals[i];
     if (root == i) {  // before all others of its sheet
@@ -175,8 +175,9 @@ Growths grow_sheets(const SheetInput& input, PointFits& own) {
     }
     ++sizes[sheet[i] = sheet[root]];
   }
-  std::erase_if(result.twins,
-                [&](const Twin& twin) { return sheet[twin.point] == sheet[twin.host]; });
+  std::erase_if(result.second_planes, [&](const SecondPlane& second) {
+    return sheet[second.point] == sheet[second.owner];
+  });
   result.sheets.part.resize(sizes.size());
   std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) {

@@ -5,8 +5,8 @@
 
 #include "refine/gaps.hpp"
 #include "refine/outliers.hpp"
+#include "refine/second_planes.hpp"
 #include "refine/sheets.hpp"
-#include "refine/twins.hpp"
 
 namespace palpate {
 namespace {
@@ -17,7 +17,7 @@ constexpr std::array kRefinements{
     Refinement{"gaps", Stage::fits, &refine_gaps},
     Refinement{"sheets", Stage::weights, &refine_sheets},
     Refinement{"outliers_off_segments", Stage::weights, &refine_outliers_off_sheets},
-    Refinement{"twins", Stage::points, &refine_twins},
+    Refinement{"second_planes", Stage::points, &refine_second_planes},
 };
 
 }  // namespace

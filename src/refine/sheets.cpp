@@ -203,9 +203,9 @@ void join_parts(const SheetInput& input, const std::vector<Bond>& bonds,
 }  // namespace
 
 SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, PointFits& own,
-                                  std::vector<Twin>& twins) {
+                                  std::vector<SecondPlane>& second_planes) {
   Growths grown = grow_sheets(input, own);
-  twins = std::move(grown.twins);
+  second_planes = std::move(grown.second_planes);
   const std::vector<SheetVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
@@ -222,7 +222,7 @@ void refine_sheets(Surfels& s) {
   const KnownSigns known = given_signs(s.placed, s.sampling, s.options);
   s.sheets =
       make_sheets({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
-                  known, s.fits, s.twins);
+                  known, s.fits, s.second_planes);
 }
 
 }  // namespace palpate

@@ -33,18 +33,19 @@ struct SheetInput {
 ///
 /// Sets of sheets that lie side by side are one part where nearby pairs of their points agree on
 /// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
-/// arc joined the two. `twins`: gets the points that lie on two sheets, in rising order.
+/// arc joined the two. `second_planes`: gets those of points that lie on two sheets, in rising
+/// order.
 [[nodiscard]] SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known,
-                                                PointFits& own, std::vector<Twin>& twins);
+                                                PointFits& own,
+                                                std::vector<SecondPlane>& second_planes);
 
 /// Which sheet each point lies on.
 struct Growths {
-  SurfacePoints::Sheets sheets;  ///< every sheet is a part of its own
-  std::vector<std::uint8_t>
-      sure;                 ///< 1: its own fit put the point there; 0: a neighbour's, or none
-  std::vector<Twin> twins;  ///< in rising order
-  std::vector<std::uint8_t> hidden;  ///< look_around() tells, 1: another sheet is near on the
-                                     ///< eye's side
+  SurfacePoints::Sheets sheets;            ///< every sheet is a part of its own
+  std::vector<std::uint8_t> sure;          ///< 1: by its own fit; 0: by another's, or none
+  std::vector<SecondPlane> second_planes;  ///< in rising order
+  std::vector<std::uint8_t> hidden;        ///< look_around() tells, 1: another sheet is near on the
+                                           ///< eye's side
 };
 
 /// The first half of make_sheets(). Normals of one sheet agree afterwards.
@@ -67,14 +68,13 @@ struct SheetVote {
                                                  const std::optional<Eigen::Vector3f>& eye,
                                                  Growths& grown);
 
-inline constexpr std::uint32_t kNoHost = ~std::uint32_t{0};  ///< no point: above every index
+inline constexpr std::uint32_t kUnassigned = ~std::uint32_t{0};  ///< no point: above every index
 
 /// The planes that points lie on, in sorted order.
 struct Snapped {
-  std::vector<std::uint8_t> sure;    ///< 1: its own fit is a sheet's; 0: a host's is, or none
-  std::vector<std::uint32_t> hosts;  ///< the sure point whose fit each has: itself, or another, or
-                                     ///< kNoHost
-  std::vector<Twin> twins;           ///< those that lie on a second plane
+  std::vector<std::uint8_t> sure;          ///< 1: its own fit is a sheet's; 0: another's, or none
+  std::vector<std::uint32_t> assigned;     ///< the sure point whose plane each has, or kUnassigned
+  std::vector<SecondPlane> second_planes;  ///< those that lie on a second plane
 };
 
 /// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,

@@ -53,30 +53,30 @@ class Snapping {
   }
 
   void run() {
-    hosts_.assign(sure_.size(), kNoHost);
-    second_hosts_.assign(sure_.size(), kNoHost);
-    take_hosts(std::vector<std::uint8_t>(sure_.size(), 1));
-    take_hosts(fit_homeless());
+    assigned_.assign(sure_.size(), kUnassigned);
+    second_planes_.assign(sure_.size(), kUnassigned);
+    assign_planes(std::vector<std::uint8_t>(sure_.size(), 1));
+    assign_planes(fit_unassigned());
     std::vector<std::uint8_t> alone(sure_.size());
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
-      if (hosts_[i] == kNoHost) alone[i] = is_among_homeless(i, near) ? 1 : 0;
+      if (assigned_[i] == kUnassigned) alone[i] = is_among_unassigned(i, near) ? 1 : 0;
     });
     for (std::uint32_t i = 0; i < alone.size(); ++i) {
-      if (hosts_[i] == kNoHost) {
+      if (assigned_[i] == kUnassigned) {
         sure_[i] = alone[i];
-        if (alone[i] != 0) hosts_[i] = i;
+        if (alone[i] != 0) assigned_[i] = i;
         if (alone[i] == 0) own_.confidences[i] = 0;
-      } else if (hosts_[i] != i) {
-        take_over(i, hosts_[i]);
+      } else if (assigned_[i] != i) {
+        take_over(i, assigned_[i]);
       }
     }
   }
 
   /// The result for all points, after run().
   [[nodiscard]] Snapped finish() && {
-    Snapped snapped{std::move(sure_), std::move(hosts_), {}};
-    for (std::uint32_t i = 0; i < second_hosts_.size(); ++i) {
-      if (second_hosts_[i] != kNoHost) snapped.twins.push_back({i, second_hosts_[i]});
+    Snapped snapped{std::move(sure_), std::move(assigned_), {}};
+    for (std::uint32_t i = 0; i < second_planes_.size(); ++i) {
+      if (second_planes_[i] != kUnassigned) snapped.second_planes.push_back({i, second_planes_[i]});
     }
     return snapped;
   }
@@ -87,30 +87,31 @@ class Snapping {
                                      static_cast<double>(input_.noise[i]));
   }
 
-  /// Looks for the hosts of those that ask. One that has a host keeps it where no other holds.
-  void take_hosts(const std::vector<std::uint8_t>& asks) {
+  /// Assigns planes to the points marked in `asks`. One that has a plane keeps it where no other
+  /// holds.
+  void assign_planes(const std::vector<std::uint8_t>& asks) {
     if (std::ranges::count(asks, 1) == 0) return;
     index_sure();
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (asks[i] == 0) return;
       if (sure_[i] == 0) {
-        take_host(i, near);
+        assign_plane(i, near);
         return;
       }
-      hosts_[i] = i;
-      second_hosts_[i] = kNoHost;
+      assigned_[i] = i;
+      second_planes_[i] = kUnassigned;
       if (own_.others[i] == 0) return;
       list_sure(i, near);
-      second_hosts_[i] = second_host(i, i, near);
+      second_planes_[i] = second_plane(i, i, near);
     });
   }
 
-  /// Fits points without a host to each other: what lies on others' planes hid theirs, such as that
-  /// of a wall which is lower than R. Returns who may have another host now.
-  std::vector<std::uint8_t> fit_homeless() {
+  /// Fits unassigned points to each other: what lies on others' planes hid theirs, such as that of
+  /// a wall which is lower than R. Marks the points that may have another plane now.
+  std::vector<std::uint8_t> fit_unassigned() {
     std::vector<std::uint8_t> found(sure_.size());
     each_with<Refit>([&](std::uint32_t i, Refit& refit) {
-      if (hosts_[i] == kNoHost) found[i] = fit_again(i, refit) ? 1 : 0;
+      if (assigned_[i] == kUnassigned) found[i] = fit_again(i, refit) ? 1 : 0;
     });
     std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
@@ -129,7 +130,7 @@ class Snapping {
     return found;
   }
 
-  /// Fits a plane to the homeless points around, then a sheet to all unsure ones that lie on it.
+  /// Fits a plane to the unassigned points around, then a sheet to all unsure ones that lie on it.
   bool fit_again(std::uint32_t i, Refit& refit) {
     const auto radius = static_cast<double>(input_.radii[i]);
     const auto noise = static_cast<double>(input_.noise[i]);
@@ -143,7 +144,7 @@ class Snapping {
       std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
       return refit.fitter.fit(input_.grid, p, refit.some, static_cast<double>(reach), 0, 0);
     };
-    SheetFit fit = fit_to([this](std::uint32_t j) { return hosts_[j] == kNoHost; });
+    SheetFit fit = fit_to([this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
     if (!fit.is_smooth(radius, noise)) return false;
     const Vector3f normal = fit.normal.cast<float>();
     fit = fit_to([&](std::uint32_t j) {
@@ -183,60 +184,60 @@ class Snapping {
     });
   }
 
-  void take_host(std::uint32_t i, std::vector<std::uint32_t>& near) {
+  void assign_plane(std::uint32_t i, std::vector<std::uint32_t>& near) {
     list_sure(i, near);
-    const std::uint32_t host = best_host(i, near);
-    if (host == kNoHost) return;
-    const std::uint32_t second = second_host(i, host, near);
-    if (!is_shared(i, host, near)) return;
-    hosts_[i] = host;
-    second_hosts_[i] = second;
+    const std::uint32_t owner = best_plane(i, near);
+    if (owner == kUnassigned) return;
+    const std::uint32_t second = second_plane(i, owner, near);
+    if (!is_shared(i, owner, near)) return;
+    assigned_[i] = owner;
+    second_planes_[i] = second;
   }
 
-  /// Gives a point its host's fit, or at least its trust where an arc joins both.
-  void take_over(std::uint32_t i, std::uint32_t host) {
-    const float way = (input_.grid.points()[i] - input_.grid.points()[host]).norm();
-    const float turn = kTurnMargin * bow(input_, own_, host) * way;
-    if (std::abs(own_.normals[i].dot(own_.normals[host])) < 1 - 0.5f * turn * turn) {
-      own_.normals[i] = own_.normals[host];
-      own_.residuals[i] = own_.residuals[host];
+  /// Gives a point the fit of its plane's owner, or at least its trust where an arc joins both.
+  void take_over(std::uint32_t i, std::uint32_t owner) {
+    const float way = (input_.grid.points()[i] - input_.grid.points()[owner]).norm();
+    const float turn = kTurnMargin * bow(input_, own_, owner) * way;
+    if (std::abs(own_.normals[i].dot(own_.normals[owner])) < 1 - 0.5f * turn * turn) {
+      own_.normals[i] = own_.normals[owner];
+      own_.residuals[i] = own_.residuals[owner];
     }
-    own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[host]);
+    own_.confidences[i] = std::max(own_.confidences[i], 0.5f * own_.confidences[owner]);
   }
 
-  /// Does enough of the area around lie on the host's plane, too? At a corner of three faces a
+  /// Does enough of the area around lie on the owner's plane, too? At a corner of three faces a
   /// third does.
-  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t host,
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t owner,
                                std::vector<std::uint32_t>& around) const {
     around.clear();
     const Vector3f& p = input_.grid.points()[i];
     input_.grid.within(p, input_.radii[i], around);
-    const float on = std::max(kSnapResiduals * own_.residuals[host], kSnapSlope * input_.radii[i]);
+    const float on = std::max(kSnapResiduals * own_.residuals[owner], kSnapSlope * input_.radii[i]);
     float shared = 0;
     float all = 0;
     for (const std::uint32_t j : around) {
       const float area = input_.spacings[j] * input_.spacings[j];
       all += area;
-      if (std::abs(own_.normals[host].dot(input_.grid.points()[j] - p)) <= on) shared += area;
+      if (std::abs(own_.normals[owner].dot(input_.grid.points()[j] - p)) <= on) shared += area;
     }
     return shared >= kShared * all;
   }
 
-  /// Are half of the points around without a host, too? On a thing so small a plane has to do.
-  [[nodiscard]] bool is_among_homeless(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+  /// Are half of the points around unassigned, too? On a thing so small a plane has to do.
+  [[nodiscard]] bool is_among_unassigned(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     if (static_cast<double>(own_.confidences[i]) < kPlanar) return false;
     near.clear();
     input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
-    const auto homeless =
-        std::ranges::count_if(near, [this](std::uint32_t j) { return hosts_[j] == kNoHost; });
-    return 2 * static_cast<std::size_t>(homeless) >= near.size();
+    const auto unassigned = std::ranges::count_if(
+        near, [this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
+    return 2 * static_cast<std::size_t>(unassigned) >= near.size();
   }
 
   /// The sure point on whose plane the point lies best.
-  [[nodiscard]] std::uint32_t best_host(std::uint32_t i,
-                                        const std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] std::uint32_t best_plane(std::uint32_t i,
+                                         const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
-    std::uint32_t host = kNoHost;
+    std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
       const float length = way.norm();
@@ -247,16 +248,16 @@ class Snapping {
           off <= std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length);
       if (!on_plane && off > kChord * kTurnMargin * bow(input_, own_, j) * length) continue;
       best = cost;
-      host = j;
+      owner = j;
     }
-    return host;
+    return owner;
   }
 
   /// The nearest sure point of another plane that the point lies on as well.
-  [[nodiscard]] std::uint32_t second_host(std::uint32_t i, std::uint32_t first,
-                                          const std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] std::uint32_t second_plane(std::uint32_t i, std::uint32_t first,
+                                           const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
-    std::uint32_t host = kNoHost;
+    std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
       if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
       const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
@@ -264,9 +265,9 @@ class Snapping {
       const float squared = way.squaredNorm();
       if (off > kOnBoth * input_.spacings[i] || squared >= best) continue;
       best = squared;
-      host = j;
+      owner = j;
     }
-    return host;
+    return owner;
   }
 
   const SheetInput& input_;
@@ -274,8 +275,8 @@ class Snapping {
   std::vector<std::uint8_t> sure_;
   CellGrid sure_places_;
   std::vector<std::uint32_t> sure_points_;  // in the order that the index was given them
-  std::vector<std::uint32_t> hosts_;
-  std::vector<std::uint32_t> second_hosts_;
+  std::vector<std::uint32_t> assigned_;
+  std::vector<std::uint32_t> second_planes_;
 };
 
 }  // namespace

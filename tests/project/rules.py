@@ -50,7 +50,7 @@ STEPS = {
                 {"given_normals", "lines", "sheet_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
     "refine": [{"said_by_sets", "holes"}, {"bonds", "layered_sets"}, {"outliers"}, {"gaps"}, {"sheets"},
-               {"snapping"}, {"grow_sheets", "look_around"}, {"twins"}, {"refinements"}],
+               {"snapping"}, {"grow_sheets", "look_around"}, {"second_planes"}, {"refinements"}],
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
 ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "tile", "touch",

@@ -12,7 +12,7 @@
 #include "geometry/clouds.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "refine/fitted.hpp"
-#include "refine/twins.hpp"
+#include "refine/second_planes.hpp"
 
 namespace palpate {
 namespace {
@@ -149,21 +149,21 @@ TEST(LookAround, TellsWhatAnotherSheetHides) {
   }
 }
 
-TEST(Twins, AreThePointsOfACreaseAndOfNothingElse) {
+TEST(SecondPlanes, AreThePointsOfACreaseAndOfNothingElse) {
   Fitted fitted(floor_and_wall(15));
   const Growths grown = grow_sheets(fitted.input(), fitted.own);
-  EXPECT_GE(grown.twins.size(), 15u);
-  for (const Twin& twin : grown.twins) {
-    const Vector3f& p = fitted.grid.points()[twin.point];
+  EXPECT_GE(grown.second_planes.size(), 15u);
+  for (const SecondPlane& second : grown.second_planes) {
+    const Vector3f& p = fitted.grid.points()[second.point];
     EXPECT_EQ(p.x(), 0);
     EXPECT_EQ(p.z(), 0);
-    EXPECT_NE(grown.sheets.sheet[twin.point], grown.sheets.sheet[twin.host]);
+    EXPECT_NE(grown.sheets.sheet[second.point], grown.sheets.sheet[second.owner]);
   }
   Fitted flat(plane(12));
-  EXPECT_TRUE(grow_sheets(flat.input(), flat.own).twins.empty());
+  EXPECT_TRUE(grow_sheets(flat.input(), flat.own).second_planes.empty());
 }
 
-TEST(Twins, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
+TEST(SecondPlanes, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
   SurfacePoints points;
   points.grid = CellGrid(std::vector<Vector3f>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
   points.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
@@ -171,15 +171,15 @@ TEST(Twins, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
   points.radii = points.confidences = {1, 1, 1};
   points.sheets.sheet = {0, 0, 0};
   std::uint32_t corner = 0;
-  std::uint32_t host = 0;
+  std::uint32_t owner = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (points.grid.points()[i].isZero()) corner = i;
-    if (points.grid.points()[i].z() > 0) host = i;
+    if (points.grid.points()[i].z() > 0) owner = i;
   }
-  points.normals[host] = {1, 0, 0};
-  points.sheets.sheet[host] = 1;
-  const std::vector<Twin> twins = {{corner, host}};
-  add_twins(twins, points);
+  points.normals[owner] = {1, 0, 0};
+  points.sheets.sheet[owner] = 1;
+  const std::vector<SecondPlane> second_planes = {{corner, owner}};
+  add_second_planes(second_planes, points);
   ASSERT_EQ(points.size(), 4u);
   EXPECT_EQ(std::accumulate(points.density_weights.begin(), points.density_weights.end(), 0.f), 3);
   Vector3f sum = Vector3f::Zero();

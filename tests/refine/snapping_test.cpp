@@ -38,11 +38,11 @@ TEST(Snapping, GivesEdgesOfABoxThePlanesOfItsFaces) {
 TEST(Snapping, PutsPointsOfACreaseOnTheSurePointsPlane) {
   const Made made(test::floor_and_wall(15));
   for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
-    const std::uint32_t host = made.snapped.hosts[i];
-    ASSERT_NE(host, kNoHost);
-    EXPECT_EQ(made.snapped.sure[i] != 0, host == i);
-    const Vector3f off = made.grid.points()[i] - made.grid.points()[host];
-    EXPECT_LT(std::abs(made.own.normals[host].dot(off)), 0.31f);
+    const std::uint32_t owner = made.snapped.assigned[i];
+    ASSERT_NE(owner, kUnassigned);
+    EXPECT_EQ(made.snapped.sure[i] != 0, owner == i);
+    const Vector3f off = made.grid.points()[i] - made.grid.points()[owner];
+    EXPECT_LT(std::abs(made.own.normals[owner].dot(off)), 0.31f);
   }
 }
 
@@ -80,7 +80,8 @@ TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsSure) {
   for (Vector3f& p : points) p.z() = static_cast<float>(clouds.uniform(-0.8, 0.8));
   const Made made(points);
   std::size_t on_own = 0;
-  for (std::uint32_t i = 0; i < made.grid.size(); ++i) on_own += made.snapped.hosts[i] == i ? 1 : 0;
+  for (std::uint32_t i = 0; i < made.grid.size(); ++i)
+    on_own += made.snapped.assigned[i] == i ? 1 : 0;
   EXPECT_GT(2 * on_own, made.grid.size());
 }
 
@@ -94,22 +95,22 @@ TEST(Snapping, LeavesBumpsFinerThanRWithoutAPlane) {
     }
   }
   const Made made(points);
-  std::size_t hosted = 0;
+  std::size_t reassigned = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t host = made.snapped.hosts[i];
-    if (host == kNoHost || host == i) continue;
-    ++hosted;
+    const std::uint32_t owner = made.snapped.assigned[i];
+    if (owner == kUnassigned || owner == i) continue;
+    ++reassigned;
     std::size_t on = 0;
     std::size_t all = 0;
     for (const Vector3f& q : made.grid.points()) {
       const Vector3f way = q - made.grid.points()[i];
       if (way.norm() > test::kFittedRadius) continue;
       ++all;
-      if (std::abs(made.own.normals[host].dot(way)) < 0.5f) ++on;
+      if (std::abs(made.own.normals[owner].dot(way)) < 0.5f) ++on;
     }
     EXPECT_GE(3.4 * static_cast<double>(on), static_cast<double>(all));
   }
-  EXPECT_LT(hosted, points.size() / 2);
+  EXPECT_LT(reassigned, points.size() / 2);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Points that lie on two sheets are on both.
+// Puts points that lie on two sheets on both.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@ namespace palpate {
 
 /// Puts points that lie on two sheets on both, with half their weight each: a sheet that lacks the
 /// points of its crease would give way there. Indexes the points again.
-void add_twins(std::span<const Twin> twins, SurfacePoints& points);
+void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints& points);
 
-/// add_twins() of the surfels.
-void refine_twins(Surfels& surfels);
+/// add_second_planes() of the surfels.
+void refine_second_planes(Surfels& surfels);
 
 }  // namespace palpate
