@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "geometry/signed_sets.hpp"
-#include "refine/said_by_sets.hpp"
+#include "refine/cluster_edges.hpp"
 
 namespace palpate {
 
@@ -39,7 +39,7 @@ class LayeredSets {
   void count(std::uint32_t root_i, std::uint32_t root_j, int sign, int pairs);
 
   detail::SignedSets& sets_;
-  SaidBySets<Against> against_;
+  ClusterEdges<Against> against_;
 };
 
 }  // namespace palpate

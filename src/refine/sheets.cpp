@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "refine/bonds.hpp"
+#include "refine/sheet_clusters.hpp"
 
 namespace palpate {
 namespace {
@@ -75,22 +75,22 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
   return seen;
 }
 
-/// What sheets say of each other, the surest first.
-std::vector<Bond> bonds_of(const std::vector<SheetVote>& votes) {
-  std::vector<Bond> bonds;
+/// The signed edges between sheets, the surest first.
+std::vector<SignedEdge> edges_of(const std::vector<SheetVote>& votes) {
+  std::vector<SignedEdge> edges;
   for (std::size_t k = 0; k < votes.size();) {
-    Bond bond{votes[k].a, votes[k].b, {}};
-    for (; k < votes.size() && votes[k].a == bond.a && votes[k].b == bond.b; ++k) {
+    SignedEdge edge{votes[k].a, votes[k].b, {}};
+    for (; k < votes.size() && votes[k].a == edge.a && votes[k].b == edge.b; ++k) {
       const auto v = static_cast<double>(votes[k].value);
-      bond.said.value += v * std::abs(v);
-      bond.said.squares += v * v;
+      edge.votes.value += v * std::abs(v);
+      edge.votes.squares += v * v;
     }
-    bonds.push_back(bond);
+    edges.push_back(edge);
   }
-  std::stable_sort(bonds.begin(), bonds.end(), [](const Bond& x, const Bond& y) {
-    return std::abs(x.said.value) > std::abs(y.said.value);
+  std::stable_sort(edges.begin(), edges.end(), [](const SignedEdge& x, const SignedEdge& y) {
+    return std::abs(x.votes.value) > std::abs(y.votes.value);
   });
-  return bonds;
+  return edges;
 }
 
 /// Sums over the points of one part.
@@ -155,14 +155,14 @@ void turn(const std::vector<int>& sign_of_sheet, const SurfacePoints::Sheets& sh
   }
 }
 
-/// Joins sheets in sets, by the surest bonds first. One that contradicts the evidence of both of
-/// its sides is passed over. `evidence`: becomes that of the sets, at their roots.
-BondedSets join_bonded(const std::vector<Bond>& bonds, std::vector<Evidence>& evidence) {
-  BondedSets sets(bonds, evidence.size());
-  for (const Bond& bond : bonds) {
-    const std::uint32_t root_a = sets.find(bond.a).first;
-    const std::uint32_t root_b = sets.find(bond.b).first;
-    const int sign = sets.sign_between(root_a, root_b);
+/// Joins sheets in clusters, along the surest edges first. An edge that contradicts the evidence of
+/// both of its sides is passed over. `evidence`: becomes that of the clusters, at their roots.
+SheetClusters join_clusters(const std::vector<SignedEdge>& edges, std::vector<Evidence>& evidence) {
+  SheetClusters clusters(edges, evidence.size());
+  for (const SignedEdge& edge : edges) {
+    const std::uint32_t root_a = clusters.find(edge.a).first;
+    const std::uint32_t root_b = clusters.find(edge.b).first;
+    const int sign = clusters.sign_between(root_a, root_b);
     if (sign == 0) continue;
     const int both = evidence[root_a].sign(kCoherent) * evidence[root_b].sign(kCoherent);
     if (both != 0 && both != sign) continue;
@@ -170,20 +170,20 @@ BondedSets join_bonded(const std::vector<Bond>& bonds, std::vector<Evidence>& ev
     const Evidence& other = evidence[std::max(root_a, root_b)];
     whole.signs += sign * other.signs;
     whole.all += other.all;
-    sets.join(root_a, root_b, sign);
+    clusters.join(root_a, root_b, sign);
   }
-  return sets;
+  return clusters;
 }
 
-/// Makes parts of bonded sheets and turns their normals to the free side.
-void join_parts(const SheetInput& input, const std::vector<Bond>& bonds,
+/// Makes parts of clusters of sheets and turns their normals to the free side.
+void join_parts(const SheetInput& input, const std::vector<SignedEdge>& edges,
                 std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
                 PointFits& own, SurfacePoints::Sheets& sheets) {
-  BondedSets sets = join_bonded(bonds, evidence);
+  SheetClusters clusters = join_clusters(edges, evidence);
   std::vector<int> signs;
   std::vector<std::uint32_t> roots;  // of the parts
   for (std::uint32_t k = 0; k < sheets.part.size(); ++k) {
-    const auto [root, sign] = sets.find(k);
+    const auto [root, sign] = clusters.find(k);
     if (root == k) roots.push_back(k);
     sheets.part[k] = root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : sheets.part[root];
     signs.push_back(sign);
@@ -209,7 +209,7 @@ SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& kno
   const std::vector<SheetVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
   SurfacePoints::Sheets sheets = std::move(grown.sheets);
-  join_parts(input, bonds_of(votes), evidence, known.middle, own, sheets);
+  join_parts(input, edges_of(votes), evidence, known.middle, own, sheets);
   sheets.residual = own.residuals;
   return sheets;
 }

@@ -54,16 +54,16 @@ struct Growths {
 /// How far the points i and j may be off each other's plane when they lie on one sheet, m.
 [[nodiscard]] float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j);
 
-/// What a pair of points says of two sheets: should their normals keep (> 0) or change (< 0) their
-/// relative sign? -1 ... 1.
+/// The vote of a pair of points on two sheets: should their normals keep (> 0) or change (< 0)
+/// their relative sign? -1 ... 1.
 struct SheetVote {
   std::uint32_t a = 0;  ///< sheets, a < b
   std::uint32_t b = 0;
   float value = 0;
 };
 
-/// Says what sheets say of each other, in the order of their numbers. Where there is an eye, notes
-/// which points another sheet hides from it.
+/// Returns the votes on pairs of sheets, in the order of their numbers. Where there is an eye,
+/// notes which points another sheet hides from it.
 [[nodiscard]] std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
                                                  const std::optional<Eigen::Vector3f>& eye,
                                                  Growths& grown);

@@ -1,5 +1,5 @@
 // Which sets of sheets hang together: those that agree as a whole.
-#include "refine/bonds.hpp"
+#include "refine/sheet_clusters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-TEST(Bonds, JoinSetsThatAgreeAsAWhole) {
+TEST(SheetClusters, JoinSetsThatAgreeAsAWhole) {
   // 1 and 2 are opposite. Sheet 0 likes both alike, 3 likes 1 and dislikes 2.
-  const std::vector<Bond> bonds{
+  const std::vector<SignedEdge> edges{
       {0, 1, {20, 20}}, {0, 2, {20, 20}}, {1, 2, {-30, 30}}, {1, 3, {8, 8}}, {2, 3, {-0.2, 0.2}}};
-  BondedSets sets(bonds, 4);
+  SheetClusters sets(edges, 4);
   EXPECT_EQ(sets.sign_between(0, 1), 1);
   EXPECT_EQ(sets.sign_between(2, 3), 0);  // too few votes
   ASSERT_EQ(sets.sign_between(1, 2), -1);
@@ -30,11 +30,11 @@ TEST(Bonds, JoinSetsThatAgreeAsAWhole) {
   EXPECT_EQ(sets.sign_between(0, 1), 0);
 }
 
-TEST(Bonds, TurnWithTheSetThatTheyAreOf) {
+TEST(SheetClusters, TurnWithTheSetThatTheyAreOf) {
   // The set of 2 and 3 has more to say, but its root becomes 1.
-  const std::vector<Bond> bonds{
+  const std::vector<SignedEdge> edges{
       {0, 2, {9, 9}}, {0, 3, {9, 9}}, {1, 2, {-20, 20}}, {2, 3, {40, 40}}, {3, 4, {7, 7}}};
-  BondedSets sets(bonds, 5);
+  SheetClusters sets(edges, 5);
   sets.join(2, 3, sets.sign_between(2, 3));
   sets.join(1, 2, sets.sign_between(1, 2));
   EXPECT_EQ(sets.find(3), std::pair(1u, -1));
@@ -69,7 +69,7 @@ std::vector<Vector3f> box_on_floor(unsigned seed, int height) {
   return points;
 }
 
-TEST(Bonds, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
+TEST(SheetClusters, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
   int apart = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     PointCloud cloud;
