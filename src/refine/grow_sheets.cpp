@@ -8,7 +8,7 @@
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"
-#include "refine/layered_sets.hpp"
+#include "refine/cannot_link_sets.hpp"
 #include "refine/sheets.hpp"
 
 namespace palpate {
@@ -41,7 +41,7 @@ struct Pair {
 struct Later {
   std::vector<Pair> parallel;  // across blocks
   std::vector<Pair> turning;   // continue each other, and are not parallel
-  std::vector<Pair> layers;    // do not: one lies over the other
+  std::vector<Pair> stacked;   // cannot link: one lies over the other
 };
 
 /// Joins points that continue each other's sheets: those with parallel normals within each block on
@@ -69,12 +69,12 @@ class Growth {
 
  private:
   void join(const std::vector<Later>& later) {
-    LayeredSets layered(sets_, input_.grid.size());
+    CannotLinkSets constrained(sets_, input_.grid.size());
     for (const Later& block : later) {
-      for (const Pair& pair : block.layers) layered.add_layers(pair.a, pair.b, pair.sign);
+      for (const Pair& pair : block.stacked) constrained.add_cannot_link(pair.a, pair.b, pair.sign);
     }
     for (const Later& block : later) {
-      for (const Pair& pair : block.parallel) layered.join(pair.a, pair.b, pair.sign);
+      for (const Pair& pair : block.parallel) constrained.join(pair.a, pair.b, pair.sign);
     }
     std::vector<Pair> turning;
     for (const Later& block : later) {
@@ -83,7 +83,7 @@ class Growth {
       });
     }
     std::ranges::stable_sort(turning, {}, &Pair::skew);
-    for (const Pair& pair : turning) layered.join(pair.a, pair.b, pair.sign);
+    for (const Pair& pair : turning) constrained.join(pair.a, pair.b, pair.sign);
   }
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
@@ -123,7 +123,7 @@ class Growth {
     const float arc = kChord * std::max(kTurn * near, bend * length);
     const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
     if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
-      if (a == i && b == j && lie_over(i, j, way)) later.layers.push_back(pair);
+      if (a == i && b == j && lie_over(i, j, way)) later.stacked.push_back(pair);
     } else if (pair.skew > 0.5f * kParallel * kParallel) {
       later.turning.push_back(pair);
     } else if (inside) {

@@ -49,7 +49,7 @@ STEPS = {
     "prepare": [{"description", "stopwatch", "point_fits", "places", "height_groups"},
                 {"given_normals", "lines", "sheet_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
-    "refine": [{"cluster_edges", "holes"}, {"sheet_clusters", "layered_sets"}, {"outliers"}, {"gaps"}, {"sheets"},
+    "refine": [{"cluster_edges", "holes"}, {"sheet_clusters", "cannot_link_sets"}, {"outliers"}, {"gaps"}, {"sheets"},
                {"snapping"}, {"grow_sheets", "look_around"}, {"second_planes"}, {"refinements"}],
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.

@@ -1,5 +1,5 @@
 // Points that lie over each other do not become one sheet through an edge.
-#include "refine/layered_sets.hpp"
+#include "refine/cannot_link_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,34 +17,34 @@ namespace {
 
 using Eigen::Vector3f;
 
-TEST(LayeredSets, AreJoinedOnceMorePairsAskThanLieOverEachOther) {
+TEST(CannotLinkSets, AreJoinedOnceMorePairsAskThanLieOverEachOther) {
   detail::SignedSets sets(6);
-  LayeredSets layered(sets, 6);
-  layered.add_layers(0, 3, 1);
-  layered.add_layers(1, 4, 1);
-  layered.join(0, 1, 1);
-  layered.join(3, 4, 1);
-  layered.join(2, 5, 1);  // lie over nothing
-  layered.join(1, 2, 1);
+  CannotLinkSets constrained(sets, 6);
+  constrained.add_cannot_link(0, 3, 1);
+  constrained.add_cannot_link(1, 4, 1);
+  constrained.join(0, 1, 1);
+  constrained.join(3, 4, 1);
+  constrained.join(2, 5, 1);  // lie over nothing
+  constrained.join(1, 2, 1);
   EXPECT_EQ(sets.find(5), std::pair(0u, 1));
   for (const std::uint32_t i : {0u, 5u}) {
-    layered.join(i, 3, 1);
+    constrained.join(i, 3, 1);
     EXPECT_EQ(sets.find(3), std::pair(3u, 1));
   }
-  layered.join(5, 4, 1);
+  constrained.join(5, 4, 1);
   EXPECT_EQ(sets.find(3), std::pair(0u, 1));
 }
 
-TEST(LayeredSets, MayFaceEachOther) {
+TEST(CannotLinkSets, MayFaceEachOther) {
   detail::SignedSets sets(4);
-  LayeredSets layered(sets, 4);
-  layered.add_layers(0, 2, 1);
-  layered.add_layers(1, 2, -1);
-  layered.join(0, 1, -1);  // so both say the same of 2
-  layered.join(2, 3, -1);
-  layered.join(0, 3, -1);  // as 0 and 2 alike
+  CannotLinkSets constrained(sets, 4);
+  constrained.add_cannot_link(0, 2, 1);
+  constrained.add_cannot_link(1, 2, -1);
+  constrained.join(0, 1, -1);  // so both say the same of 2
+  constrained.join(2, 3, -1);
+  constrained.join(0, 3, -1);  // as 0 and 2 alike
   EXPECT_EQ(sets.find(3), std::pair(2u, -1));
-  layered.join(0, 3, 1);
+  constrained.join(0, 3, 1);
   EXPECT_EQ(sets.find(3), std::pair(0u, 1));
   EXPECT_EQ(sets.find(2), std::pair(0u, -1));
 }
@@ -59,7 +59,7 @@ class CountedAgain {
 
   explicit CountedAgain(std::size_t count) : sets_(count) {}
 
-  void add_layers(const Pair& pair) { layers_.push_back(pair); }
+  void add_cannot_link(const Pair& pair) { layers_.push_back(pair); }
   void join(const Pair& pair) {
     if (sets_.find(pair.i).first == sets_.find(pair.j).first) return;
     asked_.push_back(pair);
@@ -88,7 +88,7 @@ class CountedAgain {
   std::vector<Pair> asked_;
 };
 
-TEST(LayeredSets, AreThoseThatCountingAgainFinds) {
+TEST(CannotLinkSets, AreThoseThatCountingAgainFinds) {
   constexpr std::uint32_t kPoints = 14;
   std::mt19937 random(3);
   const auto draw = [&] {
@@ -98,24 +98,24 @@ TEST(LayeredSets, AreThoseThatCountingAgainFinds) {
   };
   for (int run = 0; run < 2000; ++run) {
     detail::SignedSets sets(kPoints);
-    LayeredSets layered(sets, kPoints);
+    CannotLinkSets constrained(sets, kPoints);
     CountedAgain expected(kPoints);
     for (std::size_t layers = random() % 40; layers > 0; --layers) {
       const CountedAgain::Pair pair = draw();
       if (pair.i == pair.j) continue;
-      layered.add_layers(pair.i, pair.j, pair.sign);
-      expected.add_layers(pair);
+      constrained.add_cannot_link(pair.i, pair.j, pair.sign);
+      expected.add_cannot_link(pair);
     }
     for (int joins = 0; joins < 60; ++joins) {
       const CountedAgain::Pair pair = draw();
-      layered.join(pair.i, pair.j, pair.sign);
+      constrained.join(pair.i, pair.j, pair.sign);
       expected.join(pair);
       for (std::uint32_t i = 0; i < kPoints; ++i) ASSERT_EQ(sets.find(i), expected.find(i)) << run;
     }
   }
 }
 
-TEST(LayeredSets, AreTheSidesOfABladeWhoseEdgeIsThinnerThanItsPointsAreApart) {
+TEST(CannotLinkSets, AreTheSidesOfABladeWhoseEdgeIsThinnerThanItsPointsAreApart) {
   constexpr double kLength = 60;
   for (const double thickness : {2.5, 4.0, 6.0}) {
     test::Clouds clouds(7);
