@@ -8,7 +8,7 @@
 namespace palpate::depth {
 namespace {
 
-// Are a quadric's slopes about as sure as those that the block's window tells? Where no plane
+// Are a quadric's slopes about as certain as those that the block's window tells? Where no plane
 // serves windows are farther off than their variance says: there a quadric that tells more than a
 // plane need not be.
 bool knows_enough(const Quadric::Sight& sight, const BlockFits& fits, std::size_t i) {

@@ -192,7 +192,8 @@ struct BlockFits {
     }
   }
 
-  /// Writes a surface that is sure of its slopes, given from block to block as their variance is.
+  /// Writes a surface that is certain of its slopes, given from block to block as their variance
+  /// is.
   void set(std::size_t i, double new_rho, double new_variance, double x, double y,
            double new_slope_variance) {
     const double least = std::min(grid.step_x * grid.step_x, grid.step_y * grid.step_y);

@@ -95,7 +95,8 @@ void average_slopes(const Measured& now, float share, BlockMemory& m) {
   m.confidence += share * (now.confidence - m.confidence);
 }
 
-/// Frames that a still block averages: more where one frame's normal is less sure than is wanted.
+/// Frames that a still block averages: more where one frame's normal is less precise than is
+/// wanted.
 int remembered(const TemporalOptions& options, const BlockMemory& m) {
   const bool fitted = m.state == FilteredDepth::State::fitted && m.confidence > 0;
   if (!fitted || !(options.normal_error > 0) || options.memory == 1) return options.memory;

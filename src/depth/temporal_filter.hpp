@@ -74,7 +74,7 @@ class TemporalWarp {
 struct TemporalOptions {
   int memory = 8;           ///< frames that a still block averages, 1 to 255; 1: none
   double gate = 5;          ///< G: standard deviations within which a block stands still
-  double normal_error = 0;  ///< wanted of normals, rad: blocks that are less sure average up to
+  double normal_error = 0;  ///< wanted of normals, rad: blocks that are less precise average up to
                             ///< eight times as many frames; 0: all alike
   int hold = 10;            ///< frames for which a block that is not measured is remembered
 };

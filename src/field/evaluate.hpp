@@ -44,7 +44,7 @@ struct ImplicitSurface {
 struct PatchSurface {
   double material = 1;
   /// Presence of the points times that of their sources, 0-1: min(1, sum_s W_s p_s / max_s W_s).
-  /// A surface that one source is sure of stays sure when other sources fade.
+  /// A surface that one source is confident of keeps its presence when other sources fade.
   double presence = 1;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   int source = -1;                                     ///< that weighs most; -1: no point is near

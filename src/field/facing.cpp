@@ -117,8 +117,8 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
 bool Facing::tells() const noexcept {
   const std::vector<Part>& parts = view_.table.parts;
   return std::ranges::any_of(parts, &Part::is_one_sided) ||
-         (std::ranges::none_of(parts, &Part::unsure) &&
-          std::ranges::count(view_.sheet_of_place, SheetView::kUnsure) == 0);
+         (std::ranges::none_of(parts, &Part::uncertain) &&
+          std::ranges::count(view_.sheet_of_place, SheetView::kUncertain) == 0);
 }
 
 bool Facing::write(const Points& points) const noexcept {
@@ -128,18 +128,18 @@ bool Facing::write(const Points& points) const noexcept {
   for (std::size_t k = 0; k < sheets.size(); ++k) {
     const std::uint32_t slot = sheets[k];
     std::int8_t sign = 1;
-    bool unsure = slot == SheetView::kUnsure;  // of one view, with no side of its own
+    bool uncertain = slot == SheetView::kUncertain;  // of one view, with no side of its own
     std::uint8_t label = kInFront;
     if (slot < SheetView::kNone) {
       const Sheet& sheet = view_.table.sheets[slot];
       const Part& part = view_.table.parts[sheet.part];
       sign = static_cast<std::int8_t>(part.sign);
-      unsure = part.unsure;
+      uncertain = part.uncertain;
       label = sheet.label;
       if (part.is_absent()) sign = view_.is_above(view_.points[next]) ? 1 : 0;
       ++next;
     }
-    if (unsure && was_behind_) sign = 0;
+    if (uncertain && was_behind_) sign = 0;
     changed = changed || points.signs[k] != sign || points.labels[k] != label;
     points.signs[k] = sign;
     points.labels[k] = label;

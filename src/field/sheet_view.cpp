@@ -53,7 +53,7 @@ void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::
                 const Vector3d& proxy) noexcept {
   const SurfacePoints& surface = *layer.points;
   const SurfacePoints::Sheets& own = surface.sheets;
-  const std::uint32_t none = surface.one_sided() ? SheetView::kUnsure : SheetView::kNone;
+  const std::uint32_t none = surface.one_sided() ? SheetView::kUncertain : SheetView::kNone;
   std::uint32_t last = SurfacePoints::Sheets::kNone;
   std::uint32_t slot = SheetView::kNone;
   for (const std::uint32_t i : places) {
@@ -173,8 +173,9 @@ std::uint32_t SheetTable::add(const ActiveLayer& layer, std::uint32_t number,
   std::uint8_t& slot = slots[find(key)];
   if (slot < kMost || sheets.size() == kMost) return slot;
   Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
-  part.unsure = points.one_sided() && !part.known;
-  if (!own.empty() && (part.unsure || !points.one_sided())) part.key = {&points, own.part[number]};
+  part.uncertain = points.one_sided() && !part.known;
+  if (!own.empty() && (part.uncertain || !points.one_sided()))
+    part.key = {&points, own.part[number]};
   Sheet sheet{.key = key, .source = layer.source, .part = add_part(parts, part, before)};
   const std::uint8_t old = before.slots[before.find(key)];
   if (old < kMost) sheet.label = before.sheets[old].label;

@@ -67,12 +67,12 @@ struct SheetTable {
   static constexpr Key kOneSided{nullptr, 1};  ///< the part of all points seen from one side only
   struct Part {
     Key key;
-    int sign = 0;         // 0: not decided
-    bool known = false;   // do its normals point outward for sure?
-    bool unsure = false;  // was it seen in one view that does not tell its side?
-    bool near = false;    // has one of its points weight at the proxy, or nearly?
-    bool weighs = false;  // has one of them weight there?
-    double seen = 0;      // what speaks for the side of its normals, less what speaks against it
+    int sign = 0;            // 0: not decided
+    bool known = false;      // are its normals known to point outward?
+    bool uncertain = false;  // was it seen in one view that does not tell its side?
+    bool near = false;       // has one of its points weight at the proxy, or nearly?
+    bool weighs = false;     // has one of them weight there?
+    double seen = 0;         // what speaks for the side of its normals, less what speaks against it
 
     [[nodiscard]] bool is_one_sided() const noexcept { return key == kOneSided; }
     // Is it seen from behind, the side that no sensor saw?
@@ -121,8 +121,8 @@ struct SheetTable {
 /// The sheets of the chosen points, and what an eye at the tool sees of them. All memory is taken
 /// by the constructor.
 struct SheetView {
-  static constexpr std::uint32_t kNone = SheetTable::kMost;        ///< a point of no sheet
-  static constexpr std::uint32_t kUnsure = SheetTable::kMost + 1;  ///< and of a single view
+  static constexpr std::uint32_t kNone = SheetTable::kMost;           ///< a point of no sheet
+  static constexpr std::uint32_t kUncertain = SheetTable::kMost + 1;  ///< and of a single view
 
   /// One point with confidence, and what is asked of it again and again.
   struct Point {
@@ -163,7 +163,7 @@ struct SheetView {
   SheetTable table;
   SheetTable before;  // the last list
   std::vector<Point> points;
-  std::vector<std::uint32_t> sheet_of_place;  // of all chosen points; or kNone, kUnsure
+  std::vector<std::uint32_t> sheet_of_place;  // of all chosen points; or kNone, kUncertain
   std::vector<std::uint32_t> order;           // of `points`, sheet by sheet
   Eye eye;
   float radius = 0;  // R around the tool, m

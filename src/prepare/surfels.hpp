@@ -20,7 +20,7 @@ namespace palpate {
 /// The second plane of a point where two sheets meet in a crease or at an edge.
 struct SecondPlane {
   std::uint32_t point = 0;
-  std::uint32_t owner = 0;  ///< a point that is surely on that plane
+  std::uint32_t owner = 0;  ///< a point that is confident of that plane
 };
 
 /// What the steps of prepare() have made of a cloud so far. Columns are in sorted order.

@@ -157,7 +157,7 @@ float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j)
 Growths grow_sheets(const SheetInput& input, PointFits& own) {
   Growths result;
   Snapped snapped = snap_to_planes(input, own);
-  result.sure = std::move(snapped.sure);
+  result.confident = std::move(snapped.confident);
   result.second_planes = std::move(snapped.second_planes);
   Growth growth(input, own, snapped.assigned);
   detail::SignedSets& sets = growth.run();

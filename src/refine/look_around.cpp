@@ -104,7 +104,7 @@ class Outlook {
             own_.normals[i],
             kGapTube * spacing,
             viewer_ ? kGapResiduals * own_.residuals[i] : std::numeric_limits<float>::infinity(),
-            grown_.sure[i] != 0 ? voting * voting : -1,
+            grown_.confident[i] != 0 ? voting * voting : -1,
             sheets_.sheet[i],
             viewer_ && own_.normals[i].dot(*viewer_ - input_.grid.points()[i]) > 0};
   }

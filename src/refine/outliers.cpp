@@ -73,9 +73,9 @@ std::vector<std::uint8_t> find_outliers(const CellGrid& grid, std::span<const fl
   each([&](std::size_t i, auto& places) {
     if (doubted[i] == 0) return;
     const Neighborhood around = look(i, places);
-    const auto sure = std::ranges::count_if(
+    const auto settled = std::ranges::count_if(
         places, [&](const CellGrid::Neighbor& place) { return doubted[place.index] == 0; });
-    const bool edge = around.aside < kAround && sure >= kMostOfNearest;
+    const bool edge = around.aside < kAround && settled >= kMostOfNearest;
     outliers[i] = edge ? 0 : 1;
   });
   return outliers;

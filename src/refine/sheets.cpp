@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 // |sum of evidence| over the sum of its sizes.
 constexpr double kCoherent = 0.5;  // three quarters agree; judgement
-constexpr double kAgree = 0.96;    // it is sure: 98 % agree; judgement
+constexpr double kAgree = 0.96;    // it is certain: 98 % agree; judgement
 
 constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
 
@@ -75,7 +75,7 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
   return seen;
 }
 
-/// The signed edges between sheets, the surest first.
+/// The signed edges between sheets, the strongest first.
 std::vector<SignedEdge> edges_of(const std::vector<SheetVote>& votes) {
   std::vector<SignedEdge> edges;
   for (std::size_t k = 0; k < votes.size();) {
@@ -155,8 +155,8 @@ void turn(const std::vector<int>& sign_of_sheet, const SurfacePoints::Sheets& sh
   }
 }
 
-/// Joins sheets in clusters, along the surest edges first. An edge that contradicts the evidence of
-/// both of its sides is passed over. `evidence`: becomes that of the clusters, at their roots.
+/// Joins sheets in clusters, along the strongest edges first. An edge that contradicts the evidence
+/// of both of its sides is passed over. `evidence`: becomes that of the clusters, at their roots.
 SheetClusters join_clusters(const std::vector<SignedEdge>& edges, std::vector<Evidence>& evidence) {
   SheetClusters clusters(edges, evidence.size());
   for (const SignedEdge& edge : edges) {

@@ -26,10 +26,10 @@ struct SheetInput {
   std::span<const float> noise;     // sigma at each point, m
 };
 
-/// Puts each point on a sheet: sure points that continue each other's planes make one; an unsure
-/// point joins the sheet whose plane it lies on and takes over its fit. Those that lie on none are
-/// fitted to each other; without a plane they have no confidence left. Turns `own.normals` so that
-/// they agree within a part, outward where nothing else is known.
+/// Puts each point on a sheet: confident points that continue each other's planes make one; an
+/// uncertain point joins the sheet whose plane it lies on and takes over its fit. Those that lie on
+/// none are fitted to each other; without a plane they have no confidence left. Turns `own.normals`
+/// so that they agree within a part, outward where nothing else is known.
 ///
 /// Sets of sheets that lie side by side are one part where nearby pairs of their points agree on
 /// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
@@ -42,7 +42,7 @@ struct SheetInput {
 /// Which sheet each point lies on.
 struct Growths {
   SurfacePoints::Sheets sheets;            ///< every sheet is a part of its own
-  std::vector<std::uint8_t> sure;          ///< 1: by its own fit; 0: by another's, or none
+  std::vector<std::uint8_t> confident;     ///< 1: by its own fit; 0: by another's, or none
   std::vector<SecondPlane> second_planes;  ///< in rising order
   std::vector<std::uint8_t> hidden;        ///< look_around() tells, 1: another sheet is near on the
                                            ///< eye's side
@@ -72,19 +72,20 @@ inline constexpr std::uint32_t kUnassigned = ~std::uint32_t{0};  ///< no point: 
 
 /// The planes that points lie on, in sorted order.
 struct Snapped {
-  std::vector<std::uint8_t> sure;          ///< 1: its own fit is a sheet's; 0: another's, or none
-  std::vector<std::uint32_t> assigned;     ///< the sure point whose plane each has, or kUnassigned
+  std::vector<std::uint8_t> confident;  ///< 1: its own fit is a sheet's; 0: another's, or none
+  std::vector<std::uint32_t>
+      assigned;  ///< the confident point whose plane each has, or kUnassigned
   std::vector<SecondPlane> second_planes;  ///< those that lie on a second plane
 };
 
-/// A point is sure of its plane where its own fit is smooth. At edges and creases, where it is not,
-/// a point takes over the fit of the sure one on whose plane it lies. Points that lie on none are
-/// fitted to each other. One without a plane has no confidence left, unless hardly anything is sure
-/// around it.
+/// A point is confident of its plane where its own fit is smooth: the local quadric leaves a
+/// residual below 0.03 R. At edges and creases, where it is not, a point takes over the fit of the
+/// confident one on whose plane it lies. Points that lie on none are fitted to each other. One
+/// without a plane has no confidence left, unless hardly any point around it is confident.
 [[nodiscard]] Snapped snap_to_planes(const SheetInput& input, PointFits& own);
 
-/// The curvature that a sure point's fit tells, 1/m: a sphere's cap of radius a and curvature k is
-/// off its plane by k a^2 / sqrt(48) RMS.
+/// The curvature of a confident point's fit, 1/m: a sphere's cap of radius a and curvature k is off
+/// its plane by k a^2 / sqrt(48) RMS.
 [[nodiscard]] float bow(const SheetInput& input, const PointFits& own, std::uint32_t i);
 
 // Least height over the way to the side of what lies over a point rather than beside it.

@@ -16,13 +16,13 @@ namespace {
 
 using Eigen::Vector3f;
 
-// An unsure point lies on a sure one's plane where it is off by this share of the way to it, or by
-// this many of its residuals.
-constexpr float kSnapReach = 1.6f;    // R; judgement
-constexpr float kFarSnapReach = 4;    // R, where few are sure within kSnapReach; judgement
-constexpr std::size_t kFewSure = 12;  // points; judgement
-constexpr float kSnapSlope = 0.12f;   // 7 degrees; judgement
-constexpr float kSnapResiduals = 3;   // three sigma
+// An uncertain point lies on a confident one's plane where it is off by this share of the way to
+// it, or by this many of its residuals.
+constexpr float kSnapReach = 1.6f;  // R; judgement
+constexpr float kFarSnapReach = 4;  // R, where few are confident within kSnapReach; judgement
+constexpr std::size_t kFewConfident = 12;  // points; judgement
+constexpr float kSnapSlope = 0.12f;        // 7 degrees; judgement
+constexpr float kSnapResiduals = 3;        // three sigma
 
 // The share of the area within R that lies on a plane which holds there: a third at a corner of
 // three faces (derived), less a margin for jitter (judgement).
@@ -46,24 +46,24 @@ struct Refit {
 class Snapping {
  public:
   Snapping(const SheetInput& input, PointFits& own)
-      : input_(input), own_(own), sure_(input.grid.size()) {
-    detail::parallel_ranges(sure_.size(), 512, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) sure_[i] = is_sure(i) ? 1 : 0;
+      : input_(input), own_(own), confident_(input.grid.size()) {
+    detail::parallel_ranges(confident_.size(), 512, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) confident_[i] = is_confident(i) ? 1 : 0;
     });
   }
 
   void run() {
-    assigned_.assign(sure_.size(), kUnassigned);
-    second_planes_.assign(sure_.size(), kUnassigned);
-    assign_planes(std::vector<std::uint8_t>(sure_.size(), 1));
+    assigned_.assign(confident_.size(), kUnassigned);
+    second_planes_.assign(confident_.size(), kUnassigned);
+    assign_planes(std::vector<std::uint8_t>(confident_.size(), 1));
     assign_planes(fit_unassigned());
-    std::vector<std::uint8_t> alone(sure_.size());
+    std::vector<std::uint8_t> alone(confident_.size());
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (assigned_[i] == kUnassigned) alone[i] = is_among_unassigned(i, near) ? 1 : 0;
     });
     for (std::uint32_t i = 0; i < alone.size(); ++i) {
       if (assigned_[i] == kUnassigned) {
-        sure_[i] = alone[i];
+        confident_[i] = alone[i];
         if (alone[i] != 0) assigned_[i] = i;
         if (alone[i] == 0) own_.confidences[i] = 0;
       } else if (assigned_[i] != i) {
@@ -74,7 +74,7 @@ class Snapping {
 
   /// The result for all points, after run().
   [[nodiscard]] Snapped finish() && {
-    Snapped snapped{std::move(sure_), std::move(assigned_), {}};
+    Snapped snapped{std::move(confident_), std::move(assigned_), {}};
     for (std::uint32_t i = 0; i < second_planes_.size(); ++i) {
       if (second_planes_[i] != kUnassigned) snapped.second_planes.push_back({i, second_planes_[i]});
     }
@@ -82,7 +82,7 @@ class Snapping {
   }
 
  private:
-  [[nodiscard]] bool is_sure(std::size_t i) const {
+  [[nodiscard]] bool is_confident(std::size_t i) const {
     return fit_of(own_, i).is_smooth(static_cast<double>(input_.radii[i]),
                                      static_cast<double>(input_.noise[i]));
   }
@@ -91,17 +91,17 @@ class Snapping {
   /// holds.
   void assign_planes(const std::vector<std::uint8_t>& asks) {
     if (std::ranges::count(asks, 1) == 0) return;
-    index_sure();
+    index_confident();
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (asks[i] == 0) return;
-      if (sure_[i] == 0) {
+      if (confident_[i] == 0) {
         assign_plane(i, near);
         return;
       }
       assigned_[i] = i;
       second_planes_[i] = kUnassigned;
       if (own_.others[i] == 0) return;
-      list_sure(i, near);
+      list_confident(i, near);
       second_planes_[i] = second_plane(i, i, near);
     });
   }
@@ -109,20 +109,20 @@ class Snapping {
   /// Fits unassigned points to each other: what lies on others' planes hid theirs, such as that of
   /// a wall which is lower than R. Marks the points that may have another plane now.
   std::vector<std::uint8_t> fit_unassigned() {
-    std::vector<std::uint8_t> found(sure_.size());
+    std::vector<std::uint8_t> found(confident_.size());
     each_with<Refit>([&](std::uint32_t i, Refit& refit) {
       if (assigned_[i] == kUnassigned) found[i] = fit_again(i, refit) ? 1 : 0;
     });
     std::vector<Vector3f> places;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       if (found[i] == 0) continue;
-      sure_[i] = 1;
+      confident_[i] = 1;
       places.push_back(input_.grid.points()[i]);
     }
     if (places.empty()) return found;
     const CellGrid new_ones(places);
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
-      if (sure_[i] != 0 && own_.others[i] == 0) return;
+      if (confident_[i] != 0 && own_.others[i] == 0) return;
       near.clear();
       new_ones.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
       found[i] = near.empty() ? 0 : 1;
@@ -130,7 +130,8 @@ class Snapping {
     return found;
   }
 
-  /// Fits a plane to the unassigned points around, then a sheet to all unsure ones that lie on it.
+  /// Fits a plane to the unassigned points around, then a sheet to all uncertain ones that lie on
+  /// it.
   bool fit_again(std::uint32_t i, Refit& refit) {
     const auto radius = static_cast<double>(input_.radii[i]);
     const auto noise = static_cast<double>(input_.noise[i]);
@@ -138,7 +139,7 @@ class Snapping {
     const Vector3f& p = input_.grid.points()[i];
     refit.near.clear();
     input_.grid.within(p, reach, refit.near);
-    std::erase_if(refit.near, [this](std::uint32_t j) { return sure_[j] != 0; });
+    std::erase_if(refit.near, [this](std::uint32_t j) { return confident_[j] != 0; });
     const auto fit_to = [&](const auto& belongs) {
       refit.some.clear();
       std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
@@ -156,36 +157,37 @@ class Snapping {
     return true;
   }
 
-  void index_sure() {
-    sure_points_.clear();
+  void index_confident() {
+    confident_points_.clear();
     std::vector<Vector3f> places;
-    for (std::uint32_t i = 0; i < sure_.size(); ++i) {
-      if (sure_[i] == 0) continue;
-      sure_points_.push_back(i);
+    for (std::uint32_t i = 0; i < confident_.size(); ++i) {
+      if (confident_[i] == 0) continue;
+      confident_points_.push_back(i);
       places.push_back(input_.grid.points()[i]);
     }
-    sure_places_ = CellGrid(places);
+    confident_grid_ = CellGrid(places);
   }
 
-  /// Sure points around; where they are few, as in the foot of a narrow crease, farther ones too.
-  void list_sure(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+  /// Confident points around; where they are few, as in the foot of a narrow crease, farther ones
+  /// too.
+  void list_confident(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
       near.clear();
-      sure_places_.within(input_.grid.points()[i], reach * input_.radii[i], near);
-      for (std::uint32_t& j : near) j = sure_points_[sure_places_.order()[j]];
-      if (near.size() >= kFewSure) return;
+      confident_grid_.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      for (std::uint32_t& j : near) j = confident_points_[confident_grid_.order()[j]];
+      if (near.size() >= kFewConfident) return;
     }
   }
 
   template <class Memory, class Body>
   void each_with(const Body& body) const {
-    detail::parallel_each_with<Memory>(sure_.size(), 512, [&](std::size_t i, Memory& memory) {
+    detail::parallel_each_with<Memory>(confident_.size(), 512, [&](std::size_t i, Memory& memory) {
       body(static_cast<std::uint32_t>(i), memory);
     });
   }
 
   void assign_plane(std::uint32_t i, std::vector<std::uint32_t>& near) {
-    list_sure(i, near);
+    list_confident(i, near);
     const std::uint32_t owner = best_plane(i, near);
     if (owner == kUnassigned) return;
     const std::uint32_t second = second_plane(i, owner, near);
@@ -233,7 +235,7 @@ class Snapping {
     return 2 * static_cast<std::size_t>(unassigned) >= near.size();
   }
 
-  /// The sure point on whose plane the point lies best.
+  /// The confident point on whose plane the point lies best.
   [[nodiscard]] std::uint32_t best_plane(std::uint32_t i,
                                          const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
@@ -253,7 +255,7 @@ class Snapping {
     return owner;
   }
 
-  /// The nearest sure point of another plane that the point lies on as well.
+  /// The nearest confident point of another plane that the point lies on as well.
   [[nodiscard]] std::uint32_t second_plane(std::uint32_t i, std::uint32_t first,
                                            const std::vector<std::uint32_t>& near) const {
     float best = std::numeric_limits<float>::infinity();
@@ -272,9 +274,9 @@ class Snapping {
 
   const SheetInput& input_;
   PointFits& own_;
-  std::vector<std::uint8_t> sure_;
-  CellGrid sure_places_;
-  std::vector<std::uint32_t> sure_points_;  // in the order that the index was given them
+  std::vector<std::uint8_t> confident_;
+  CellGrid confident_grid_;
+  std::vector<std::uint32_t> confident_points_;  // in the order that the index was given them
   std::vector<std::uint32_t> assigned_;
   std::vector<std::uint32_t> second_planes_;
 };

@@ -59,7 +59,7 @@ struct SceneField::State {
   }
   [[nodiscard]] int sources() const noexcept { return static_cast<int>(views.size()); }
 
-  /// One source, sure of it, no materials, no motion: every surface is the same.
+  /// One source, confident of it, no materials, no motion: every surface is the same.
   [[nodiscard]] bool plain() const noexcept {
     return plain_points && views.size() == 1 && views.front().presence() == 1;
   }

@@ -66,7 +66,7 @@ class SourceView {
     return share_ > 0 ? snapshots_.current() : nullptr;
   }
 
-  /// How sure the current snapshot is now, 0-1; 0 without one. Rises no faster than it would fade.
+  /// The current snapshot's presence now, 0-1; 0 without one. Rises no faster than it would fade.
   [[nodiscard]] double presence() const noexcept { return presence_; }
 
   /// The current snapshot's k-th layer as it counts now. Once presence has come to 0 the weights

@@ -15,9 +15,9 @@ constexpr float kSpacings = 2.5f;  // R in spacings
 constexpr float kRows = 2.2f;      // R in the largest distance to a neighbour
 constexpr float kSlope = 0.5f;     // of R over distance
 
-// Deviation of a place that is sure, in R: at three of it, 0.47 R, a point still weighs more than
-// half by Wyvill's kernel (judgement; docs/method.md 6.7).
-constexpr float kSure = 0.157f;
+// Deviation of a position that is certain, in R: at three of it, 0.47 R, a point still weighs more
+// than half by Wyvill's kernel (judgement; docs/method.md 6.7).
+constexpr float kCertain = 0.157f;
 
 // Deviations of a place within R, so that R shows a layer of noise as a layer: as many as in clouds
 // (docs/method.md 5.3).
@@ -168,7 +168,7 @@ void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int cou
   std::size_t b = static_cast<std::size_t>(v) * depth.columns + first;
   const auto take = [&](const auto& radius, const auto& deviation, const auto& area, auto lanes) {
     using Lanes = decltype(lanes);
-    const Lanes sure = kSure * radius;
+    const Lanes sure = kCertain * radius;
     const Lanes spread = kDeviations * deviation;
     const Lanes sum = radius * radius / area;
     const Lanes precision = 1 / (deviation * deviation + sure * sure);

@@ -20,9 +20,9 @@ constexpr float kLeastShare = 0.01f;  // of an edge; with less it is none
 // Share by which a point's radius, confidence and edge follow a frame (docs/method.md 7.3).
 constexpr float kShare = 0.25f;
 
-// A block is much less sure than what is known from this ratio of variances on, and agrees with
+// A block is much less certain than what is known from this ratio of variances on, and agrees with
 // it within so many deviations of the difference.
-constexpr float kUnsure = 4;
+constexpr float kUncertain = 4;
 constexpr float kAgree = 5;  // judgement, both (docs/method.md 7.3)
 
 // How far along its normal a point goes to where it is seen, as a share: a block that is much less
@@ -30,8 +30,8 @@ constexpr float kAgree = 5;  // judgement, both (docs/method.md 7.3)
 // as much less while the two agree (the gain of a Kalman filter).
 float gain_of(const SeenPoint& seen, float known, float advance) {
   const float both = known + seen.variance;
-  const bool unsure = seen.variance > kUnsure * known;
-  return unsure && advance * advance < kAgree * kAgree * both ? known / both : 1;
+  const bool uncertain = seen.variance > kUncertain * known;
+  return uncertain && advance * advance < kAgree * kAgree * both ? known / both : 1;
 }
 
 }  // namespace
@@ -92,8 +92,9 @@ void PointMoves::follow(const SeenFour& seen, FourWays& ways) const {
   const Floats known = ways.variance * doubt_;
   const Floats both = known + seen.variance;
   const Floats apart = dot(seen.position - from.position, seen.normal);
-  const Ints unsure = (seen.variance > kUnsure * known) & (apart * apart < kAgree * kAgree * both);
-  const Floats gain = unsure ? known / both : whole;
+  const Ints uncertain =
+      (seen.variance > kUncertain * known) & (apart * apart < kAgree * kAgree * both);
+  const Floats gain = uncertain ? known / both : whole;
   ways.variance = gain < 1 ? known : seen.variance;
   ways.to.position = seen.position - ((1 - gain) * apart) * seen.normal;
   ways.to.normal = choose(seen.normal.zero(), from.normal, seen.normal);
@@ -140,8 +141,8 @@ Way PointMoves::hold(std::uint32_t i) const {
   const Entry& entry = shown_.entries()[i];
   // Stamps may go back.
   const double confirmed = std::min(entry.confirmed, moment_.stamp);
-  const double unsure = moment_.stamp + moment_.duration - confirmed - options_.silence;
-  const auto sure = static_cast<float>(std::clamp(1 - unsure / options_.fade, 0.0, 1.0));
+  const double uncertain = moment_.stamp + moment_.duration - confirmed - options_.silence;
+  const auto sure = static_cast<float>(std::clamp(1 - uncertain / options_.fade, 0.0, 1.0));
   const PointState from = shown_.at(i);
   const float most = std::min(from.presence, sure);
   const float presence = std::max(most, from.presence - share_of(options_.fade));

@@ -19,7 +19,7 @@ struct MorphOptions {
   double minimum_radius = 0;  ///< no R below this, m
 };
 
-/// Says for each fate where a point goes while the next snapshot lasts, and how sure it is then.
+/// Returns for each fate where a point goes while the next snapshot lasts, and its presence then.
 class PointMoves {
  public:
   /// All have to last as long.

@@ -80,7 +80,7 @@ TEST(Prepare, PutsTheCloudWhereItsPoseSays) {
   }
 }
 
-// Noise that a given radius does not average leaves no point sure of its plane.
+// Noise that a given radius does not average leaves no point confident of its plane.
 TEST(Prepare, NoisyPointsOfAGivenRadiusKeepTheirNormals) {
   const Prepared::Report report = prepare(flat(2e-3), {.paper = true}).report;
   EXPECT_LT(report.untrusted, 0.2);

@@ -35,12 +35,12 @@ TEST(Snapping, GivesEdgesOfABoxThePlanesOfItsFaces) {
   }
 }
 
-TEST(Snapping, PutsPointsOfACreaseOnTheSurePointsPlane) {
+TEST(Snapping, PutsPointsOfACreaseOnTheConfidentPointsPlane) {
   const Made made(test::floor_and_wall(15));
   for (std::uint32_t i = 0; i < made.grid.size(); ++i) {
     const std::uint32_t owner = made.snapped.assigned[i];
     ASSERT_NE(owner, kUnassigned);
-    EXPECT_EQ(made.snapped.sure[i] != 0, owner == i);
+    EXPECT_EQ(made.snapped.confident[i] != 0, owner == i);
     const Vector3f off = made.grid.points()[i] - made.grid.points()[owner];
     EXPECT_LT(std::abs(made.own.normals[owner].dot(off)), 0.31f);
   }
@@ -74,7 +74,7 @@ TEST(Snapping, FindsAWallLowerThanRBetweenAFloorAndATread) {
   EXPECT_GE(checked, 15);
 }
 
-TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsSure) {
+TEST(Snapping, LeavesNoisyPointsAPlaneWhereHardlyAnyIsConfident) {
   test::Clouds clouds(3);
   std::vector<Vector3f> points = clouds.plane(14, 1);
   for (Vector3f& p : points) p.z() = static_cast<float>(clouds.uniform(-0.8, 0.8));

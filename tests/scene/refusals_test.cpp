@@ -55,9 +55,9 @@ TEST(Source, RefusesSnapshotsThatMakeNoSense) {
   auto endless = still(plane(0));
   endless->end = INFINITY;
   EXPECT_THROW(source.publish(std::move(endless)), Error);
-  auto unsure = still(plane(0));
-  unsure->presence_end = NAN;
-  EXPECT_THROW(source.publish(std::move(unsure)), Error);
+  auto uncertain = still(plane(0));
+  uncertain->presence_end = NAN;
+  EXPECT_THROW(source.publish(std::move(uncertain)), Error);
 }
 
 TEST(Scene, RefusesANameTwiceAndTooManySources) {

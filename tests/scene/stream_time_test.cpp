@@ -143,7 +143,7 @@ TEST_F(StreamTimeTest, AKeptSurfaceStaysWhereItIs) {
   }
 }
 
-// One that had begun to fade becomes sure again no faster than it fades.
+// One that had begun to fade regains its presence no faster than it fades.
 TEST_F(StreamTimeTest, ASurfaceThatIsKeptTooLateComesBackSlowly) {
   for (int k = 0; k < 12; ++k) push(k * kFrame, k * kFrame, 0);
   run_.at(0.9, [this] { source_.keep(); });

@@ -162,14 +162,14 @@ TEST(BlockSurface, RadiiGrowByHalfTheDistanceAtMost) {
 
 TEST(BlockSurface, TrustsAPointByItsPrecisionAmongThoseAround) {
   FilteredDepth depth = depth_of(test::wall(0.5));
-  const auto unsure = static_cast<std::size_t>(depth.columns * 30 + 41);
-  depth.deviations[unsure] = 2e-3f;
+  const auto uncertain = static_cast<std::size_t>(depth.columns * 30 + 41);
+  depth.deviations[uncertain] = 2e-3f;
   BlockSurface surface(Kernel::wyvill);
   surface.measure(depth);
   const auto precision = [&](std::size_t b) {
     return 1 / (std::pow(depth.deviations[b], 2) + std::pow(0.157f * surface.radius(b), 2));
   };
-  for (const std::size_t b : {unsure - 1, unsure, std::size_t{0}, depth.size() - 1}) {
+  for (const std::size_t b : {uncertain - 1, uncertain, std::size_t{0}, depth.size() - 1}) {
     double sum = 0;
     double count = -1;  // not the block itself
     for (std::size_t other = 0; other < depth.size(); ++other) {

@@ -15,7 +15,7 @@ struct RoughSource {
   std::shared_ptr<const SurfacePoints> points;  ///< where it roughly stands
 };
 
-/// Aligned pose of one source, and how sure it is.
+/// Aligned pose of one source, and its uncertainty.
 struct AlignedSource {
   /// Fit of one surface to the others.
   struct Fit {

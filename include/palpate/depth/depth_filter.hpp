@@ -39,7 +39,7 @@ struct NoiseModel {
 
 /// The tiles of 4x4 blocks of which a filter's answer is what the one before was.
 struct KeptTiles {
-  /// Blocks. Few tiles see a rim, and the mean of one is about four times as sure as a block.
+  /// Blocks. Few tiles see a rim, and the mean of one is about four times as precise as a block.
   static constexpr int kSide = 4;
   static constexpr int kTogether = 64;  ///< blocks (judgement)
 

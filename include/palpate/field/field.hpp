@@ -25,7 +25,7 @@ struct Sample {
 struct Surface {
   double stiffness_factor = 1;  ///< multiplies the proxy's stiffness, 0-1
   double friction_factor = 1;   ///< multiplies the proxy's friction, 0-1
-  double presence = 1;          ///< 0-1: is the sensor still sure of this surface?
+  double presence = 1;          ///< 0-1: the sensor's confidence in this surface
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the surface, m/s
   int source = -1;  ///< index of the source that contributes most; -1: none
 };

@@ -28,7 +28,7 @@ struct FieldOptions {
   double threshold = 0.4;        ///< metaball level T', of the (united) weight sum
   double minimum_support = 0.3;  ///< Wmin: the surface ends where the weight sum falls below it
   double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
-  /// Cap at Wmin, fill acute creases, and blend to the metaball where normals are unsure.
+  /// Cap at Wmin, fill acute creases, and blend to the metaball where normals are uncertain.
   bool capped = true;
   /// Edges and creases are sharp where points know what they meet (SurfacePoints::edges);
   /// `balanced` with the exact gradient only.

@@ -68,7 +68,7 @@ struct SurfacePoints {
   std::vector<float> confidences;        ///< c_i, 0-1
   Sheets sheets;
   std::vector<float> materials;  ///< 0-1; empty: all 1
-  std::vector<float> presences;  ///< 0-1: is the sensor still sure of this point? Empty: all 1
+  std::vector<float> presences;  ///< 0-1: the sensor's confidence in this point. Empty: all 1
   /// Red, green, blue, for those who draw; empty: not known.
   std::vector<std::array<std::uint8_t, 3>> colors;
   std::vector<Eigen::Vector3f> end_positions;

@@ -81,7 +81,7 @@ struct Snapshot {
 
   double start = 0;           ///< s, on the clock that SceneField::update is given
   double end = 0;             ///< s; not before start
-  double presence_start = 1;  ///< 0-1: is the sensor still sure of what it saw?
+  double presence_start = 1;  ///< 0-1: the sensor's confidence in what it saw
   double presence_end = 1;
   /// From this time on presence fades to 0 in `fade` s, unless a newer snapshot comes: a silent
   /// sensor's surface fades without another publish(). Infinite: never.
@@ -102,7 +102,7 @@ struct Snapshot {
 /// How far `snapshot` has gone at `time` (s): 0 at its start and before, 1 at its end and after.
 [[nodiscard]] double progress(const Snapshot& snapshot, double time) noexcept;
 
-/// How sure its sensor is of it at `time` (s), 0-1.
+/// The sensor's confidence in it at `time` (s), 0-1.
 [[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
 /// What a depth camera's newest frames say of a ball.
