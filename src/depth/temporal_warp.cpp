@@ -48,7 +48,7 @@ float seen_at(const Vector3f& plane, float x, float y) {
 
 /// Change of the slopes from block to block; it keeps curved surfaces curved when their pieces are
 /// cut beside their middles.
-struct Bend {
+struct Curvature {
   float xx = 0, yy = 0, xy = 0;  // 1/m
 };
 
@@ -59,10 +59,10 @@ bool continues(const BlockMemory& m, const BlockMemory& neighbor, float dx, floa
   return std::abs(jump) < kContinuous * another_surface(m.rho);
 }
 
-Bend bend_at(const BlockGrid& grid, const std::vector<BlockMemory>& memory, std::size_t i,
-             int column, int row) {
-  Bend bend;
-  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return bend;
+Curvature curvature_at(const BlockGrid& grid, const std::vector<BlockMemory>& memory, std::size_t i,
+                       int column, int row) {
+  Curvature curvature;
+  if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return curvature;
   const BlockMemory& m = memory[i];
   const auto dx = static_cast<float>(grid.step_x);
   const auto dy = static_cast<float>(grid.step_y);
@@ -73,12 +73,12 @@ Bend bend_at(const BlockGrid& grid, const std::vector<BlockMemory>& memory, std:
   const BlockMemory& below = row_of[grid.columns];
   const bool whole = m.confidence > 0 && continues(m, left, -dx, 0) && continues(m, right, dx, 0) &&
                      continues(m, above, 0, -dy) && continues(m, below, 0, dy);
-  if (!whole) return bend;
-  bend.xx = (right.slope_x - left.slope_x) / (2 * dx);
-  bend.yy = (below.slope_y - above.slope_y) / (2 * dy);
-  bend.xy = 0.5F * ((right.slope_y - left.slope_y) / (2 * dx) +
-                    (below.slope_x - above.slope_x) / (2 * dy));
-  return bend;
+  if (!whole) return curvature;
+  curvature.xx = (right.slope_x - left.slope_x) / (2 * dx);
+  curvature.yy = (below.slope_y - above.slope_y) / (2 * dy);
+  curvature.xy = 0.5F * ((right.slope_y - left.slope_y) / (2 * dx) +
+                         (below.slope_x - above.slope_x) / (2 * dy));
+  return curvature;
 }
 
 }  // namespace
@@ -152,13 +152,13 @@ bool TemporalWarp::put(const BlockGrid& grid, const std::vector<BlockMemory>& me
   const Vector3f plane = planes_[i];
   const float rho = seen_at(plane, x, y);
   if (!(rho > 0) || std::abs(rho - claim.rho) > another_surface(rho)) return false;
-  const Bend bend = bend_at(grid, memory, i, column, row);
+  const Curvature curvature = curvature_at(grid, memory, i, column, row);
   const float dx = -claim.dc * static_cast<float>(grid.step_x);
   const float dy = -claim.dr * static_cast<float>(grid.step_y);
   to = from;
-  to.slope_x = plane.x() + bend.xx * dx + bend.xy * dy;
-  to.slope_y = plane.y() + bend.xy * dx + bend.yy * dy;
-  to.rho = rho + 0.5F * (bend.xx * dx * dx + bend.yy * dy * dy) + bend.xy * dx * dy;
+  to.slope_x = plane.x() + curvature.xx * dx + curvature.xy * dy;
+  to.slope_y = plane.y() + curvature.xy * dx + curvature.yy * dy;
+  to.rho = rho + 0.5F * (curvature.xx * dx * dx + curvature.yy * dy * dy) + curvature.xy * dx * dy;
   to.calm_since += to.rho - from.rho;
   to.last[0] = 0;  // how frames scatter is learned in one view
   to.extra += (kInflation * from.variance + from.slope_variance * (dx * dx + dy * dy)) /

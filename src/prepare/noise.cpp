@@ -66,11 +66,11 @@ bool fills(double residual, double reach) {
 SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
                           double reach, double spacing, const SheetFit& first) {
   SheetFit fit = first;
-  while (fills(fit.bend, reach) && 2 * reach <= kWidestReach * spacing) {
+  while (fills(fit.quadric_residual, reach) && 2 * reach <= kWidestReach * spacing) {
     reach *= 2;
     fit = fitter.fit(grid, at, reach, spacing);
   }
-  return fit.bend > kVolume * reach ? first : fit;
+  return fit.quadric_residual > kVolume * reach ? first : fit;
 }
 
 /// The fits around one sampled point.
@@ -97,7 +97,7 @@ double noise_in(const std::vector<Row>& rows, SheetFit Row::*fit, const Window& 
   std::vector<float> residuals;
   for (const Row& row : rows) {
     if ((row.*fit).points >= window.fewest) {
-      residuals.push_back(static_cast<float>((row.*fit).bend));
+      residuals.push_back(static_cast<float>((row.*fit).quadric_residual));
     }
   }
   if (residuals.empty()) return 0;
@@ -137,16 +137,18 @@ std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
     const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
     const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
     const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
-    if (!(narrow.bend > 0 && map.bend > 0 && middle.bend > 0)) return;
+    if (!(narrow.quadric_residual > 0 && map.quadric_residual > 0 && middle.quadric_residual > 0))
+      return;
     const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
-    double together = wide.bend;  // used only where the wide window holds no shape
-    if (wide.bend <= kShapeGrowth * middle.bend) {
+    double together = wide.quadric_residual;  // used only where the wide window holds no shape
+    if (wide.quadric_residual <= kShapeGrowth * middle.quadric_residual) {
       const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
       together = std::max(together, std::sqrt(tiles));
     }
-    all[k] = {static_cast<float>(wide.bend / middle.bend),
-              static_cast<float>(wide.bend / narrow.bend), static_cast<float>(wide.bend),
-              static_cast<float>(together / map.bend)};
+    all[k] = {static_cast<float>(wide.quadric_residual / middle.quadric_residual),
+              static_cast<float>(wide.quadric_residual / narrow.quadric_residual),
+              static_cast<float>(wide.quadric_residual),
+              static_cast<float>(together / map.quadric_residual)};
   });
   std::erase_if(all, [](const Widths& w) { return w.growth == 0; });
   return all;
@@ -204,7 +206,8 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
     const double reach = kMapReach * spacing;
     SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
     fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
-    found[k] = {static_cast<float>(fit.bend), static_cast<float>(fit.bend * fit.footprint)};
+    found[k] = {static_cast<float>(fit.quadric_residual),
+                static_cast<float>(fit.quadric_residual * fit.footprint)};
   });
   std::vector<Eigen::Vector3f> places;
   std::vector<Value> values;

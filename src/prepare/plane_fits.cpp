@@ -17,7 +17,7 @@ void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
   own.normals[i] = fit.normal.cast<float>();
   own.confidences[i] = static_cast<float>(fit.planarity);
   own.residuals[i] = static_cast<float>(fit.residual);
-  own.bends[i] = static_cast<float>(fit.bend);
+  own.quadric_residuals[i] = static_cast<float>(fit.quadric_residual);
 }
 
 SheetFit fit_of(const PointFits& own, std::size_t i) {
@@ -25,7 +25,7 @@ SheetFit fit_of(const PointFits& own, std::size_t i) {
   fit.normal = own.normals[i].cast<double>();
   fit.planarity = static_cast<double>(own.confidences[i]);
   fit.residual = static_cast<double>(own.residuals[i]);
-  fit.bend = static_cast<double>(own.bends[i]);
+  fit.quadric_residual = static_cast<double>(own.quadric_residuals[i]);
   return fit;
 }
 
@@ -38,7 +38,7 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                    {},
                    std::vector<std::uint8_t>(grid.size()),
                    std::move(planes.asides)};
-  sheets.bends = sheets.residuals;
+  sheets.quadric_residuals = sheets.residuals;
   std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
   const auto flat_at = [&](std::size_t i) {
     return flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));

@@ -18,7 +18,7 @@ struct SheetFit;
 
 /// Makes a fit that of point i; `others` and `asides` stay as they are.
 void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
-/// Returns what is kept of the fit of point i: its normal, planarity, residual and bend alone.
+/// Returns what is kept of the fit of point i: its normal, planarity and residuals alone.
 [[nodiscard]] SheetFit fit_of(const PointFits& own, std::size_t i);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;

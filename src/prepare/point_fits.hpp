@@ -12,7 +12,7 @@ struct PointFits {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1
   std::vector<float> residuals;          ///< from the plane, m
-  std::vector<float> bends;              ///< from the quadric where the plane does not fit, m
+  std::vector<float> quadric_residuals;  ///< from the quadric where the plane does not fit, m
   std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
   std::vector<float> asides;             ///< of the mean of those around, of their reach
 };

@@ -23,7 +23,7 @@ constexpr double kMostFloors = 2.4;
 
 // Rms distance from the plane, in R. Noise gives theta R / (3.2 s), about 0.03; a sphere of four R
 // 0.04; a right angle 0.2.
-constexpr float kBends = 0.08f;   // R begins to shrink; judgement
+constexpr float kCurved = 0.08f;  // R begins to shrink; judgement
 constexpr float kEdge = 0.14f;    // R shrinks no further; judgement
 constexpr float kShrink = 0.25f;  // share of R; measured (docs/preparation.md, Support radius)
 
@@ -49,8 +49,8 @@ void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,
                      std::vector<float>& radii) {
   const std::vector<float> residuals = estimate_normals(grid, radii).residuals;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const float bend = (residuals[i] / radii[i] - kBends) / (kEdge - kBends);
-    radii[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(bend, 0.0f, 1.0f)));
+    const float curved = (residuals[i] / radii[i] - kCurved) / (kEdge - kCurved);
+    radii[i] = std::max(floors[i], radii[i] * (1 - kShrink * std::clamp(curved, 0.0f, 1.0f)));
   }
 }
 

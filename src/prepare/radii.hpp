@@ -34,7 +34,7 @@ struct Radii {
 [[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,
                                              double normal_error, std::vector<float> floors);
 
-/// Makes support radii smaller again, by a quarter at most, where the points within them bend away
+/// Makes support radii smaller again, by a quarter at most, where the points within them curve away
 /// from a plane by more than noise explains: at edges, which a large R rounds off by about 0.35 R
 /// (docs/method.md 5.3), a little noise is the smaller evil. Part of noisy_radii().
 void shrink_at_edges(const CellGrid& grid, const std::vector<float>& floors,

@@ -88,7 +88,7 @@ constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
 constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
 constexpr double kOnSheet = 0.12;     // judgement
 
-double smooth_bend(double radius, double noise) {
+double smooth_residual(double radius, double noise) {
   return std::max(kSmooth * radius, kNoisySmooth * noise);
 }
 
@@ -99,13 +99,13 @@ double flat_residual(double radius, double noise) {
 }
 
 bool SheetFit::is_smooth(double radius, double noise) const {
-  return planarity >= kPlanar &&
-         (residual <= flat_residual(radius, noise) || bend <= smooth_bend(radius, noise));
+  return planarity >= kPlanar && (residual <= flat_residual(radius, noise) ||
+                                  quadric_residual <= smooth_residual(radius, noise));
 }
 
 bool SheetFit::is_sheet(double radius, double noise) const {
   return points >= SheetFitter::kEnough && planarity >= kPlanar &&
-         bend <= smooth_bend(radius, noise) && off <= kOnSheet * radius;
+         quadric_residual <= smooth_residual(radius, noise) && off <= kOnSheet * radius;
 }
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.
@@ -154,7 +154,7 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
   offsets_.clear();
   for (const auto i : near) offsets_.push_back((grid.points()[i] - center).cast<double>());
   SheetFit fit = fit_offsets(reach);
-  if (fit.bend > smooth && spacing > 0 && !fit.normal.isZero()) {
+  if (fit.quadric_residual > smooth && spacing > 0 && !fit.normal.isZero()) {
     Vector3d axis = axis_of_nearest(spacing, fit.normal);
     bool others = false;
     for (int round = 0; round < 2 && keep_own_group(axis, spacing); ++round) {
@@ -175,7 +175,7 @@ SheetFit SheetFitter::fit_offsets(double reach) {
   fit.points = offsets_.size();
   fit.normal = plane.normal;
   fit.planarity = planarity_of(plane, fit.points);
-  fit.bend = fit.residual = rms_residual(plane, fit.points);
+  fit.quadric_residual = fit.residual = rms_residual(plane, fit.points);
   fit.off = std::abs(plane.normal.dot(plane.mean));
   fit.footprint = reach * std::sqrt(std::numbers::pi / static_cast<double>(fit.points));
   if (fit.points >= kEnough) subtract_quadric(reach, fit);
@@ -218,7 +218,7 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
   }
   quadric_ = matrix.ldlt().solve(heights);
   squares = std::max(squares - quadric_.dot(heights), 0.);
-  fit.bend = std::sqrt(squares / static_cast<double>(placed_.size() - kTerms));
+  fit.quadric_residual = std::sqrt(squares / static_cast<double>(placed_.size() - kTerms));
   fit.off = std::abs(quadric_[0]);
 }
 

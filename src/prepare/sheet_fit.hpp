@@ -20,9 +20,9 @@ struct SheetFit {
   bool others = false;                               ///< are there points of other sheets around?
   double planarity = 0;                              ///< 0-1, as Normals::confidences
   double residual = 0;                               ///< rms distance from the plane, m
-  double off = 0;        ///< of the place itself from the quadric; of too few points, the plane, m
-  double bend = 0;       ///< rms distance from the quadric, m; of too few points, the plane's
-  double footprint = 0;  ///< root of the area per point, m
+  double off = 0;  ///< of the place itself from the quadric; of too few points, the plane, m
+  double quadric_residual = 0;  ///< rms off the quadric, m; of too few points, the plane's
+  double footprint = 0;         ///< root of the area per point, m
 
   /// Is there a plane that leaves no more than curvature and noise do? Of a fit within `radius`;
   /// `noise`: of the points, m. A crease leaves more.

@@ -110,8 +110,9 @@ class Growth {
     const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
     const float length = way.norm();
     const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
-    const float bowed = std::min(bow(input_, own_, a), bow(input_, own_, b));
-    const float turn = std::max(kTurn, kTurnMargin * bowed * length);
+    const float curvature =
+        std::min(fitted_curvature(input_, own_, a), fitted_curvature(input_, own_, b));
+    const float turn = std::max(kTurn, kTurnMargin * curvature * length);
     const float cosine = own_.normals[i].dot(own_.normals[j]);
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
     const float off =
@@ -119,8 +120,8 @@ class Growth {
     // An arc's normals turn by twice as much as it leaves their planes.
     const float turned =
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
-    const float bend = std::min(kTurnMargin * bowed * length, turned + kTurn);
-    const float arc = kChord * std::max(kTurn * near, bend * length);
+    const float arc_turn = std::min(kTurnMargin * curvature * length, turned + kTurn);
+    const float arc = kChord * std::max(kTurn * near, arc_turn * length);
     const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
     if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
       if (a == i && b == j && lie_over(i, j, way)) later.stacked.push_back(pair);

@@ -86,12 +86,13 @@ struct Snapped {
 
 /// The curvature of a confident point's fit, 1/m: a sphere's cap of radius a and curvature k is off
 /// its plane by k a^2 / sqrt(48) RMS.
-[[nodiscard]] float bow(const SheetInput& input, const PointFits& own, std::uint32_t i);
+[[nodiscard]] float fitted_curvature(const SheetInput& input, const PointFits& own,
+                                     std::uint32_t i);
 
 // Least height over the way to the side of what lies over a point rather than beside it.
 inline constexpr float kGapSlope = 0.5f;  // judgement
 
-// How far normals may turn where both fits are bowed, over what their arc turns.
+// How far normals may turn where both fits are curved, over what their arc turns.
 inline constexpr float kTurnMargin = 1.5f;  // judgement
 // How far a point may be off the other's plane, over distance times turn (rad): an arc has half.
 inline constexpr float kChord = 0.6f;  // half and a margin; judgement

@@ -199,7 +199,7 @@ class Snapping {
   /// Gives a point the fit of its plane's owner, or at least its trust where an arc joins both.
   void take_over(std::uint32_t i, std::uint32_t owner) {
     const float way = (input_.grid.points()[i] - input_.grid.points()[owner]).norm();
-    const float turn = kTurnMargin * bow(input_, own_, owner) * way;
+    const float turn = kTurnMargin * fitted_curvature(input_, own_, owner) * way;
     if (std::abs(own_.normals[i].dot(own_.normals[owner])) < 1 - 0.5f * turn * turn) {
       own_.normals[i] = own_.normals[owner];
       own_.residuals[i] = own_.residuals[owner];
@@ -248,7 +248,8 @@ class Snapping {
       if (cost >= best) continue;
       const bool on_plane =
           off <= std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length);
-      if (!on_plane && off > kChord * kTurnMargin * bow(input_, own_, j) * length) continue;
+      if (!on_plane && off > kChord * kTurnMargin * fitted_curvature(input_, own_, j) * length)
+        continue;
       best = cost;
       owner = j;
     }
@@ -283,9 +284,10 @@ class Snapping {
 
 }  // namespace
 
-float bow(const SheetInput& input, const PointFits& own, std::uint32_t i) {
+float fitted_curvature(const SheetInput& input, const PointFits& own, std::uint32_t i) {
   const float reach = kNormalsReach * input.radii[i];
-  const float square = own.residuals[i] * own.residuals[i] - own.bends[i] * own.bends[i];
+  const float square =
+      own.residuals[i] * own.residuals[i] - own.quadric_residuals[i] * own.quadric_residuals[i];
   return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
 }
 

@@ -20,9 +20,9 @@ using Eigen::Vector3f;
 
 constexpr float kSpacing = 0.002f;
 
-// A square sheet of side x side points, bent to z = bend x^2 / 2, with noise along z that is
+// A square sheet of side x side points, curved to z = curvature x^2 / 2, with noise along z that is
 // averaged over (2 blur + 1)^2 neighbours and scaled back to `sigma` in the mean.
-std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float bend = 0) {
+std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float curvature = 0) {
   std::mt19937 engine(3);
   std::normal_distribution<float> normal;
   const int wide = side + 2 * blur;
@@ -40,7 +40,7 @@ std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float bend = 0
       const auto x = static_cast<float>(u - side / 2) * kSpacing;
       const float noise = static_cast<float>(sigma) * sum / static_cast<float>(2 * blur + 1);
       points.emplace_back(x, static_cast<float>(v - side / 2) * kSpacing,
-                          0.5f * bend * x * x + noise);
+                          0.5f * curvature * x * x + noise);
     }
   }
   return points;
@@ -51,7 +51,7 @@ TEST(SheetFit, SeesNoNoiseInACurvedSurface) {
   SheetFitter fitter;
   const SheetFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012, kSpacing);
   EXPECT_NEAR(fit.footprint, kSpacing, 0.1 * kSpacing);
-  EXPECT_LT(fit.bend, 1e-5);
+  EXPECT_LT(fit.quadric_residual, 1e-5);
 }
 
 TEST(SheetFit, IsOfOneFaceOfAPlate) {
@@ -78,8 +78,9 @@ TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
     const Vector3f at(0.015f * static_cast<float>(i % 7 - 3),
                       0.015f * static_cast<float>(i / 7 - 3), 0);
     const SheetFit fit = fitter.fit(grid, at, 0.03, kSpacing);
-    variance += fit.bend * fit.bend / 49;
-    shared += fitter.tile_variance(0.03, 0.008) / (fit.bend * fit.bend) / 49;
+    variance += fit.quadric_residual * fit.quadric_residual / 49;
+    shared +=
+        fitter.tile_variance(0.03, 0.008) / (fit.quadric_residual * fit.quadric_residual) / 49;
   }
   EXPECT_NEAR(std::sqrt(variance), 0.001, 5e-5);
   EXPECT_NEAR(shared, 1, 0.2);
@@ -98,12 +99,13 @@ TEST(SheetFit, StaysFiniteOnDegeneratePoints) {
   SheetFitter fitter;
   const std::vector<Vector3f> same(30, Vector3f(1, 2, 3));
   const SheetFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.01, 0.02);
-  EXPECT_EQ(point.bend, 0);
+  EXPECT_EQ(point.quadric_residual, 0);
   std::vector<Vector3f> line;
   for (int i = 0; i < 30; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0, 0);
   const SheetFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.01, 0.02);
-  EXPECT_TRUE(std::isfinite(fit.bend) && std::isfinite(fitter.tile_variance(0.2, 0.02)));
-  EXPECT_LT(fit.bend, 1e-6);
+  EXPECT_TRUE(std::isfinite(fit.quadric_residual) &&
+              std::isfinite(fitter.tile_variance(0.2, 0.02)));
+  EXPECT_LT(fit.quadric_residual, 1e-6);
   EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2, 0.01).points, 0u);
 }
 
