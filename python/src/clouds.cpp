@@ -140,7 +140,8 @@ constexpr const char* kPoints =
 
 Arrays are views that cannot be written to.)";
 
-constexpr const char* kPrepare = R"(Filters and indexes a cloud and finds its sheets, on every core.
+constexpr const char* kPrepare =
+    R"(Filters and indexes a cloud and finds its smooth segments, on every core.
 
 cloud: a PointCloud, a file, or an (n, 3) array with the keywords of PointCloud. pose: (4, 4), cloud to world.
 Keywords: {}.)";

@@ -115,7 +115,7 @@ void Aligner::match(const Poses& poses, std::size_t from, std::size_t to, double
                     std::size_t stride, std::vector<Match>& found) const {
   const SurfacePoints& other = *sources_[to].points;
   const auto faces = [](const SurfacePoints& points) {
-    return points.one_sided() && points.sheets.empty();
+    return points.one_sided() && points.segments.empty();
   };
   const bool same_side = faces(*sources_[from].points) && faces(other);
   const Isometry3d into = poses[to].inverse() * poses[from];

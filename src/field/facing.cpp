@@ -1,4 +1,4 @@
-// Keeps what is decided of the sheets near the tool from one call to the next.
+// Keeps what is decided of the segments near the tool from one call to the next.
 
 #include "field/facing.hpp"
 
@@ -13,13 +13,13 @@ using Eigen::Vector3f;
 constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
 /// Forgets the sign of a part without weight at the proxy, or that a free proxy is behind, and the
-/// label of a sheet that has moved away.
-void let_go(SheetTable& table, const Stance& stance) noexcept {
-  for (SheetTable::Part& part : table.parts) {
+/// label of a segment that has moved away.
+void let_go(SegmentTable& table, const Stance& stance) noexcept {
+  for (SegmentTable::Part& part : table.parts) {
     if (!part.near || (part.is_absent() && !stance.touches())) part.sign = 0;
   }
-  for (SheetTable::Sheet& sheet : table.sheets) {
-    if (!sheet.near) sheet.label = SheetTable::kUndecided;
+  for (SegmentTable::Segment& segment : table.segments) {
+    if (!segment.near) segment.label = SegmentTable::kUndecided;
   }
 }
 
@@ -36,7 +36,7 @@ void Facing::forget() noexcept {
 }
 
 void Facing::reopen() noexcept {
-  view_.table.clear_sheets();
+  view_.table.clear_segments();
   for (Part& part : view_.table.parts) part.sign = 0;
   remembered_.clear();
 }
@@ -51,17 +51,17 @@ void Facing::follow(const Facing& other) noexcept {
   remembered_from_ = other.remembered_from_;
 }
 
-void Facing::add_references(const Sheet& sheet) noexcept {
-  const Part& part = view_.table.parts[sheet.part];
+void Facing::add_references(const Segment& segment) noexcept {
+  const Part& part = view_.table.parts[segment.part];
   const int sign = part.factor();
-  if (sheet.label == SheetTable::kUndecided || sign == 0) return;
-  for (std::uint32_t k = 0; k < sheet.count; ++k) {
-    const Point& p = view_.points[view_.order[sheet.begin + k]];
+  if (segment.label == SegmentTable::kUndecided || sign == 0) return;
+  for (std::uint32_t k = 0; k < segment.count; ++k) {
+    const Point& p = view_.points[view_.order[segment.begin + k]];
     if (references_.size() == references_.capacity()) return;
     if (part.is_absent() && !view_.is_above(p)) continue;
-    references_.push_back({sheet.key.owner, sheet.source, p.place,
+    references_.push_back({segment.key.owner, segment.source, p.place,
                            static_cast<float>(sign) * p.normal, p.confidence, p.residual,
-                           sheet.label});
+                           segment.label});
   }
 }
 
@@ -77,18 +77,19 @@ void Facing::list_references(const Eigen::Vector3d& proxy, bool vanished) noexce
       references_.push_back(r);
     }
   }
-  for (const Sheet& sheet : view_.table.sheets) add_references(sheet);
+  for (const Segment& segment : view_.table.segments) add_references(segment);
 }
 
 /// Are all points of one part whose side is decided, so that nothing needs a look?
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
-  const SheetTable& table = view_.table;
-  if (table.sheets.size() != 1 || table.sheets[0].label != kInFront || table.sees_from_behind()) {
+  const SegmentTable& table = view_.table;
+  if (table.segments.size() != 1 || table.segments[0].label != kInFront ||
+      table.sees_from_behind()) {
     return false;
   }
   return std::ranges::all_of(layers, [&](const ActiveLayer& layer) {
-    return layer.points->sheets.empty() &&
-           table.sheets[0].key == SheetTable::key_of_all(*layer.points);
+    return layer.points->segments.empty() &&
+           table.segments[0].key == SegmentTable::key_of_all(*layer.points);
   });
 }
 
@@ -118,24 +119,24 @@ bool Facing::tells() const noexcept {
   const std::vector<Part>& parts = view_.table.parts;
   return std::ranges::any_of(parts, &Part::is_one_sided) ||
          (std::ranges::none_of(parts, &Part::uncertain) &&
-          std::ranges::count(view_.sheet_of_place, SheetView::kUncertain) == 0);
+          std::ranges::count(view_.segment_of_point, SegmentView::kUncertain) == 0);
 }
 
 bool Facing::write(const Points& points) const noexcept {
-  const std::vector<std::uint32_t>& sheets = view_.sheet_of_place;
+  const std::vector<std::uint32_t>& segments = view_.segment_of_point;
   bool changed = false;
   std::size_t next = 0;  // of the points in view
-  for (std::size_t k = 0; k < sheets.size(); ++k) {
-    const std::uint32_t slot = sheets[k];
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const std::uint32_t slot = segments[k];
     std::int8_t sign = 1;
-    bool uncertain = slot == SheetView::kUncertain;  // of one view, with no side of its own
+    bool uncertain = slot == SegmentView::kUncertain;  // of one view, with no side of its own
     std::uint8_t label = kInFront;
-    if (slot < SheetView::kNone) {
-      const Sheet& sheet = view_.table.sheets[slot];
-      const Part& part = view_.table.parts[sheet.part];
+    if (slot < SegmentView::kNone) {
+      const Segment& segment = view_.table.segments[slot];
+      const Part& part = view_.table.parts[segment.part];
       sign = static_cast<std::int8_t>(part.sign);
       uncertain = part.uncertain;
-      label = sheet.label;
+      label = segment.label;
       if (part.is_absent()) sign = view_.is_above(view_.points[next]) ? 1 : 0;
       ++next;
     }
@@ -149,7 +150,7 @@ bool Facing::write(const Points& points) const noexcept {
 
 bool Facing::face(const Points& points, const Stance& stance) noexcept {
   if (is_settled(points.layers)) {
-    view_.sheet_of_place.assign(points.signs.size(), 0);
+    view_.segment_of_point.assign(points.signs.size(), 0);
   } else {
     look(points, stance);
   }

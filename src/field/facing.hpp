@@ -1,4 +1,4 @@
-// Sides and labels: how the sheets near the tool are seen from it (docs/method.md 2.7).
+// Sides and labels: how the segments near the tool are seen from it (docs/method.md 2.7).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,15 +8,15 @@
 #include <span>
 #include <vector>
 
+#include "field/segment_view.hpp"
 #include "field/selection.hpp"
-#include "field/sheet_view.hpp"
 
 namespace palpate {
 
-/// Decides which side of each sheet near the tool is free, and how the sheets meet as seen from
-/// there. A decision stands as long as any of the sheet's points has weight at the proxy: meanwhile
-/// the field depends only on where it is evaluated. Real-time but for construction; bounded in
-/// pairs of points that are compared.
+/// Decides which side of each segment near the tool is free, and how the segments meet as seen from
+/// there. A decision stands as long as any of the segment's points has weight at the proxy:
+/// meanwhile the field depends only on where it is evaluated. Real-time but for construction;
+/// bounded in pairs of points that are compared.
 class Facing {
  public:
   /// `capacity`: points at most.
@@ -51,9 +51,9 @@ class Facing {
   void follow(const Facing& other) noexcept;
 
  private:
-  using Part = SheetTable::Part;
-  using Sheet = SheetTable::Sheet;
-  using Point = SheetView::Point;
+  using Part = SegmentTable::Part;
+  using Segment = SegmentTable::Segment;
+  using Point = SegmentView::Point;
   /// A point that is decided and counts for those that are not.
   struct Reference {
     const void* cloud;  // nullptr: one that is gone
@@ -64,30 +64,30 @@ class Facing {
     float residual;
     std::uint8_t label;
 
-    // Was it measured at another time than the sheet, by the same source? Then it may be what the
-    // sheet was, or will be, somewhere else.
-    [[nodiscard]] bool is_of_another_time(const Sheet& sheet) const noexcept {
-      return source == sheet.source && cloud != sheet.key.owner;
+    // Was it measured at another time than the segment, by the same source? Then it may be what the
+    // segment was, or will be, somewhere else.
+    [[nodiscard]] bool is_of_another_time(const Segment& segment) const noexcept {
+      return source == segment.source && cloud != segment.key.owner;
     }
   };
 
   void look(const Points& points, const Stance& stance) noexcept;
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void list_references(const Eigen::Vector3d& proxy, bool vanished) noexcept;
-  void add_references(const Sheet& sheet) noexcept;
-  void each_meeting(const Sheet& sheet, float reach, const auto& visit) noexcept;
+  void add_references(const Segment& segment) noexcept;
+  void each_meeting(const Segment& segment, float reach, const auto& visit) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
   [[nodiscard]] double votes_on(std::uint32_t part) noexcept;
   void decide_signs(bool continued) noexcept;
   void decide_labels() noexcept;
   struct Meeting;
   using Meetings = std::array<Meeting, simd::kLabels>;
-  [[nodiscard]] Meetings meetings(const Sheet& sheet, double& beyond) noexcept;
-  [[nodiscard]] std::uint8_t label_of(const Sheet& sheet) noexcept;
+  [[nodiscard]] Meetings meetings(const Segment& segment, double& beyond) noexcept;
+  [[nodiscard]] std::uint8_t label_of(const Segment& segment) noexcept;
   [[nodiscard]] bool tells() const noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;
 
-  SheetView view_;
+  SegmentView view_;
   std::vector<Reference> references_;
   std::vector<Reference> remembered_;                          // of the last call
   Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then

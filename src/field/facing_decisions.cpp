@@ -1,4 +1,4 @@
-// Decides the signs of parts that come into view, and the labels of their sheets.
+// Decides the signs of parts that come into view, and the labels of their segments.
 
 #include <algorithm>
 #include <cmath>
@@ -17,17 +17,17 @@ constexpr double kAgainst = 0.5;     // share of the agreement with a contact th
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;  // R within which sheets meet and parts tell signs
+constexpr float kMeetReach = 1.3f;  // R within which segments meet and parts tell signs
 constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
-constexpr double kLeastMeeting = 1e-3;  // sum of weights: sheets with less do not meet
+constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do not meet
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
-constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one sheet
-constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one sheet
-constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the way to a sheet above
+constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one segment
+constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one segment
+constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the way to a segment above
 constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
 
 // They bound the pairs that are compared (judgement).
-constexpr std::uint32_t kTried = 16;       // points of a sheet
+constexpr std::uint32_t kTried = 16;       // points of a segment
 constexpr std::uint32_t kReferences = 64;  // decided points
 
 std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
@@ -35,30 +35,32 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
 }
 
 /// Is q beyond the plane of p, which is turned by `sign`? `way`: from q to p.
-bool is_beyond(const SheetView::Point& p, const auto& q, const Vector3f& way, float sign) noexcept {
+bool is_beyond(const SegmentView::Point& p, const auto& q, const Vector3f& way,
+               float sign) noexcept {
   return -sign * p.normal.dot(way) >
          kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
 }
 
 /// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
 /// something is.
-bool swap_front(auto& sheets, auto& references) noexcept {
+bool swap_front(auto& segments, auto& references) noexcept {
   const auto across = [](const auto& x) { return x.label == kAcross; };
-  if (std::ranges::any_of(sheets, across) || std::ranges::any_of(references, across)) return false;
-  swap_labels(sheets, kInFront, kBehind);
+  if (std::ranges::any_of(segments, across) || std::ranges::any_of(references, across))
+    return false;
+  swap_labels(segments, kInFront, kBehind);
   swap_labels(references, kInFront, kBehind);
   return true;
 }
 
 }  // namespace
 
-/// Calls visit(p, q, way, w) for points p of the sheet and decided ones q within `reach` R of it:
+/// Calls visit(p, q, way, w) for points p of the segment and decided ones q within `reach` R of it:
 /// the way from q to p and how much it counts.
-void Facing::each_meeting(const Sheet& sheet, float reach, const auto& visit) noexcept {
+void Facing::each_meeting(const Segment& segment, float reach, const auto& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
-  const std::uint32_t skip = stride_for(sheet.count, kTried);
-  for (std::uint32_t k = 0; k < sheet.count; k += skip) {
-    const Point& p = view_.points[view_.order[sheet.begin + k]];
+  const std::uint32_t skip = stride_for(segment.count, kTried);
+  for (std::uint32_t k = 0; k < segment.count; k += skip) {
+    const Point& p = view_.points[view_.order[segment.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
       const Vector3f way = p.place - references_[r].place;
       const double w = weight_within(way.squaredNorm(), reach * p.radius);
@@ -71,29 +73,29 @@ void Facing::each_meeting(const Sheet& sheet, float reach, const auto& visit) no
 /// its normals; an arc joins points of one time.
 double Facing::votes_on(std::uint32_t part) noexcept {
   double sum = 0;
-  for (const Sheet& sheet : view_.table.sheets) {
-    if (sheet.part != part) continue;
-    each_meeting(
-        sheet, kMeetReach, [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-          const float a =
-              q.is_of_another_time(sheet)
-                  ? p.normal.dot(q.normal)
-                  : agreement(p.normal, q.normal, way, 3 * std::max(p.residual, q.residual));
-          sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
-        });
+  for (const Segment& segment : view_.table.segments) {
+    if (segment.part != part) continue;
+    each_meeting(segment, kMeetReach,
+                 [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+                   const float a = q.is_of_another_time(segment)
+                                       ? p.normal.dot(q.normal)
+                                       : agreement(p.normal, q.normal, way,
+                                                   3 * std::max(p.residual, q.residual));
+                   sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
+                 });
   }
   return sum;
 }
 
 /// Turns parts whose points say the opposite of a contact that begins: what it touches is in front.
 void Facing::turn_by(const Vector3f& normal) noexcept {
-  std::array<double, SheetTable::kMost> agreed{};
-  std::array<double, SheetTable::kMost> all{};
+  std::array<double, SegmentTable::kMost> agreed{};
+  std::array<double, SegmentTable::kMost> all{};
   for (const Point& p : view_.points) {
     const float squared = p.place.squaredNorm();
     if (squared >= p.radius * p.radius) continue;
     const double w = static_cast<double>(p.confidence) * weight_within(squared, p.radius);
-    const std::uint32_t part = view_.table.sheets[p.sheet].part;
+    const std::uint32_t part = view_.table.segments[p.segment].part;
     const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
     agreed[part] += w * static_cast<double>(a * std::abs(a)) * view_.table.parts[part].sign;
     all[part] += w;
@@ -102,8 +104,8 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
     Part& part = view_.table.parts[k];
     if (part.is_one_sided() || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
     part.sign = -part.sign;
-    for (Sheet& sheet : view_.table.sheets) {
-      if (sheet.part == k) sheet.label = SheetTable::kUndecided;
+    for (Segment& segment : view_.table.segments) {
+      if (segment.part == k) segment.label = SegmentTable::kUndecided;
     }
   }
 }
@@ -126,7 +128,7 @@ void Facing::decide_signs(bool continued) noexcept {
   }
 }
 
-/// Sums over the pairs that a sheet's points make with decided ones of one label.
+/// Sums over the pairs that a segment's points make with decided ones of one label.
 struct Facing::Meeting {
   double all = 0;       // of weights
   double parallel = 0;  // of the cosines between their normals
@@ -135,25 +137,25 @@ struct Facing::Meeting {
   double now = 0;       // of weights, pairs with another time of the same source left out
   double off_now = 0;
 
-  /// Is the sheet what these points are of? It has to lie on their plane, but if it may be the same
-  /// surface at another time (`moved`): there planes tell only how far it went.
+  /// Is the segment what these points are of? It has to lie on their plane, but if it may be the
+  /// same surface at another time (`moved`): there planes tell only how far it went.
   [[nodiscard]] bool continues(bool moved) const noexcept {
     if (!(all > kLeastMeeting) || !(parallel > kSameNormal * all)) return false;
     return std::abs(moved ? off_now : off) <= kSamePlane * (moved ? now : all);
   }
 
-  /// Is there an edge? Two sheets that face alike, one rather above the other than beside it, make
-  /// none.
+  /// Is there an edge? Two segments that face alike, one rather above the other than beside it,
+  /// make none.
   [[nodiscard]] bool is_edge() const noexcept {
     return all > kLeastMeeting && (parallel <= kSameNormal * all || std::abs(off) <= kAbove * all);
   }
 };
 
-/// `beyond`: the weight of pairs where what is in front goes on beyond the sheet's plane.
-Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
+/// `beyond`: the weight of pairs where what is in front goes on beyond the segment's plane.
+Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexcept {
   Meetings result{};
-  const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
-  each_meeting(sheet, kMeetReach,
+  const auto sign = static_cast<float>(view_.table.parts[segment.part].factor());
+  each_meeting(segment, kMeetReach,
                [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
                  const float length = way.norm();
                  if (!(length > kSamePlace * p.radius)) return;
@@ -163,7 +165,7 @@ Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
                  m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
                  m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
                  m.off += off;
-                 if (!q.is_of_another_time(sheet)) {
+                 if (!q.is_of_another_time(segment)) {
                    m.now += w;
                    m.off_now += off;
                  }
@@ -172,10 +174,10 @@ Facing::Meetings Facing::meetings(const Sheet& sheet, double& beyond) noexcept {
   return result;
 }
 
-/// The label that follows from how the sheet lies to sheets whose labels are known.
-std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
+/// The label that follows from how the segment lies to segments whose labels are known.
+std::uint8_t Facing::label_of(const Segment& segment) noexcept {
   double beyond = 0;
-  Meetings with = meetings(sheet, beyond);
+  Meetings with = meetings(segment, beyond);
   for (const bool moved : {false, true}) {
     int same = -1;
     for (int k = 0; k < simd::kLabels; ++k) {
@@ -191,16 +193,17 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
                     : with[kBehind].all > with[kAcross].all ? kBehind
                                                             : kAcross;
   const bool concave = with[other].above >= 0;
-  // No edge is where the front goes on beyond the sheet's plane: the sheet would cut it off there.
+  // No edge is where the front goes on beyond the segment's plane: the segment would cut it off
+  // there.
   const bool plate = with[other].parallel < -kBackToBack * with[other].all;
   if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
   if (other == kBehind && concave) {
-    return swap_front(view_.table.sheets, references_) ? kAcross : kInFront;
+    return swap_front(view_.table.segments, references_) ? kAcross : kInFront;
   }
   if (other == kAcross && !concave) {
-    const auto sign = static_cast<float>(view_.table.parts[sheet.part].factor());
+    const auto sign = static_cast<float>(view_.table.parts[segment.part].factor());
     bool cuts = false;  // something of what is in front off
-    each_meeting(sheet, kAnywhere,
+    each_meeting(segment, kAnywhere,
                  [&](const Point& p, const Reference& q, const Vector3f& way, double) {
                    cuts = cuts || (q.label == kInFront && is_beyond(p, q, way, sign));
                  });
@@ -209,13 +212,13 @@ std::uint8_t Facing::label_of(const Sheet& sheet) noexcept {
   return concave ? kAcross : kBehind;
 }
 
-/// Labels the sheets that have no label, the weightiest first.
+/// Labels the segments that have no label, the weightiest first.
 void Facing::decide_labels() noexcept {
   for (;;) {
-    Sheet* next = nullptr;
-    for (Sheet& sheet : view_.table.sheets) {
-      if (sheet.label == SheetTable::kUndecided && (!next || sheet.weight > next->weight))
-        next = &sheet;
+    Segment* next = nullptr;
+    for (Segment& segment : view_.table.segments) {
+      if (segment.label == SegmentTable::kUndecided && (!next || segment.weight > next->weight))
+        next = &segment;
     }
     if (!next) return;
     Part& part = view_.table.parts[next->part];

@@ -4,7 +4,7 @@
 
 #include "field/formulas.hpp"
 #include "field/oriented.hpp"
-#include "field/sheet_view.hpp"
+#include "field/segment_view.hpp"
 
 namespace palpate {
 
@@ -27,9 +27,9 @@ Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
 namespace {
 
 // R (docs/method.md 2.6). With 0.1 the creases of a scan are closed, but not all between two
-// sheets.
+// surfaces.
 constexpr double kClosed = 0.2;
-constexpr double kFacing = 0.7;  // |Nb|^2 where two equal sheets meet at 114 degrees; judgement
+constexpr double kFacing = 0.7;  // |Nb|^2 where two equal surfaces meet at 114 degrees; judgement
 // h, in R, from which on a surface is concave beyond doubt; judgement.
 constexpr double kHollow = 0.01;
 
@@ -60,7 +60,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// R: a convex edge between two sheets is rounded over this width, and loses a quarter of it.
+// R: a convex edge between two surfaces is rounded over this width, and loses a quarter of it.
 // Measured: with 0.35 a box in a depth frame lost contact along its edges twice as often as
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
@@ -151,7 +151,7 @@ Value back_to_back(FieldPlace place) noexcept {
 }
 
 /// The height behind. On the far side of a plate it stays away from the front by the width of a
-/// soft edge: otherwise the plate would end in a hole before its two sheets run together.
+/// soft edge: otherwise the plate would end in a hole before its two surfaces run together.
 Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
   const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
                       behind.grad + front.grad + kOverEdges * place.radius.grad};

@@ -43,8 +43,8 @@ struct Oriented {
 /// where it is concave.
 [[nodiscard]] Oriented convexity(const simd::Moments& sums) noexcept;
 
-/// |Nb|^2: 1 where all normals agree, (1 + cos) / 2 between two equal sheets whose normals stand at
-/// that angle, 0 where they oppose each other.
+/// |Nb|^2: 1 where all normals agree, (1 + cos) / 2 between two equal surfaces whose normals stand
+/// at that angle, 0 where they oppose each other.
 [[nodiscard]] Oriented normal_square(const simd::Moments& sums) noexcept;
 
 /// to += factor * from.
@@ -87,7 +87,7 @@ struct FieldPlace {
 /// m, with its gradient. 0 for a single source, and where the sources agree.
 ///
 /// Summed up together, points count by how near they are. Where two sources' surfaces lie more than
-/// 0.7 R apart, the height is that of the one here and of the other there: two sheets with a gap,
+/// 0.7 R apart, the height is that of the one here and of the other there: two surfaces with a gap,
 /// between which a proxy falls. Here each source has a height f_s = -sum v n.q / V_s of its own,
 /// which counts by how much of the source's surface there is, whatever its height, and how finely
 /// the source sees it:
@@ -107,27 +107,28 @@ struct FieldPlace {
 [[nodiscard]] Value with_edges(const FieldPlace& place, const Value& smooth) noexcept;
 
 /// The length that closes acute creases: it is subtracted from the height as seen from the proxy's
-/// side, m, with its gradient. 0 on single surfaces, between sheets that meet at 114 degrees and
+/// side, m, with its gradient. 0 on single surfaces, between surfaces that meet at 114 degrees and
 /// more, and wherever the surface is not concave.
 ///
-/// Where two sheets face each other within a support, their normals and heights cancel: the mean of
-/// both stays near 0, or is free, far behind either of them, and a proxy slips through. With the
+/// Where two surfaces face each other within a support, their normals and heights cancel: the mean
+/// of both stays near 0, or is free, far behind either of them, and a proxy slips through. With the
 /// mean normal N and the concavity h = (N . A - sum v n.q / V) / R, signed by the side,
 ///
 ///   closure = 0.2 R S(1 - |N|^2 / 0.7) S(100 h),  S(u) = u^2 (3 - 2u), u within 0 and 1
 ///
-/// |N|^2 is 1/2 between two equal sheets at 90 degrees and 0 between parallel ones; the gate opens
-/// before that, as sheets are seldom equal. h is half the gap, over R, between sheets that face
-/// each other, and below 0 in the plate between sheets that face away, which keeps its shape.
+/// |N|^2 is 1/2 between two equal surfaces at 90 degrees and 0 between parallel ones; the gate
+/// opens before that, as surfaces are seldom equal. h is half the gap, over R, between surfaces
+/// that face each other, and below 0 in the plate between surfaces that face away, which keeps its
+/// shape.
 [[nodiscard]] Value crease_closure(const FieldPlace& place) noexcept;
 
 /// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (docs/method.md 1).
 [[nodiscard]] Value smooth_max(const Value& a, const Value& b, const Value& radius,
                                double width) noexcept;
 
-/// The height above the sheets at a place as they meet there: what is across bounds free space with
-/// what is in front, and what is behind bounds the solid with both (Facing). Nothing where no label
-/// has more than `least` of trusted weight. With its exact gradient.
+/// The height above the surfaces at a place as they meet there: what is across bounds free space
+/// with what is in front, and what is behind bounds the solid with both (Facing). Nothing where no
+/// label has more than `least` of trusted weight. With its exact gradient.
 [[nodiscard]] std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
                                                  double least) noexcept;
 

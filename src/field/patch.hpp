@@ -34,9 +34,9 @@ class Patch {
   /// others can come to the same one.
   bool advance(std::span<const ActiveLayer> layers) noexcept;
 
-  /// Turns points to the tool where it is now and sorts them by how their sheets meet.
+  /// Turns points to the tool where it is now and sorts them by how their segments meet.
   void face(const Stance& stance) noexcept;
-  /// What is decided of the sheets; holds from the next face() on.
+  /// What is decided of the segments; holds from the next face() on.
   [[nodiscard]] Facing& sides() noexcept { return facing_; }
   [[nodiscard]] const Facing& sides() const noexcept { return facing_; }
 

@@ -66,8 +66,8 @@ void each_column(const Visit& visit, Points&... points) {
   visit(points.colors...);
   visit(points.presences...);
   visit(points.end_presences...);
-  visit(points.sheets.sheet...);
-  visit(points.sheets.residual...);
+  visit(points.segments.segment...);
+  visit(points.segments.residual...);
 }
 
 /// Gives the members of `numbers`, but kNone, new numbers from 0 on in the order in which they
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> renumber(std::vector<std::uint32_t>& numbers) {
   std::unordered_map<std::uint32_t, std::uint32_t> fresh;
   std::vector<std::uint32_t> old;
   for (std::uint32_t& number : numbers) {
-    if (number == SurfacePoints::Sheets::kNone) continue;
+    if (number == SurfacePoints::Segments::kNone) continue;
     const auto [known, is_new] = fresh.try_emplace(number, static_cast<std::uint32_t>(old.size()));
     if (is_new) old.push_back(number);
     number = known->second;
@@ -84,13 +84,13 @@ std::vector<std::uint32_t> renumber(std::vector<std::uint32_t>& numbers) {
   return old;
 }
 
-/// The sheets and parts that are left on some points.
-void renumber(const SurfacePoints::Sheets& from, SurfacePoints::Sheets& to) {
-  for (const std::uint32_t sheet : renumber(to.sheet)) to.part.push_back(from.part[sheet]);
+/// The segments and parts that are left on some points.
+void renumber(const SurfacePoints::Segments& from, SurfacePoints::Segments& to) {
+  for (const std::uint32_t segment : renumber(to.segment)) to.part.push_back(from.part[segment]);
   for (const std::uint32_t part : renumber(to.part)) to.known.push_back(from.known[part]);
 }
 
-void append(const SurfacePoints::Sheets& from, SurfacePoints::Sheets& to) {
+void append(const SurfacePoints::Segments& from, SurfacePoints::Segments& to) {
   const auto parts = static_cast<std::uint32_t>(to.known.size());
   for (const std::uint32_t part : from.part) to.part.push_back(parts + part);
   to.known.insert(to.known.end(), from.known.begin(), from.known.end());
@@ -181,7 +181,7 @@ Piece Blocks::prepare(std::size_t number) const {
   for (const std::uint32_t i : kept) piece.positions.push_back(points.grid.points()[i]);
   piece.columns.kernel = points.kernel;
   each_column([&](const auto& from, auto& to) { to = some_of(from, kept); }, points, piece.columns);
-  renumber(points.sheets, piece.columns.sheets);
+  renumber(points.segments, piece.columns.segments);
   piece.report = all.report;
   piece.report.points_in = division_.points(number);
   piece.report.points_out = piece.report.speckle = piece.report.duplicates = 0;
@@ -220,15 +220,15 @@ class Joining {
 
   void add(const Piece& piece) {
     SurfacePoints& points = joined_.points;
-    const auto sheets = static_cast<std::uint32_t>(points.sheets.part.size());
-    const std::size_t before = points.sheets.sheet.size();
+    const auto segments = static_cast<std::uint32_t>(points.segments.part.size());
+    const std::size_t before = points.segments.segment.size();
     append_to(positions_, piece.positions);
     each_column([&](const auto& from, auto& to) { append_to(to, from); }, piece.columns, points);
-    for (std::size_t i = before; i < points.sheets.sheet.size(); ++i) {
-      std::uint32_t& sheet = points.sheets.sheet[i];
-      if (sheet != SurfacePoints::Sheets::kNone) sheet += sheets;
+    for (std::size_t i = before; i < points.segments.segment.size(); ++i) {
+      std::uint32_t& segment = points.segments.segment[i];
+      if (segment != SurfacePoints::Segments::kNone) segment += segments;
     }
-    append(piece.columns.sheets, points.sheets);
+    append(piece.columns.segments, points.segments);
     palpate::add(piece.report, joined_.report);
   }
 

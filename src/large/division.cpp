@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 constexpr int kCoarserShift = 2;  // all lengths times 4 from level to level; judgement
 constexpr int kCellShift = 4;     // cells along an edge of a cube: 16, 6 R each; judgement
 
-// Points in a cell and those around it from which on they are prepared on its level. A flat sheet
-// has 2000 there, its corner 200. So sheets stay that are up to six times as sparse, whose R is
+// Points in a cell and those around it from which on they are prepared on its level. A flat surface
+// has 2000 there, its corner 200. So surfaces stay that are up to six times as sparse, whose R is
 // half of the largest. Measured: of 25, 60 and 120 the one whose forces differ least from those of
 // all prepared together (docs/preparation.md).
 constexpr std::uint32_t kEnoughAround = 60;

@@ -63,7 +63,7 @@ void assemble(Surfels& surfels) {
   points.normals = std::move(surfels.fits.normals);
   points.confidences = std::move(surfels.fits.confidences);
   points.confidences.resize(points.size(), 0.0f);
-  points.sheets = std::move(surfels.sheets);
+  points.segments = std::move(surfels.segments);
   Prepared::Report& report = surfels.prepared.report;
   report.speckle = surfels.weights.speckle;
   report.points_out = points.size() - report.speckle;

@@ -1,4 +1,4 @@
-// Heights over a plane that fall into two groups, as those of two sheets do.
+// Heights over a plane that fall into two groups, as those of two surfaces do.
 #pragma once
 
 #include <span>

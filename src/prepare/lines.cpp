@@ -16,7 +16,7 @@ namespace palpate {
 
 namespace {
 
-// How lines are told from sheets; all are judgement (docs/preparation.md, Spacing).
+// What separates lines from surfaces; all are judgement (docs/preparation.md, Spacing).
 constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
 constexpr int kLineWidenings = 4;  // reaches tried, each twice the last: lines up to 30 points away
 constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more

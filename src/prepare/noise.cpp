@@ -8,7 +8,7 @@
 
 #include "geometry/parallel.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/sheet_fit.hpp"
+#include "prepare/segment_fit.hpp"
 
 namespace palpate {
 namespace {
@@ -63,9 +63,9 @@ bool fills(double residual, double reach) {
 
 /// The fit at a place: `first`, whose window reaches `reach`, or one of a window so much wider that
 /// noise does not fill it. In a volume no window finds a layer: then it is `first`.
-SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
-                          double reach, double spacing, const SheetFit& first) {
-  SheetFit fit = first;
+SegmentFit fit_beyond_noise(SegmentFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
+                            double reach, double spacing, const SegmentFit& first) {
+  SegmentFit fit = first;
   while (fills(fit.quadric_residual, reach) && 2 * reach <= kWidestReach * spacing) {
     reach *= 2;
     fit = fitter.fit(grid, at, reach, spacing);
@@ -76,14 +76,14 @@ SheetFit fit_beyond_noise(SheetFitter& fitter, const CellGrid& grid, const Eigen
 /// The fits around one sampled point.
 struct Row {
   Eigen::Vector3f at;
-  SheetFit narrow;
-  SheetFit narrowest;
+  SegmentFit narrow;
+  SegmentFit narrowest;
 };
 
 std::vector<Row> fit_windows(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<Row> rows((grid.size() - step / 2 + step - 1) / step);
-  detail::parallel_each_with<SheetFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
+  detail::parallel_each_with<SegmentFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
     const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
     rows[k] = {at, fitter.fit(grid, at, kNarrow.reach * spacing, spacing),
                fitter.fit(grid, at, kNarrowest.reach * spacing, spacing)};
@@ -93,7 +93,7 @@ std::vector<Row> fit_windows(const CellGrid& grid, double spacing) {
 
 /// The noise that rows tell, as the flatter quarter has it: where shape is finer than the window it
 /// passes for noise. 0 where no row has enough points.
-double noise_in(const std::vector<Row>& rows, SheetFit Row::*fit, const Window& window) {
+double noise_in(const std::vector<Row>& rows, SegmentFit Row::*fit, const Window& window) {
   std::vector<float> residuals;
   for (const Row& row : rows) {
     if ((row.*fit).points >= window.fewest) {
@@ -114,7 +114,7 @@ double narrow_noise(const CellGrid& grid, double spacing) {
   if (narrowest > 0 && narrowest < kShape * narrow) return narrowest;
   const double reach = kNarrow.reach * spacing;
   if (!fills(narrow, reach)) return narrow;
-  detail::parallel_each_with<SheetFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
+  detail::parallel_each_with<SegmentFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
     Row& row = rows[k];
     row.narrow = fit_beyond_noise(fitter, grid, row.at, reach, spacing, row.narrow);
   });
@@ -132,14 +132,14 @@ struct Widths {
 std::vector<Widths> compare_widths(const CellGrid& grid, double spacing) {
   const std::size_t step = step_for(grid, kWideSamples);
   std::vector<Widths> all((grid.size() + step - 1) / step);
-  detail::parallel_each_with<SheetFitter>(all.size(), 16, [&](std::size_t k, auto& fitter) {
+  detail::parallel_each_with<SegmentFitter>(all.size(), 16, [&](std::size_t k, auto& fitter) {
     const Eigen::Vector3f& at = grid.points()[std::min(k * step + step / 2, grid.size() - 1)];
-    const SheetFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
-    const SheetFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
-    const SheetFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
+    const SegmentFit narrow = fitter.fit(grid, at, kNarrow.reach * spacing, spacing);
+    const SegmentFit map = fitter.fit(grid, at, kMapReach * spacing, 0);
+    const SegmentFit middle = fitter.fit(grid, at, kMiddleReach * spacing, 0);
     if (!(narrow.quadric_residual > 0 && map.quadric_residual > 0 && middle.quadric_residual > 0))
       return;
-    const SheetFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
+    const SegmentFit wide = fitter.fit(grid, at, kWideReach * spacing, 0);
     double together = wide.quadric_residual;  // used only where the wide window holds no shape
     if (wide.quadric_residual <= kShapeGrowth * middle.quadric_residual) {
       const double tiles = fitter.tile_variance(kWideReach * spacing, kTile * spacing);
@@ -200,11 +200,11 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
   const std::size_t step = std::max(kRawPerSample, raw.size() / kMostSamples);
   const std::size_t count = raw.size() / step;
   std::vector<Value> found(count);
-  detail::parallel_each_with<SheetFitter>(count, 64, [&](std::size_t k, auto& fitter) {
+  detail::parallel_each_with<SegmentFitter>(count, 64, [&](std::size_t k, auto& fitter) {
     const std::size_t i = k * step + step / 2;
     const auto spacing = static_cast<double>(spacings[i]);
     const double reach = kMapReach * spacing;
-    SheetFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
+    SegmentFit fit = fitter.fit(raw, raw.points()[i], reach, spacing);
     fit = fit_beyond_noise(fitter, raw, raw.points()[i], reach, spacing, fit);
     found[k] = {static_cast<float>(fit.quadric_residual),
                 static_cast<float>(fit.quadric_residual * fit.footprint)};

@@ -26,8 +26,8 @@ struct KnownSigns {
 
 /// Turns normals so that those of neighbours agree: pairs of neighbours whose planes are most
 /// parallel join first (Hoppe et al. 1992). What hangs together then faces the side that given
-/// normals or the viewpoint tell, else outward. For smooth surfaces of one sheet; where sheets meet
-/// or lie close together, refinements do more.
+/// normals or the viewpoint tell, else outward. For one smooth surface; where surfaces meet or lie
+/// close together, refinements do more.
 void orient(const Sampling& sampling, const KnownSigns& known, PointFits& fits);
 
 }  // namespace palpate

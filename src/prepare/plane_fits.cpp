@@ -9,19 +9,19 @@
 #include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
 #include "prepare/given_normals.hpp"
-#include "prepare/sheet_fit.hpp"
+#include "prepare/segment_fit.hpp"
 
 namespace palpate {
 
-void take_fit(const SheetFit& fit, std::size_t i, PointFits& own) {
+void take_fit(const SegmentFit& fit, std::size_t i, PointFits& own) {
   own.normals[i] = fit.normal.cast<float>();
   own.confidences[i] = static_cast<float>(fit.planarity);
   own.residuals[i] = static_cast<float>(fit.residual);
   own.quadric_residuals[i] = static_cast<float>(fit.quadric_residual);
 }
 
-SheetFit fit_of(const PointFits& own, std::size_t i) {
-  SheetFit fit;
+SegmentFit fit_of(const PointFits& own, std::size_t i) {
+  SegmentFit fit;
   fit.normal = own.normals[i].cast<double>();
   fit.planarity = static_cast<double>(own.confidences[i]);
   fit.residual = static_cast<double>(own.residuals[i]);
@@ -32,31 +32,31 @@ SheetFit fit_of(const PointFits& own, std::size_t i) {
 PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
                      std::span<const float> radii, std::span<const float> noise) {
   Normals planes = estimate_normals(grid, radii, kNormalsReach);
-  PointFits sheets{std::move(planes.normals),
-                   std::move(planes.confidences),
-                   std::move(planes.residuals),
-                   {},
-                   std::vector<std::uint8_t>(grid.size()),
-                   std::move(planes.asides)};
-  sheets.quadric_residuals = sheets.residuals;
+  PointFits segments{std::move(planes.normals),
+                     std::move(planes.confidences),
+                     std::move(planes.residuals),
+                     {},
+                     std::vector<std::uint8_t>(grid.size()),
+                     std::move(planes.asides)};
+  segments.quadric_residuals = segments.residuals;
   std::vector<float> reaches(grid.size());  // of second fits, m; 0: the plane does
   const auto flat_at = [&](std::size_t i) {
     return flat_residual(static_cast<double>(radii[i]), static_cast<double>(noise[i]));
   };
   for (std::size_t i = 0; i < grid.size(); ++i) {
-    const auto residual = static_cast<double>(sheets.residuals[i]);
+    const auto residual = static_cast<double>(segments.residuals[i]);
     if (residual > flat_at(i)) reaches[i] = kNormalsReach * radii[i];
   }
-  const auto refit = [&](SheetFitter& fitter, std::uint32_t i,
+  const auto refit = [&](SegmentFitter& fitter, std::uint32_t i,
                          std::span<const std::uint32_t> near) {
-    const SheetFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
-                                    static_cast<double>(spacings[i]), flat_at(i));
-    take_fit(fit, i, sheets);
-    sheets.others[i] = fit.others ? 1 : 0;
+    const SegmentFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
+                                      static_cast<double>(spacings[i]), flat_at(i));
+    take_fit(fit, i, segments);
+    segments.others[i] = fit.others ? 1 : 0;
   };
   detail::for_each_near(
-      grid, reaches, [] { return SheetFitter(); }, refit);
-  return sheets;
+      grid, reaches, [] { return SegmentFitter(); }, refit);
+  return segments;
 }
 
 PointFits fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {

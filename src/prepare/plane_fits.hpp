@@ -14,12 +14,12 @@
 
 namespace palpate {
 
-struct SheetFit;
+struct SegmentFit;
 
 /// Makes a fit that of point i; `others` and `asides` stay as they are.
-void take_fit(const SheetFit& fit, std::size_t i, PointFits& own);
+void take_fit(const SegmentFit& fit, std::size_t i, PointFits& own);
 /// Returns what is kept of the fit of point i: its normal, planarity and residuals alone.
-[[nodiscard]] SheetFit fit_of(const PointFits& own, std::size_t i);
+[[nodiscard]] SegmentFit fit_of(const PointFits& own, std::size_t i);
 
 // R: normals are fitted a little wider than the surface is, as the balanced field adds their noise;
 // judgement (docs/method.md 5.5).

@@ -7,13 +7,13 @@
 
 namespace palpate {
 
-/// The plane of each point, of its own sheet alone, in sorted order.
+/// The plane of each point, of its own segment alone, in sorted order.
 struct PointFits {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1
   std::vector<float> residuals;          ///< from the plane, m
   std::vector<float> quadric_residuals;  ///< from the quadric where the plane does not fit, m
-  std::vector<std::uint8_t> others;      ///< 1: points of other sheets are around
+  std::vector<std::uint8_t> others;      ///< 1: points of other segments are around
   std::vector<float> asides;             ///< of the mean of those around, of their reach
 };
 

@@ -65,7 +65,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   s.weights = weigh(s.sampling, s.radii, s.sums, options);
   watch.lap(report.seconds_weights);
   refine(refinements, Stage::weights, s, stop);
-  if (s.sheets.empty()) orient(s.sampling, given_signs(placed, s.sampling, options), s.fits);
+  if (s.segments.empty()) orient(s.sampling, given_signs(placed, s.sampling, options), s.fits);
   watch.lap(report.seconds_normals);
 
   s.prepared.report = report;

@@ -17,7 +17,7 @@
 
 namespace palpate {
 
-/// The second plane of a point where two sheets meet in a crease or at an edge.
+/// The second plane of a point where two segments meet in a crease or at an edge.
 struct SecondPlane {
   std::uint32_t point = 0;
   std::uint32_t owner = 0;  ///< a point that is confident of that plane
@@ -32,7 +32,7 @@ struct Surfels {
   PointFits fits = {};
   WeightSums sums = {};
   Weights weights = {};
-  SurfacePoints::Sheets sheets = {};  ///< empty: all points are one, and their signs agree
+  SurfacePoints::Segments segments = {};  ///< empty: all points are one, and their signs agree
   std::vector<SecondPlane> second_planes = {};  ///< in rising order
   Prepared prepared = {};  ///< the report from the start, the points at the end
 };

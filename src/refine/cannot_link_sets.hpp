@@ -12,7 +12,7 @@ namespace palpate {
 
 /// Joins sets of points, but not those that lie over each other with normals that agree: the two
 /// sides of a blade continue each other at its edge, where they are too near to be separated, but
-/// are not one sheet. Each pair of points that lie over each other is a cannot-link constraint
+/// are not one segment. Each pair of points that lie over each other is a cannot-link constraint
 /// between their sets. Sets are joined once more pairs have asked for it than constrain it.
 class CannotLinkSets {
  public:

@@ -9,7 +9,7 @@
 #include "geometry/neighborhoods.hpp"
 #include "prepare/limit_growth.hpp"
 #include "prepare/plane_fits.hpp"
-#include "prepare/sheet_fit.hpp"
+#include "prepare/segment_fit.hpp"
 #include "refine/holes.hpp"
 
 namespace palpate {
@@ -21,23 +21,23 @@ constexpr float kFaint = 2.5f;  // sum of weights; a square grid has 5.8; judgem
 // of 0.55 R: T(0.55) = 0.3 of the default kernel (docs/method.md 2.1, 2.5); derived.
 constexpr float kBridged = 0.55f;  // R
 // Such a disc beside a point moves the mean of its neighbours by 0.14 of their reach where they are
-// spread evenly; half of that. Near-duplicates of the point and other sheets move it less.
+// spread evenly; half of that. Near-duplicates of the point and other segments move it less.
 constexpr float kBesideHole = 0.07f;  // derived, with a margin
 // Discs up to this are gaps between points, wider ones are holes of the surface. The widest among N
 // points that lie anywhere is sqrt(ln N / pi) spacings: 0.8 R of 300,000; derived.
 constexpr float kWidestHole = 0.8f;    // R
 constexpr float kFaintWidestHole = 3;  // R of faint points, which is too small; judgement
 
-// R over the hole's radius: that of the square grid with such holes, so that a sheet that turns
+// R over the hole's radius: that of the square grid with such holes, so that a segment that turns
 // sparse keeps its 2.5 spacings; derived.
 constexpr float kAsOnGrid = std::numbers::sqrt2_v<float> * kUsualMultiple;
-// Where no sheet goes on so far: the hole's middle has a weight of T(0.4) = 0.56; derived.
+// Where no segment goes on so far: the hole's middle has a weight of T(0.4) = 0.56; derived.
 constexpr float kAtLeast = 2.5f;
 
-/// What bridges a hole: R (m; 0: nothing does) and the sheet within it.
+/// What bridges a hole: R (m; 0: nothing does) and the segment within it.
 struct Bridge {
   float radius = 0;
-  SheetFit sheet;
+  SegmentFit segment;
 };
 
 /// A point that may be beside a hole. Lengths in m.
@@ -65,8 +65,8 @@ class Closer {
     for (const float times : {kAsOnGrid, kAtLeast}) {
       const float wanted = std::min(times * hole, largest_);
       if (!(wanted > at.radius) || hole > kBridged * wanted) return {};
-      const SheetFit fit = fit_within(wanted, at.point, at.spacing);
-      if (fit.is_sheet(static_cast<double>(wanted), static_cast<double>(at.noise))) {
+      const SegmentFit fit = fit_within(wanted, at.point, at.spacing);
+      if (fit.is_segment(static_cast<double>(wanted), static_cast<double>(at.noise))) {
         return {wanted, fit};
       }
     }
@@ -74,7 +74,7 @@ class Closer {
   }
 
  private:
-  [[nodiscard]] SheetFit fit_within(float reach, std::uint32_t i, float spacing) {
+  [[nodiscard]] SegmentFit fit_within(float reach, std::uint32_t i, float spacing) {
     return fitter_.fit(grid_, grid_.points()[i], static_cast<double>(reach),
                        static_cast<double>(spacing));
   }
@@ -82,7 +82,7 @@ class Closer {
   const CellGrid& grid_;
   float largest_;  // R, m
   HoleFinder holes_;
-  SheetFitter fitter_;
+  SegmentFitter fitter_;
 };
 
 }  // namespace
@@ -103,7 +103,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
     if (bridge.radius <= 0) return;
     radii[i] = bridge.radius;
     spacings[i] = std::max(spacings[i], bridge.radius / kUsualMultiple);
-    take_fit(bridge.sheet, i, own);
+    take_fit(bridge.segment, i, own);
     raised[i] = 1;
   };
   detail::for_each_near(

@@ -1,4 +1,4 @@
-// Holes in a sheet: empty discs that its points surround.
+// Holes in a segment: empty discs that its points surround.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,8 @@ class HoleFinder {
   /// rim and others all around it; 0: there is none of more than `least` and at most `largest`.
   /// `near`: points within twice `least`, or some of them; where these fill the plane none is
   /// looked for. `normal`: the plane's, unit. Points more than 45 degrees off the plane belong to
-  /// other sheets; one that is nearer than the hole is wide hides it. What a sheet's border is open
-  /// to is no hole.
+  /// other segments; one that is nearer than the hole is wide hides it. What a segment's border is
+  /// open to is no hole.
   [[nodiscard]] float radius_beside(const CellGrid& grid, std::uint32_t i,
                                     std::span<const std::uint32_t> near,
                                     const Eigen::Vector3f& normal, float least, float largest);

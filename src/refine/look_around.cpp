@@ -1,4 +1,4 @@
-// Lets pairs of points vote on how their sheets lie, and finds those that another sheet hides.
+// Lets pairs of points vote on how their segments lie, and finds those that another segment hides.
 
 #include <algorithm>
 #include <array>
@@ -9,14 +9,14 @@
 
 #include "field/formulas.hpp"
 #include "geometry/neighborhoods.hpp"
-#include "refine/sheets.hpp"
+#include "refine/segments.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3f;
 
-// Which points belong to another sheet above or below one; all are judgement.
+// Which points belong to another segment above or below one; all are judgement.
 constexpr float kGapReach = 1.6f;   // R
 constexpr float kGapTube = 1.3f;    // spacings to the side
 constexpr float kGapCosine = 0.8f;  // of the angle between both normals, at least (37 degrees)
@@ -25,20 +25,20 @@ constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 // Factor on the squared slope where points are picked for a closer look.
 constexpr float kSafe = 0.999f;  // derived: rounding takes less
 
-// Votes of one sheet on another; all are judgement.
-constexpr float kVoteReach = 1.3f;      // R
-constexpr std::size_t kVoteSheets = 4;  // other sheets that a point votes on
-constexpr int kVotesEach = 3;           // points of each, the nearest
+// Votes of one segment on another; all are judgement.
+constexpr float kVoteReach = 1.3f;        // R
+constexpr std::size_t kVoteSegments = 4;  // other segments that a point votes on
+constexpr int kVotesEach = 3;             // points of each, the nearest
 
-/// Looks from the points of one block at other sheets.
+/// Looks from the points of one block at other segments.
 class Outlook {
  public:
-  Outlook(const SheetInput& input, const PointFits& own, const std::optional<Vector3f>& eye,
+  Outlook(const SegmentInput& input, const PointFits& own, const std::optional<Vector3f>& eye,
           Growths& grown)
-      : input_(input), own_(own), viewer_(eye), grown_(grown), sheets_(grown.sheets) {}
+      : input_(input), own_(own), viewer_(eye), grown_(grown), segments_(grown.segments) {}
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
-            std::vector<SheetVote>& votes) {
+            std::vector<SegmentVote>& votes) {
     const detail::Reach reach{.of_points = input_.radii, .times = reach_, .of_cells = {}};
     detail::for_each_part(
         input_.grid, reach, block, surroundings,
@@ -48,16 +48,16 @@ class Outlook {
   }
 
  private:
-  /// Is there but one sheet, and does it not curl so far that it may hide itself?
+  /// Is there but one segment, and does it not curl so far that it may hide itself?
   [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
-    // A point of one sheet that hides another is turned from it by 143 degrees or more
+    // A point of one segment that hides another is turned from it by 143 degrees or more
     // (kGapCosine), so one of the two by half of that from the first.
     constexpr float kSquaredCurl = 0.5f * (1 - kGapCosine);
-    const std::uint32_t sheet = sheets_.sheet[first];
+    const std::uint32_t segment = segments_.segment[first];
     const Vector3f& n = own_.normals[first];
     for (const simd::Run& run : runs) {
       for (std::uint32_t j = run.begin; j < run.end; ++j) {
-        if (sheets_.sheet[j] != sheet) return false;
+        if (segments_.segment[j] != segment) return false;
         const float cosine = n.dot(own_.normals[j]);
         if (viewer_ && !(cosine > 0 && cosine * cosine > kSquaredCurl)) return false;
       }
@@ -66,10 +66,10 @@ class Outlook {
   }
 
   void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
-                 std::vector<SheetVote>& votes) {
+                 std::vector<SegmentVote>& votes) {
     simd::Eyes eyes = {};
     eyes.squared_slope = kSafe * kGapSlope * kGapSlope;
-    eyes.sheets = sheets_.sheet.data();
+    eyes.segments = segments_.segment.data();
     for (std::uint32_t q = 0; q < count; ++q) {
       others_[q].clear();
       eyes_[q] = eye_at(first + q);
@@ -79,7 +79,7 @@ class Outlook {
       eyes.least[q] = eyes_[q].least;
       eyes.squared_tube[q] = eyes_[q].tube * eyes_[q].tube;
       eyes.squared_vote[q] = eyes_[q].voting;
-      eyes.sheet[q] = eyes_[q].sheet;
+      eyes.segment[q] = eyes_[q].segment;
     }
     pairs_.each_hit(detail::make_join(input_.grid, first, count, runs), simd::best_joins().apart,
                     eyes, [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
@@ -91,9 +91,9 @@ class Outlook {
     Vector3f at;
     Vector3f normal;
     float tube;    // to the side, m
-    float least;   // height of another sheet, m; infinity: none is looked for
+    float least;   // height of another segment, m; infinity: none is looked for
     float voting;  // squared reach, m^2; below 0: it has no vote
-    std::uint32_t sheet;
+    std::uint32_t segment;
     bool faces;  // does the normal point to the viewer?
   };
 
@@ -105,7 +105,7 @@ class Outlook {
             kGapTube * spacing,
             viewer_ ? kGapResiduals * own_.residuals[i] : std::numeric_limits<float>::infinity(),
             grown_.confident[i] != 0 ? voting * voting : -1,
-            sheets_.sheet[i],
+            segments_.segment[i],
             viewer_ && own_.normals[i].dot(*viewer_ - input_.grid.points()[i]) > 0};
   }
 
@@ -115,12 +115,12 @@ class Outlook {
     const Vector3f way = input_.grid.points()[j] - eye.at;
     const float squared = way.squaredNorm();
     if (viewer_ && is_before(eye, j, way, squared)) grown_.hidden[first + q] = 1;
-    const bool votes_on = squared <= eye.voting && sheets_.sheet[j] != eye.sheet &&
-                          sheets_.sheet[j] != SurfacePoints::Sheets::kNone;
+    const bool votes_on = squared <= eye.voting && segments_.segment[j] != eye.segment &&
+                          segments_.segment[j] != SurfacePoints::Segments::kNone;
     if (votes_on) others_[q].push_back({squared, j});
   }
 
-  /// Does j belong to a sheet between the point and the viewer?
+  /// Does j belong to a segment between the point and the viewer?
   [[nodiscard]] bool is_before(const Eye& eye, std::uint32_t j, const Vector3f& way,
                                float squared) const {
     const float height = eye.normal.dot(way);
@@ -131,32 +131,33 @@ class Outlook {
     return std::abs(eye.normal.dot(own_.normals[j])) >= kGapCosine;
   }
 
-  /// The nearest points of the nearest other sheets.
+  /// The nearest points of the nearest other segments.
   void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
-            std::vector<SheetVote>& votes) {
+            std::vector<SegmentVote>& votes) {
     std::sort(others.begin(), others.end());
-    std::array<std::pair<std::uint32_t, int>, kVoteSheets> heard{};
+    std::array<std::pair<std::uint32_t, int>, kVoteSegments> heard{};
     std::size_t count = 0;
     for (const auto& [squared, j] : others) {
-      const std::uint32_t sheet = sheets_.sheet[j];
+      const std::uint32_t segment = segments_.segment[j];
       std::size_t k = 0;
-      while (k < count && heard[k].first != sheet) ++k;
-      if (k == kVoteSheets) continue;
-      if (k == count) heard[count++] = {sheet, 0};
+      while (k < count && heard[k].first != segment) ++k;
+      if (k == kVoteSegments) continue;
+      if (k == count) heard[count++] = {segment, 0};
       if (heard[k].second++ >= kVotesEach) continue;
       const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
-      const auto [a, b] = std::minmax(sheets_.sheet[i], sheet);
+      const auto [a, b] = std::minmax(segments_.segment[i], segment);
       votes.push_back(
-          {a, b, agreement(own_.normals[i], own_.normals[j], way, sheet_tolerance(input_, i, j))});
+          {a, b,
+           agreement(own_.normals[i], own_.normals[j], way, segment_tolerance(input_, i, j))});
     }
   }
 
-  const SheetInput& input_;
+  const SegmentInput& input_;
   const PointFits& own_;
   const std::optional<Vector3f>& viewer_;
   const float reach_ = viewer_ ? kGapReach : kVoteReach;  // R
   Growths& grown_;
-  const SurfacePoints::Sheets& sheets_;
+  const SurfacePoints::Segments& segments_;
   detail::NearPairs pairs_;
   std::array<Eye, simd::kQueries> eyes_;
   std::array<std::vector<std::pair<float, std::uint32_t>>, simd::kQueries> others_;
@@ -164,19 +165,19 @@ class Outlook {
 
 }  // namespace
 
-std::vector<SheetVote> look_around(const SheetInput& input, const PointFits& own,
-                                   const std::optional<Vector3f>& eye, Growths& grown) {
+std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
+                                     const std::optional<Vector3f>& eye, Growths& grown) {
   if (eye) grown.hidden.assign(input.grid.size(), 0);
   const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
-  std::vector<std::vector<SheetVote>> votes(blocks.size());
+  std::vector<std::vector<SegmentVote>> votes(blocks.size());
   detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
     detail::Surroundings surroundings;
     Outlook outlook(input, own, eye, grown);
     for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
   });
-  std::vector<SheetVote> all;
+  std::vector<SegmentVote> all;
   for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
-  std::stable_sort(all.begin(), all.end(), [](const SheetVote& x, const SheetVote& y) {
+  std::stable_sort(all.begin(), all.end(), [](const SegmentVote& x, const SegmentVote& y) {
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);
   });
   return all;

@@ -95,15 +95,15 @@ void refine_outliers(Surfels& s) {
   }
 }
 
-void refine_outliers_off_sheets(Surfels& s) {
+void refine_outliers_off_segments(Surfels& s) {
   if (s.radii.outliers.empty()) return;
   const Sampling& sampling = s.sampling;
   Weights& weights = s.weights;
-  const std::vector<std::uint32_t>& sheet = s.sheets.sheet;
+  const std::vector<std::uint32_t>& segment = s.segments.segment;
   std::vector<std::uint32_t> off;
   std::vector<Eigen::Vector3f> positions;
-  for (std::uint32_t i = 0; i < sheet.size(); ++i) {
-    if (sheet[i] != SurfacePoints::Sheets::kNone || weights.values[i] <= 0) continue;
+  for (std::uint32_t i = 0; i < segment.size(); ++i) {
+    if (segment[i] != SurfacePoints::Segments::kNone || weights.values[i] <= 0) continue;
     off.push_back(i);
     positions.push_back(sampling.grid.points()[i]);
   }

@@ -21,9 +21,9 @@ namespace palpate {
 void refine_outliers(Surfels& surfels);
 
 /// Lets outliers beside a surface weigh nothing. Its points are their neighbours, so
-/// find_outliers() of all points passes them over; here it looks at the points on no sheet among
+/// find_outliers() of all points passes them over; here it looks at the points on no segment among
 /// themselves. A point with another within the typical spacing stays: tips and ridges are on no
-/// sheet either.
-void refine_outliers_off_sheets(Surfels& surfels);
+/// segment either.
+void refine_outliers_off_segments(Surfels& surfels);
 
 }  // namespace palpate

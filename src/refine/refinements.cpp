@@ -6,7 +6,7 @@
 #include "refine/gaps.hpp"
 #include "refine/outliers.hpp"
 #include "refine/second_planes.hpp"
-#include "refine/sheets.hpp"
+#include "refine/segments.hpp"
 
 namespace palpate {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 constexpr std::array kRefinements{
     Refinement{"outliers", Stage::radii, &refine_outliers},
     Refinement{"gaps", Stage::fits, &refine_gaps},
-    Refinement{"sheets", Stage::weights, &refine_sheets},
-    Refinement{"outliers_off_segments", Stage::weights, &refine_outliers_off_sheets},
+    Refinement{"segments", Stage::weights, &refine_segments},
+    Refinement{"outliers_off_segments", Stage::weights, &refine_outliers_off_segments},
     Refinement{"second_planes", Stage::points, &refine_second_planes},
 };
 

@@ -1,4 +1,4 @@
-// Doubles the points that lie on two sheets.
+// Doubles the points that lie on two segments.
 
 #include "refine/second_planes.hpp"
 
@@ -9,7 +9,7 @@ namespace palpate {
 
 void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints& points) {
   if (second_planes.empty()) return;
-  SurfacePoints::Sheets& sheets = points.sheets;
+  SurfacePoints::Segments& segments = points.segments;
   for (const SecondPlane& second : second_planes) points.density_weights[second.point] *= 0.5f;
   std::vector<Eigen::Vector3f> positions(points.grid.points().begin(), points.grid.points().end());
   const auto append = [&](auto& column, std::uint32_t SecondPlane::*from) {
@@ -19,7 +19,7 @@ void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints
   append(positions, &SecondPlane::point);
   points.grid = CellGrid(positions);
 
-  // A second plane has its point's columns; the normal and what concerns sheets are its owner's.
+  // A second plane has its point's columns; the normal and what concerns segments are its owner's.
   const auto add = [&](auto& column, std::uint32_t SecondPlane::*from) {
     append(column, from);
     if (!column.empty()) column = in_grid_order(points.grid, column);
@@ -30,8 +30,8 @@ void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints
   add(points.materials, &SecondPlane::point);
   add(points.colors, &SecondPlane::point);
   add(points.normals, &SecondPlane::owner);
-  add(sheets.sheet, &SecondPlane::owner);
-  add(sheets.residual, &SecondPlane::owner);
+  add(segments.segment, &SecondPlane::owner);
+  add(segments.residual, &SecondPlane::owner);
 }
 
 void refine_second_planes(Surfels& surfels) {

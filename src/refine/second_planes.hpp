@@ -1,4 +1,4 @@
-// Puts points that lie on two sheets on both.
+// Puts points that lie on two segments on both.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// Puts points that lie on two sheets on both, with half their weight each: a sheet that lacks the
-/// points of its crease would give way there. Indexes the points again.
+/// Puts points that lie on two segments on both, with half their weight each: a segment that lacks
+/// the points of its crease would give way there. Indexes the points again.
 void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints& points);
 
 /// add_second_planes() of the surfels.

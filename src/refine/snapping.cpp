@@ -8,8 +8,8 @@
 
 #include "geometry/parallel.hpp"
 #include "prepare/plane_fits.hpp"
-#include "prepare/sheet_fit.hpp"
-#include "refine/sheets.hpp"
+#include "prepare/segment_fit.hpp"
+#include "refine/segments.hpp"
 
 namespace palpate {
 namespace {
@@ -39,13 +39,13 @@ constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 struct Refit {
   std::vector<std::uint32_t> near;
   std::vector<std::uint32_t> some;
-  SheetFitter fitter;
+  SegmentFitter fitter;
 };
 
-/// Finds a plane for each point that its own fit does not put on a sheet.
+/// Finds a plane for each point that its own fit does not put on a segment.
 class Snapping {
  public:
-  Snapping(const SheetInput& input, PointFits& own)
+  Snapping(const SegmentInput& input, PointFits& own)
       : input_(input), own_(own), confident_(input.grid.size()) {
     detail::parallel_ranges(confident_.size(), 512, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) confident_[i] = is_confident(i) ? 1 : 0;
@@ -130,7 +130,7 @@ class Snapping {
     return found;
   }
 
-  /// Fits a plane to the unassigned points around, then a sheet to all uncertain ones that lie on
+  /// Fits a plane to the unassigned points around, then a segment to all uncertain ones that lie on
   /// it.
   bool fit_again(std::uint32_t i, Refit& refit) {
     const auto radius = static_cast<double>(input_.radii[i]);
@@ -145,13 +145,13 @@ class Snapping {
       std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
       return refit.fitter.fit(input_.grid, p, refit.some, static_cast<double>(reach), 0, 0);
     };
-    SheetFit fit = fit_to([this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
+    SegmentFit fit = fit_to([this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
     if (!fit.is_smooth(radius, noise)) return false;
     const Vector3f normal = fit.normal.cast<float>();
     fit = fit_to([&](std::uint32_t j) {
       return std::abs(normal.dot(input_.grid.points()[j] - p)) <= kSnapSlope * input_.radii[i];
     });
-    if (!fit.is_sheet(radius, noise)) return false;
+    if (!fit.is_segment(radius, noise)) return false;
     take_fit(fit, i, own_);
     own_.others[i] = 1;
     return true;
@@ -273,7 +273,7 @@ class Snapping {
     return owner;
   }
 
-  const SheetInput& input_;
+  const SegmentInput& input_;
   PointFits& own_;
   std::vector<std::uint8_t> confident_;
   CellGrid confident_grid_;
@@ -284,14 +284,14 @@ class Snapping {
 
 }  // namespace
 
-float fitted_curvature(const SheetInput& input, const PointFits& own, std::uint32_t i) {
+float fitted_curvature(const SegmentInput& input, const PointFits& own, std::uint32_t i) {
   const float reach = kNormalsReach * input.radii[i];
   const float square =
       own.residuals[i] * own.residuals[i] - own.quadric_residuals[i] * own.quadric_residuals[i];
   return std::sqrt(48 * std::max(square, 0.f)) / (reach * reach);
 }
 
-Snapped snap_to_planes(const SheetInput& input, PointFits& own) {
+Snapped snap_to_planes(const SegmentInput& input, PointFits& own) {
   Snapping snapping(input, own);
   snapping.run();
   return std::move(snapping).finish();

@@ -22,7 +22,7 @@ void PatchCache::set_layers(std::span<const ActiveLayer> layers, int sources, bo
 }
 
 void PatchCache::set_tool(const Vector3d& proxy) noexcept {
-  constexpr double kMoved = 0.15;  // R after which sheets further on come into view
+  constexpr double kMoved = 0.15;  // R after which segments further on come into view
   // A proxy that has been moved since its step touches nothing.
   tool_ = step_.last.proxy == proxy ? step_.last : Stance{proxy, Vector3d::Zero()};
   const double moved = (tool_.proxy - faced_.proxy).norm();

@@ -30,8 +30,8 @@ namespace palpate {
 /// How wide supports have to be for the surfaces of sources that disagree to be one.
 ///
 /// Heights of sources unite where the supports of both reach (united_shift()). Further apart
-/// than that there is a gap between two sheets, into which a proxy slips where one of them ends. So
-/// where two surfaces of a scene lie up to 1.5 R apart, no R of either is below 2.5 times that
+/// than that there is a gap between two surfaces, into which a proxy slips where one of them ends.
+/// So where two surfaces of a scene lie up to 1.5 R apart, no R of either is below 2.5 times that
 /// distance. What lies further apart stays two.
 class Seams {
  public:

@@ -15,15 +15,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts all points on the first of these sheets, whose parts know no side.
-void put_on_sheets(SurfacePoints& points, std::vector<std::uint32_t> parts) {
-  points.sheets = {.sheet = std::vector<std::uint32_t>(points.size(), 0),
-                   .part = std::move(parts),
-                   .known = {0},
-                   .residual = std::vector<float>(points.size(), 0)};
+/// Puts all points on the first of these segments, whose parts know no side.
+void put_on_segments(SurfacePoints& points, std::vector<std::uint32_t> parts) {
+  points.segments = {.segment = std::vector<std::uint32_t>(points.size(), 0),
+                     .part = std::move(parts),
+                     .known = {0},
+                     .residual = std::vector<float>(points.size(), 0)};
 }
 
-/// A plane at the height z as preparation makes it, m: one sheet, whose normals point this way.
+/// A plane at the height z as preparation makes it, m: one segment, whose normals point this way.
 std::unique_ptr<SurfacePoints> sheet_at(double z, double sign) {
   std::vector<test::TestPoint> plane;
   for (int i = -10; i <= 10; ++i) {
@@ -32,7 +32,7 @@ std::unique_ptr<SurfacePoints> sheet_at(double z, double sign) {
     }
   }
   auto points = std::make_unique<SurfacePoints>(test::make_points(plane));
-  put_on_sheets(*points, {0});
+  put_on_segments(*points, {0});
   return points;
 }
 
@@ -56,10 +56,11 @@ TEST(Facing, ASurfaceThatRisesFromCloudToCloudKeepsItsSide) {
 TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
   std::unique_ptr<SurfacePoints> seen = sheet_at(0, 1);
   seen->eye.emplace(SurfaceEye{{0, 0, 1}, {}});
-  seen->sheets.part = {0, 1};
-  seen->sheets.known = {1, 0};
+  seen->segments.part = {0, 1};
+  seen->segments.known = {1, 0};
   for (std::size_t i = 0; i < seen->size(); ++i) {
-    seen->sheets.sheet[i] = seen->grid.points()[i].x() > 0 ? 1 : 0;  // 1: of a side nobody knows
+    seen->segments.segment[i] =
+        seen->grid.points()[i].x() > 0 ? 1 : 0;  // 1: of a side nobody knows
   }
   const std::vector<ActiveLayer> layers = {{.points = seen.get()}};
   Patch patch(2048);
@@ -134,9 +135,9 @@ TEST(Facing, WhatAToolBeginsToTouchTurnsItsFlanksOutward) {
     }
   }
   SurfacePoints points = test::make_points(flanks);
-  put_on_sheets(points, {0, 0});
+  put_on_segments(points, {0, 0});
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points.sheets.sheet[i] = points.normals[i].x() > 0 ? 1 : 0;
+    points.segments.segment[i] = points.normals[i].x() > 0 ? 1 : 0;
   }
   Patch patch(2048);
   const auto outward = [&](const Stance& stance) {
@@ -164,9 +165,9 @@ std::unique_ptr<SurfacePoints> face_over_wall(double end) {
     }
   }
   auto points = std::make_unique<SurfacePoints>(test::make_points(all));
-  put_on_sheets(*points, {0, 0});
+  put_on_segments(*points, {0, 0});
   for (std::size_t i = 0; i < points->size(); ++i) {
-    points->sheets.sheet[i] = points->grid.points()[i].z() < -1e-3F ? 1 : 0;
+    points->segments.segment[i] = points->grid.points()[i].z() < -1e-3F ? 1 : 0;
   }
   return points;
 }

@@ -32,9 +32,9 @@ class RunningTogether {
       all.push_back(p);
     }
     points_ = make_points(all);
-    points_.sheets = {{}, {0, 0}, {0}, std::vector<float>(all.size(), 0.f)};
+    points_.segments = {{}, {0, 0}, {0}, std::vector<float>(all.size(), 0.f)};
     for (const std::uint32_t i : points_.grid.order()) {
-      points_.sheets.sheet.push_back(i < upper ? 0 : 1);
+      points_.segments.segment.push_back(i < upper ? 0 : 1);
     }
     const Stance stance{{2e-3, 0, 0.5 * kThinSupport}};
     patch_.gather(std::vector<ActiveLayer>{{&points_}}, 1, Vector3d::Zero(), 30e-3,

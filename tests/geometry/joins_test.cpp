@@ -38,10 +38,10 @@ struct Results {
 
 // Looks within 0.5 for points at least 0.1 above or below the plane, 0.3 aside, or of odd numbers.
 simd::Eyes eyes_at(const CellGrid& grid, const simd::Join& join,
-                   const std::vector<std::uint32_t>& sheets) {
+                   const std::vector<std::uint32_t>& segments) {
   simd::Eyes eyes = {};
   eyes.squared_slope = 0.25f;
-  eyes.sheets = sheets.data();
+  eyes.segments = segments.data();
   for (std::size_t q = 0; q < join.count; ++q) {
     const Vector3f normal = grid.points()[join.query + q].normalized();
     for (Eigen::Index axis = 0; axis < 3; ++axis) eyes.normal[axis][q] = normal[axis];
@@ -49,15 +49,15 @@ simd::Eyes eyes_at(const CellGrid& grid, const simd::Join& join,
     eyes.least[q] = 0.1f;
     eyes.squared_tube[q] = 0.09f;
     eyes.squared_vote[q] = q % 2 == 0 ? 0.01f : -1.f;
-    eyes.sheet[q] = sheets[join.query + q];
+    eyes.segment[q] = segments[join.query + q];
   }
   return eyes;
 }
 
-std::vector<std::uint32_t> two_sheets(std::size_t count) {
-  std::vector<std::uint32_t> sheets(count);
-  for (std::uint32_t i = 0; i < count; ++i) sheets[i] = i % 3 == 0 ? 1 : 0;
-  return sheets;
+std::vector<std::uint32_t> two_segments(std::size_t count) {
+  std::vector<std::uint32_t> segments(count);
+  for (std::uint32_t i = 0; i < count; ++i) segments[i] = i % 3 == 0 ? 1 : 0;
+  return segments;
 }
 
 Results run(const simd::JoinFunctions& joins, const simd::Join& join, const std::vector<float>& a,
@@ -84,12 +84,12 @@ TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
   std::vector<float> b = a;
   for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
   for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
-  const std::vector<std::uint32_t> sheets = two_sheets(grid.size());
+  const std::vector<std::uint32_t> segments = two_segments(grid.size());
   detail::for_each_neighborhood(
       grid, {.of_points = a, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         const simd::Join join = detail::make_join(grid, first, count, runs);
-        const simd::Eyes eyes = eyes_at(grid, join, sheets);
+        const simd::Eyes eyes = eyes_at(grid, join, segments);
         const Results old = run(simd::kJoinsBaseline, join, a, b, eyes);
         const Results now = run(simd::kJoinsV3, join, a, b, eyes);
         EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
@@ -126,16 +126,16 @@ TEST(Joins, FindAllHitsInRisingOrder) {
       });
 }
 
-TEST(Joins, FindWhatIsOffAPlaneOrOnAnotherSheet) {
+TEST(Joins, FindWhatIsOffAPlaneOrOnAnotherSegment) {
   Clouds clouds;
   const CellGrid grid(clouds.sphere(1003, 0.5));
-  const std::vector<std::uint32_t> sheets = two_sheets(grid.size());
+  const std::vector<std::uint32_t> segments = two_segments(grid.size());
   const std::vector<float> reach(grid.size(), 0.5f);
   detail::for_each_neighborhood(
       grid, {.of_points = reach, .times = 1, .of_cells = {}},
       [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
         const simd::Join join = detail::make_join(grid, first, count, runs);
-        const simd::Eyes eyes = eyes_at(grid, join, sheets);
+        const simd::Eyes eyes = eyes_at(grid, join, segments);
         std::vector<simd::Hit> hits(grid.size() + 1);
         std::vector<std::uint32_t> found(grid.size());
         const std::size_t n = simd::best_joins().apart(join, eyes, hits.data());
@@ -149,7 +149,7 @@ TEST(Joins, FindWhatIsOffAPlaneOrOnAnotherSheet) {
             const bool off =
                 std::abs(height) > 0.1f && aside <= 0.09f && height * height >= 0.25f * aside;
             const bool other =
-                q % 2 == 0 && way.squaredNorm() <= 0.01f && sheets[j] != sheets[first + q];
+                q % 2 == 0 && way.squaredNorm() <= 0.01f && segments[j] != segments[first + q];
             const bool near = detail::squared_distance(grid.points()[j], p) <= 0.25f;
             EXPECT_EQ((found[j] >> q & 1) != 0, near && (off || other));
           }

@@ -66,12 +66,12 @@ struct PlaceOrder {
 };
 using Places = std::multimap<Vector3f, std::uint32_t, PlaceOrder>;
 
-/// Are all columns of the points equal, but for the numbers of sheets?
+/// Are all columns of the points equal, but for the numbers of segments?
 bool same_columns(const SurfacePoints& a, std::uint32_t i, const SurfacePoints& b,
                   std::uint32_t k) {
   return a.normals[i] == b.normals[k] && a.density_weights[i] == b.density_weights[k] &&
          a.radii[i] == b.radii[k] && a.confidences[i] == b.confidences[k] &&
-         a.sheets.residual[i] == b.sheets.residual[k];
+         a.segments.residual[i] == b.segments.residual[k];
 }
 
 /// The tight box of all points, m.

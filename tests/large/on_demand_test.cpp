@@ -113,7 +113,7 @@ TEST(OnDemand, BecomesTheWhole) {
   EXPECT_EQ(some.normals, all.normals);
   EXPECT_EQ(some.radii, all.radii);
   EXPECT_EQ(some.density_weights, all.density_weights);
-  EXPECT_EQ(some.sheets.sheet, all.sheets.sheet);
+  EXPECT_EQ(some.segments.segment, all.segments.segment);
   EXPECT_EQ(hills.part.source->report().points_out, hills.whole.source(0).report().points_out);
   SceneField field(hills.part.scene);
   const Contact contact = press(field, {0.05, 0.05, height(0.05, 0.05)}, 2e-3, 1);

@@ -10,7 +10,7 @@
 
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/radii.hpp"
-#include "prepare/sheet_fit.hpp"
+#include "prepare/segment_fit.hpp"
 #include "prepare/weights.hpp"
 
 namespace palpate {
@@ -46,22 +46,22 @@ std::vector<Vector3f> sheet(int side, double sigma, int blur = 0, float curvatur
   return points;
 }
 
-TEST(SheetFit, SeesNoNoiseInACurvedSurface) {
+TEST(SegmentFit, SeesNoNoiseInACurvedSurface) {
   const CellGrid grid(sheet(40, 0, 0, 15));
-  SheetFitter fitter;
-  const SheetFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012, kSpacing);
+  SegmentFitter fitter;
+  const SegmentFit fit = fitter.fit(grid, Vector3f::Zero(), 0.012, kSpacing);
   EXPECT_NEAR(fit.footprint, kSpacing, 0.1 * kSpacing);
   EXPECT_LT(fit.quadric_residual, 1e-5);
 }
 
-TEST(SheetFit, IsOfOneFaceOfAPlate) {
+TEST(SegmentFit, IsOfOneFaceOfAPlate) {
   for (const float thickness : {0.6f, 1.0f, 3.0f}) {
     std::vector<Vector3f> points = sheet(40, 0);
     for (std::size_t i = 0, count = points.size(); i < count; ++i) {
       points.push_back(points[i] + Vector3f(0.3f, 0.4f, -thickness) * kSpacing);
     }
-    SheetFitter fitter;
-    const SheetFit fit =
+    SegmentFitter fitter;
+    const SegmentFit fit =
         fitter.fit(CellGrid(points), Vector3f::Zero(), 3 * static_cast<double>(kSpacing), kSpacing);
     EXPECT_GT(std::abs(fit.normal.z()), 0.9999) << thickness;
     EXPECT_LT(fit.residual, 1e-6) << thickness;
@@ -69,15 +69,15 @@ TEST(SheetFit, IsOfOneFaceOfAPlate) {
   }
 }
 
-TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
+TEST(SegmentFit, MeasuresWhiteNoiseWithoutBias) {
   const CellGrid grid(sheet(80, 0.001));
-  SheetFitter fitter;
+  SegmentFitter fitter;
   double variance = 0;
   double shared = 0;
   for (int i = 0; i < 49; ++i) {
     const Vector3f at(0.015f * static_cast<float>(i % 7 - 3),
                       0.015f * static_cast<float>(i / 7 - 3), 0);
-    const SheetFit fit = fitter.fit(grid, at, 0.03, kSpacing);
+    const SegmentFit fit = fitter.fit(grid, at, 0.03, kSpacing);
     variance += fit.quadric_residual * fit.quadric_residual / 49;
     shared +=
         fitter.tile_variance(0.03, 0.008) / (fit.quadric_residual * fit.quadric_residual) / 49;
@@ -86,23 +86,23 @@ TEST(SheetFit, MeasuresWhiteNoiseWithoutBias) {
   EXPECT_NEAR(shared, 1, 0.2);
 }
 
-TEST(SheetFit, LooksAtAScanThatAnOutlierSeesAsAWholeByASample) {
+TEST(SegmentFit, LooksAtAScanThatAnOutlierSeesAsAWholeByASample) {
   const CellGrid grid(sheet(300, 0));
-  SheetFitter fitter;
-  const SheetFit fit = fitter.fit(grid, Vector3f(0, 0, 1), 3, 0.5);
-  EXPECT_LE(fit.points, SheetFitter::kMostPoints);
-  EXPECT_GT(fit.points, SheetFitter::kMostPoints / 2);
+  SegmentFitter fitter;
+  const SegmentFit fit = fitter.fit(grid, Vector3f(0, 0, 1), 3, 0.5);
+  EXPECT_LE(fit.points, SegmentFitter::kMostPoints);
+  EXPECT_GT(fit.points, SegmentFitter::kMostPoints / 2);
   EXPECT_NEAR(fit.off, 1, 1e-6);
 }
 
-TEST(SheetFit, StaysFiniteOnDegeneratePoints) {
-  SheetFitter fitter;
+TEST(SegmentFit, StaysFiniteOnDegeneratePoints) {
+  SegmentFitter fitter;
   const std::vector<Vector3f> same(30, Vector3f(1, 2, 3));
-  const SheetFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.01, 0.02);
+  const SegmentFit point = fitter.fit(CellGrid(same), Vector3f(1, 2, 3), 0.1, 0.01, 0.02);
   EXPECT_EQ(point.quadric_residual, 0);
   std::vector<Vector3f> line;
   for (int i = 0; i < 30; ++i) line.emplace_back(0.01f * static_cast<float>(i), 0, 0);
-  const SheetFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.01, 0.02);
+  const SegmentFit fit = fitter.fit(CellGrid(line), Vector3f(0.15f, 0, 0), 0.2, 0.01, 0.02);
   EXPECT_TRUE(std::isfinite(fit.quadric_residual) &&
               std::isfinite(fitter.tile_variance(0.2, 0.02)));
   EXPECT_LT(fit.quadric_residual, 1e-6);

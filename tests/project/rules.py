@@ -47,10 +47,10 @@ FLOORS = CORE | {
 # The files of two floors from the first step on: what stands in one line sees what stands above it.
 STEPS = {
     "prepare": [{"description", "stopwatch", "point_fits", "places", "height_groups"},
-                {"given_normals", "lines", "sheet_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
+                {"given_normals", "lines", "segment_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
-    "refine": [{"cluster_edges", "holes"}, {"sheet_clusters", "cannot_link_sets"}, {"outliers"}, {"gaps"}, {"sheets"},
-               {"snapping"}, {"grow_sheets", "look_around"}, {"second_planes"}, {"refinements"}],
+    "refine": [{"cluster_edges", "holes"}, {"segment_clusters", "cannot_link_sets"}, {"outliers"}, {"gaps"}, {"segments"},
+               {"snapping"}, {"grow_segments", "look_around"}, {"second_planes"}, {"refinements"}],
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.
 ROOMS = [{"align", "bag", "devices", "doctor", "info", "paper", "replay", "tile", "touch",

@@ -40,7 +40,7 @@ class Rules(unittest.TestCase):
                            {"src/contact/a.cpp": '#include "palpate/field/kernel.hpp"\n'})), 1)
 
     def test_the_core_sees_no_floor_beside_it(self):
-        for beside in ("refine/sheets", "stream/morph", "large/blocks", "sight/sight", "depth/input",
+        for beside in ("refine/segments", "stream/morph", "large/blocks", "sight/sight", "depth/input",
                        "extras/splats/splat_shell"):
             files = {"src/prepare/a.cpp": f'#include "{beside}.hpp"\n'}
             self.assertEqual(len(self.found(rules.floors, files)), 1, beside)

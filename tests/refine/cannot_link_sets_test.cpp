@@ -1,4 +1,4 @@
-// Points that lie over each other do not become one sheet through an edge.
+// Points that lie over each other do not become one segment through an edge.
 #include "refine/cannot_link_sets.hpp"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-// Points a spacing of 1 apart with the plane of each, as sheets are made of them.
+// Points a spacing of 1 apart with the plane of each, as segments are made of them.
 #pragma once
 
 #include <vector>
 
 #include "prepare/plane_fits.hpp"
-#include "refine/sheets.hpp"
+#include "refine/segments.hpp"
 
 namespace palpate::test {
 
@@ -18,7 +18,7 @@ struct Fitted {
         noise(points.size(), 0.f),
         own(fit_points(grid, spacings, radii, noise)) {}
 
-  [[nodiscard]] SheetInput input() const { return {grid, spacings, radii, noise}; }
+  [[nodiscard]] SegmentInput input() const { return {grid, spacings, radii, noise}; }
 
   CellGrid grid;
   std::vector<float> spacings;

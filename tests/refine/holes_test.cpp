@@ -70,7 +70,7 @@ TEST(HoleFinder, LooksAsFarAsItIsAsked) {
   EXPECT_EQ(beside(one, 1, 0, 1.1f), 0);
 }
 
-TEST(HoleFinder, PassesOverOtherSheets) {
+TEST(HoleFinder, PassesOverOtherSegments) {
   std::vector<Vector3f> points;
   for (int i = -kAcross; i <= kAcross; ++i) {
     for (int j = -kAcross; j <= kAcross; ++j) {

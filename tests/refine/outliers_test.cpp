@@ -65,7 +65,7 @@ class Outliers : public testing::Test {
     std::pair<int, int> counts{0, 0};
     for (std::size_t i = 0; i < prepared.size(); ++i) {
       if (prepared.density_weights[i] > 0) continue;
-      // A point on two sheets is there twice, so order() does not tell which it was.
+      // A point on two segments is there twice, so order() does not tell which it was.
       const double height =
           prepared.origin.z() + static_cast<double>(prepared.grid.points()[i].z());
       ++(std::abs(height) < 0.5 * kGridSpacing ? counts.first : counts.second);
@@ -137,7 +137,7 @@ TEST_F(Outliers, AreClustersFarFromTheRest) {
   EXPECT_EQ(count(), std::pair(0, 5));
 }
 
-// The sheet's points are their nearest, so they are outliers among what is on no sheet alone.
+// The sheet's points are their nearest, so they are outliers among what is on no segment alone.
 TEST_F(Outliers, BesideASheetWeighNothing) {
   scatter(300, 3, 1.3f, 4);
   const auto [own, others] = count_weightless();

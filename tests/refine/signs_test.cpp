@@ -24,14 +24,15 @@ using Eigen::Vector3f;
 using test::Clouds;
 using test::Points;
 
-/// Share of the points on sheets whose normal is on the side of outward(point).
+/// Share of the points on segments whose normal is on the side of outward(point).
 template <class Outward>
 double share_right(const SurfacePoints& points, const Outward& outward) {
   double right = 0;
   double all = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f direction = outward(points.grid.points()[i]);
-    if (points.sheets.sheet[i] == SurfacePoints::Sheets::kNone || direction.isZero(0)) continue;
+    if (points.segments.segment[i] == SurfacePoints::Segments::kNone || direction.isZero(0))
+      continue;
     ++all;
     if (points.normals[i].dot(direction) > 0) ++right;
   }
@@ -147,7 +148,7 @@ TEST(GivenSigns, CountsWhatIsThere) {
   EXPECT_EQ(share_given(normals), 0.5);
 }
 
-TEST(GivenSigns, MissingOnesFollowTheirSheet) {
+TEST(GivenSigns, MissingOnesFollowTheirSegment) {
   PointCloud cloud = inward_sphere();
   EXPECT_EQ(share_outward(cloud), 0);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -216,8 +217,8 @@ TEST(Signs, DoNotDependOnTheNumberOfThreads) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const SurfacePoints few = prepared(points);
   EXPECT_EQ(many.normals, few.normals);
-  EXPECT_EQ(many.sheets.sheet, few.sheets.sheet);
-  EXPECT_EQ(many.sheets.part, few.sheets.part);
+  EXPECT_EQ(many.segments.segment, few.segments.segment);
+  EXPECT_EQ(many.segments.part, few.segments.part);
 }
 
 /// Vertices and, from the faces, their outward directions.

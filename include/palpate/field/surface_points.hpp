@@ -46,17 +46,18 @@ struct SurfacePoints {
     std::vector<EdgePlane> end;
   };
 
-  /// Smooth pieces of surface, as preparation found them. Columns are in sorted order and all as
-  /// long as the grid, or all empty: then the points are one sheet, whose normals' signs agree.
-  struct Sheets {
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no sheet: above every index
+  /// Smooth segments of the surface, as preparation found them. Columns are in sorted order and all
+  /// as long as the grid, or all empty: then the points are one segment, whose normals' signs
+  /// agree.
+  struct Segments {
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no segment: above every index
 
-    std::vector<std::uint32_t> sheet;  ///< of each point; kNone: on none, and without confidence
-    std::vector<std::uint32_t> part;   ///< of each sheet: normals of one part agree in their signs
-    std::vector<std::uint8_t> known;   ///< of each part: 1: its normals are known to point outward
-    std::vector<float> residual;       ///< rms distance of the sheet's points from their plane, m
+    std::vector<std::uint32_t> segment;  ///< of each point; kNone: on none, and without confidence
+    std::vector<std::uint32_t> part;  ///< of each segment: normals of one part agree in their signs
+    std::vector<std::uint8_t> known;  ///< of each part: 1: its normals are known to point outward
+    std::vector<float> residual;      ///< rms distance of the segment's points from their plane, m
 
-    [[nodiscard]] bool empty() const { return sheet.empty(); }
+    [[nodiscard]] bool empty() const { return segment.empty(); }
   };
 
   Eigen::Vector3d origin =
@@ -66,7 +67,7 @@ struct SurfacePoints {
   std::vector<float> density_weights;    ///< a_i of docs/method.md 2.2
   std::vector<float> radii;              ///< R_i, m
   std::vector<float> confidences;        ///< c_i, 0-1
-  Sheets sheets;
+  Segments segments;
   std::vector<float> materials;  ///< 0-1; empty: all 1
   std::vector<float> presences;  ///< 0-1: the sensor's confidence in this point. Empty: all 1
   /// Red, green, blue, for those who draw; empty: not known.
@@ -82,7 +83,7 @@ struct SurfacePoints {
   Edges edges;
 
   /// What saw all of it, from the side that its normals point to: it holds towards that eye alone.
-  /// Of sheets, those of known parts. None: it holds from every side.
+  /// Of segments, those of known parts. None: it holds from every side.
   std::optional<SurfaceEye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for

@@ -17,7 +17,7 @@ namespace palpate {
 
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
-  /// What tells the signs of normals. They help sheets to form parts whose signs agree; the free
+  /// What tells the signs of normals. They help segments to form parts whose signs agree; the free
   /// side of each is the one that the tool comes from. Parts that nothing is known of point
   /// outward.
   enum class Orientation {
@@ -77,8 +77,8 @@ struct Prepared {
   Report report;
 };
 
-/// Filters and indexes a cloud, finds its sheets and places it in the world. Runs on every core;
-/// the result does not depend on their number.
+/// Filters and indexes a cloud, finds its smooth segments and places it in the world. Runs on every
+/// core; the result does not depend on their number.
 /// @throws Error when no point is left, an option makes no sense, a point is not finite, a column
 /// is neither empty nor as long as the points, or the pose is not rigid.
 [[nodiscard]] Prepared prepare(

@@ -10,7 +10,7 @@ namespace palpate::simd {
 constexpr int kLanes = 4;       // doubles in 256 bits: points summed side by side on every level
 constexpr int kMaxSources = 8;  // sensors and clouds of one scene; judgement, sets the size of Sums
 
-constexpr int kLabels = 3;                       // derived: the Labels of field/sheet_view.hpp
+constexpr int kLabels = 3;                       // derived: the Labels of field/segment_view.hpp
 constexpr int kMaxRuns = kLabels * kMaxSources;  // derived: one run for each label of each source
 
 // A patch in columns, relative to its centre: label by label, and within a label source by source.

@@ -63,16 +63,16 @@ struct Hit {
   std::uint32_t queries;
 };
 
-/// What each point that is asked about looks for: points beside its sheet.
+/// What each point that is asked about looks for: points beside its segment.
 struct Eyes {
   Row normal[3];        ///< x, y, z, unit
   Row squared_reach;    ///< of all that is looked for, m^2
   Row least;            ///< a point off the plane: its height is above this, m, ...
   Row squared_tube;     ///< ... its way to the side at most the root of this, m^2, ...
   float squared_slope;  ///< ... and its height over that way at least the root of this
-  Row squared_vote;     ///< of points of other sheets, m^2; below 0: none is looked for
-  std::uint32_t sheet[kQueries];
-  const std::uint32_t* sheets;  ///< of all points
+  Row squared_vote;     ///< of points of other segments, m^2; below 0: none is looked for
+  std::uint32_t segment[kQueries];
+  const std::uint32_t* segments;  ///< of all points
 };
 
 struct JoinFunctions {
@@ -86,7 +86,7 @@ struct JoinFunctions {
   /// has room for all candidates and one more; returns how many there are.
   std::size_t (*within)(const Join& join, const float* squared_radii, Hit* hits);
 
-  /// The same for candidates off a point's plane or on other sheets than it.
+  /// The same for candidates off a point's plane or on other segments than it.
   std::size_t (*apart)(const Join& join, const Eyes& eyes, Hit* hits);
 
   /// The moments of all candidates within squared_radii[l], m^2, of the point query + l.

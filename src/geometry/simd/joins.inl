@@ -118,10 +118,10 @@ struct Joins {
       const Mask off = ((height < 0.f ? -height : height) > load(eyes.least + q)) &
                        (aside <= load(eyes.squared_tube + q)) &
                        (level >= eyes.squared_slope * aside);
-      Mask sheet;
-      std::memcpy(&sheet, eyes.sheet + q, sizeof sheet);
+      Mask segment;
+      std::memcpy(&segment, eyes.segment + q, sizeof segment);
       const Mask other = (squared <= load(eyes.squared_vote + q)) &
-                         (sheet != same(static_cast<std::int32_t>(eyes.sheets[c])));
+                         (segment != same(static_cast<std::int32_t>(eyes.segments[c])));
       return (d.squared() <= load(eyes.squared_reach + q)) & (off | other);
     });
   }

@@ -1,5 +1,5 @@
-// Which points make one sheet, what sheets say of each other, which points lie on two of them.
-#include "refine/sheets.hpp"
+// Which points make one segment, how segments vote on each other, which points lie on two of them.
+#include "refine/segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,10 +32,10 @@ std::vector<Vector3f> both(std::vector<Vector3f> points, const std::vector<Vecto
   return points;
 }
 
-TEST(Growth, OfAFloorAndAWallMakesTwoSheets) {
+TEST(Growth, OfAFloorAndAWallMakesTwoSegments) {
   Fitted fitted(floor_and_wall(15));
-  const Growths grown = grow_sheets(fitted.input(), fitted.own);
-  ASSERT_EQ(grown.sheets.part.size(), 2u);
+  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  ASSERT_EQ(grown.segments.part.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const Vector3f& p = fitted.grid.points()[i];
     if (p.x() < 1.5f && p.z() < 1.5f) continue;  // beside the crease: on either
@@ -63,7 +63,7 @@ std::vector<Vector3f> band_with_half_twist(int length, int twist) {
 }
 
 // No signs agree all around such a band.
-TEST(Growth, LetsSignsPartWhereASheetTurnsTheMost) {
+TEST(Growth, LetsSignsPartWhereASegmentTurnsTheMost) {
   constexpr int kLength = 400;
   constexpr int kTwist = 20;
   PointCloud cloud;
@@ -82,17 +82,17 @@ TEST(Growth, LetsSignsPartWhereASheetTurnsTheMost) {
   EXPECT_TRUE(up == 0 || up == all) << up << " of " << all;
 }
 
-TEST(Growth, OfASphereMakesOneSheetWhoseNormalsAgree) {
+TEST(Growth, OfASphereMakesOneSegmentWhoseNormalsAgree) {
   Fitted fitted(test::Clouds(2).sphere(3000, 15));
-  const Growths grown = grow_sheets(fitted.input(), fitted.own);
-  ASSERT_EQ(grown.sheets.part.size(), 1u);
+  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  ASSERT_EQ(grown.segments.part.size(), 1u);
   const float sign = fitted.own.normals[0].dot(fitted.grid.points()[0]) < 0 ? -1.f : 1.f;
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     EXPECT_GT(sign * fitted.own.normals[i].dot(fitted.grid.points()[i].normalized()), 0.9f);
   }
 }
 
-TEST(Growth, LeavesASheetOfFewPointsATenthOfItsConfidence) {
+TEST(Growth, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
   std::vector<Vector3f> few = {{50, 0, 0}};
   for (int k = 0; k < 6; ++k) {
     const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3;
@@ -100,8 +100,8 @@ TEST(Growth, LeavesASheetOfFewPointsATenthOfItsConfidence) {
   }
   Fitted fitted(both(plane(12), few));
   const std::vector<float> before = fitted.own.confidences;
-  const Growths grown = grow_sheets(fitted.input(), fitted.own);
-  EXPECT_EQ(grown.sheets.part.size(), 2u);
+  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  EXPECT_EQ(grown.segments.part.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const float share = fitted.grid.points()[i].x() > 40 ? 0.1f : 1.f;
     EXPECT_FLOAT_EQ(fitted.own.confidences[i], share * before[i]);
@@ -111,17 +111,17 @@ TEST(Growth, LeavesASheetOfFewPointsATenthOfItsConfidence) {
 TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
   for (const float turned : {1.f, -1.f}) {
     Fitted fitted(floor_and_wall(15));
-    Growths grown = grow_sheets(fitted.input(), fitted.own);
+    Growths grown = grow_segments(fitted.input(), fitted.own);
     for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
       Vector3f& n = fitted.own.normals[i];
       const bool wall = std::abs(n.x()) > 0.9f;
       n = wall ? Vector3f(turned, 0, 0) : Vector3f::UnitZ();
     }
-    const std::vector<SheetVote> votes = look_around(fitted.input(), fitted.own, {}, grown);
+    const std::vector<SegmentVote> votes = look_around(fitted.input(), fitted.own, {}, grown);
     ASSERT_FALSE(votes.empty());
     float sum = 0;
     float squares = 0;
-    for (const SheetVote& vote : votes) {
+    for (const SegmentVote& vote : votes) {
       EXPECT_EQ(std::pair(vote.a, vote.b), std::pair(0u, 1u));
       sum += vote.value * std::abs(vote.value);
       squares += vote.value * vote.value;
@@ -132,14 +132,14 @@ TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
 
 TEST(Votes, AreNotHeardAcrossMoreThanR) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 3.5f})));
-  Growths grown = grow_sheets(fitted.input(), fitted.own);
-  EXPECT_EQ(grown.sheets.part.size(), 2u);
+  Growths grown = grow_segments(fitted.input(), fitted.own);
+  EXPECT_EQ(grown.segments.part.size(), 2u);
   EXPECT_TRUE(look_around(fitted.input(), fitted.own, {}, grown).empty());
 }
 
-TEST(LookAround, TellsWhatAnotherSheetHides) {
+TEST(LookAround, TellsWhatAnotherSegmentHides) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 2})));
-  Growths grown = grow_sheets(fitted.input(), fitted.own);
+  Growths grown = grow_segments(fitted.input(), fitted.own);
   for (const float z : {-20.f, 20.f}) {
     (void)look_around(fitted.input(), fitted.own, Vector3f(6, 6, z), grown);
     for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
@@ -151,25 +151,25 @@ TEST(LookAround, TellsWhatAnotherSheetHides) {
 
 TEST(SecondPlanes, AreThePointsOfACreaseAndOfNothingElse) {
   Fitted fitted(floor_and_wall(15));
-  const Growths grown = grow_sheets(fitted.input(), fitted.own);
+  const Growths grown = grow_segments(fitted.input(), fitted.own);
   EXPECT_GE(grown.second_planes.size(), 15u);
   for (const SecondPlane& second : grown.second_planes) {
     const Vector3f& p = fitted.grid.points()[second.point];
     EXPECT_EQ(p.x(), 0);
     EXPECT_EQ(p.z(), 0);
-    EXPECT_NE(grown.sheets.sheet[second.point], grown.sheets.sheet[second.owner]);
+    EXPECT_NE(grown.segments.segment[second.point], grown.segments.segment[second.owner]);
   }
   Fitted flat(plane(12));
-  EXPECT_TRUE(grow_sheets(flat.input(), flat.own).second_planes.empty());
+  EXPECT_TRUE(grow_segments(flat.input(), flat.own).second_planes.empty());
 }
 
-TEST(SecondPlanes, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
+TEST(SecondPlanes, ShareTheWeightAndTakeThePlaneOfTheSecondSegment) {
   SurfacePoints points;
   points.grid = CellGrid(std::vector<Vector3f>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}});
   points.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   points.density_weights = {1, 1, 1};
   points.radii = points.confidences = {1, 1, 1};
-  points.sheets.sheet = {0, 0, 0};
+  points.segments.segment = {0, 0, 0};
   std::uint32_t corner = 0;
   std::uint32_t owner = 0;
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -177,7 +177,7 @@ TEST(SecondPlanes, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
     if (points.grid.points()[i].z() > 0) owner = i;
   }
   points.normals[owner] = {1, 0, 0};
-  points.sheets.sheet[owner] = 1;
+  points.segments.segment[owner] = 1;
   const std::vector<SecondPlane> second_planes = {{corner, owner}};
   add_second_planes(second_planes, points);
   ASSERT_EQ(points.size(), 4u);
@@ -186,7 +186,7 @@ TEST(SecondPlanes, ShareTheWeightAndTakeThePlaneOfTheSecondSheet) {
   for (std::size_t i = 0; i < 4; ++i) {
     if (!points.grid.points()[i].isZero()) continue;
     EXPECT_EQ(points.density_weights[i], 0.5f);
-    EXPECT_EQ(points.sheets.sheet[i], points.normals[i].x() > 0 ? 1u : 0u);
+    EXPECT_EQ(points.segments.segment[i], points.normals[i].x() > 0 ? 1u : 0u);
     sum += points.normals[i];
   }
   EXPECT_EQ(sum, Vector3f(1, 0, 1));

@@ -1,4 +1,4 @@
-// Signed edges between sheets, and the clusters that sheets with agreeing signs make.
+// Signed edges between segments, and the clusters that segments with agreeing signs make.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// The votes of pairs of points between two sheets, or two clusters of them, on their relative
+/// The votes of pairs of points between two segments, or two clusters of them, on their relative
 /// sign.
 struct VoteSum {
   double value = 0;    ///< sum of v |v| over the votes v
@@ -24,22 +24,22 @@ struct VoteSum {
 };
 
 struct SignedEdge {
-  std::uint32_t a = 0;  ///< sheets, a < b
+  std::uint32_t a = 0;  ///< segments, a < b
   std::uint32_t b = 0;
   VoteSum votes;
 };
 
-/// Clusters of sheets, which are joined as a whole: by the votes of all pairs between them. Two
-/// sheets may agree by chance where few points meet, such as those of a box and of the floor below
-/// it, which goes on beneath.
-class SheetClusters {
+/// Clusters of segments, which are joined as a whole: by the votes of all pairs between them. Two
+/// segments may agree by chance where few points meet, such as those of a box and of the floor
+/// below it, which goes on beneath.
+class SegmentClusters {
  public:
-  /// `edges`: one for each pair of sheets at most.
-  SheetClusters(std::span<const SignedEdge> edges, std::size_t sheets);
+  /// `edges`: one for each pair of segments at most.
+  SegmentClusters(std::span<const SignedEdge> edges, std::size_t segments);
 
-  /// The root of the sheet's cluster, its lowest sheet, and the sheet's sign relative to it.
-  [[nodiscard]] std::pair<std::uint32_t, int> find(std::uint32_t sheet) {
-    return sets_.find(sheet);
+  /// The root of the segment's cluster, its lowest segment, and the segment's sign relative to it.
+  [[nodiscard]] std::pair<std::uint32_t, int> find(std::uint32_t segment) {
+    return sets_.find(segment);
   }
 
   /// The sign of one root relative to the other by the votes between their clusters; 0: they are

@@ -1,6 +1,6 @@
-// Joins clusters of sheets along signed edges.
+// Joins clusters of segments along signed edges.
 
-#include "refine/sheet_clusters.hpp"
+#include "refine/segment_clusters.hpp"
 
 #include <cmath>
 
@@ -19,16 +19,16 @@ VoteSum& VoteSum::operator+=(const VoteSum& other) {
   return *this;
 }
 
-SheetClusters::SheetClusters(std::span<const SignedEdge> edges, std::size_t sheets)
-    : sets_(sheets), edges_(sheets) {
+SegmentClusters::SegmentClusters(std::span<const SignedEdge> edges, std::size_t segments)
+    : sets_(segments), edges_(segments) {
   for (const SignedEdge& edge : edges) edges_.add(edge.a, edge.b, edge.votes);
 }
 
-int SheetClusters::sign_between(std::uint32_t root_a, std::uint32_t root_b) const {
+int SegmentClusters::sign_between(std::uint32_t root_a, std::uint32_t root_b) const {
   return root_a == root_b ? 0 : edges_.between(root_a, root_b).sign();
 }
 
-void SheetClusters::join(std::uint32_t root_a, std::uint32_t root_b, int sign) {
+void SegmentClusters::join(std::uint32_t root_a, std::uint32_t root_b, int sign) {
   edges_.join(root_a, root_b, sign);
   sets_.join(root_a, root_b, sign);
 }

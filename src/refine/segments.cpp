@@ -1,11 +1,11 @@
-// Makes parts of sheets, within which signs agree, and turns their normals outward.
+// Makes parts of segments, within which signs agree, and turns their normals outward.
 
-#include "refine/sheets.hpp"
+#include "refine/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "refine/sheet_clusters.hpp"
+#include "refine/segment_clusters.hpp"
 
 namespace palpate {
 namespace {
@@ -17,13 +17,13 @@ using Eigen::Vector3f;
 constexpr double kCoherent = 0.5;  // three quarters agree; judgement
 constexpr double kAgree = 0.96;    // it is certain: 98 % agree; judgement
 
-constexpr double kMostHidden = 0.5;  // share of a sheet's points; judgement
+constexpr double kMostHidden = 0.5;  // share of a segment's points; judgement
 
 constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
 // Sine of the lean that gives an open part an upper side; judgement.
 constexpr double kUpright = 0.2;
 
-/// What is known from outside of which side of a sheet or part is free, relative to its normals.
+/// What is known from outside of which side of a segment or part is free, relative to its normals.
 struct Evidence {
   double signs = 0;  // sum of votes
   double all = 0;    // sum of their sizes
@@ -39,32 +39,32 @@ struct Evidence {
   }
 };
 
-/// For each sheet: given normals where nearly all agree, else what the eye sees of it.
-std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& known,
+/// For each segment: given normals where nearly all agree, else what the eye sees of it.
+std::vector<Evidence> evidence_of(const SegmentInput& input, const KnownSigns& known,
                                   const PointFits& own, const Growths& grown) {
-  const SurfacePoints::Sheets& sheets = grown.sheets;
+  const SurfacePoints::Segments& segments = grown.segments;
   struct Counts {
     double points = 0;
     double hidden = 0;
   };
-  std::vector<Evidence> given(sheets.part.size());
-  std::vector<Evidence> seen(sheets.part.size());
-  std::vector<Counts> counts(sheets.part.size());
-  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
-    const std::uint32_t sheet = sheets.sheet[i];
-    if (sheet == SurfacePoints::Sheets::kNone) continue;
-    ++counts[sheet].points;
+  std::vector<Evidence> given(segments.part.size());
+  std::vector<Evidence> seen(segments.part.size());
+  std::vector<Counts> counts(segments.part.size());
+  for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
+    const std::uint32_t segment = segments.segment[i];
+    if (segment == SurfacePoints::Segments::kNone) continue;
+    ++counts[segment].points;
     if (!known.given.empty() && known.given[i].allFinite()) {
       const float cosine = known.given[i].dot(own.normals[i]);
-      if (cosine != 0) given[sheet].add(cosine < 0 ? -1 : 1);
+      if (cosine != 0) given[segment].add(cosine < 0 ? -1 : 1);
     }
     if (known.eye) {
       const Vector3f way = *known.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(way.normalized());
       if (grown.hidden[i] != 0) {
-        ++counts[sheet].hidden;
+        ++counts[segment].hidden;
       } else {
-        seen[sheet].add(static_cast<double>(cosine));
+        seen[segment].add(static_cast<double>(cosine));
       }
     }
   }
@@ -75,8 +75,8 @@ std::vector<Evidence> evidence_of(const SheetInput& input, const KnownSigns& kno
   return seen;
 }
 
-/// The signed edges between sheets, the strongest first.
-std::vector<SignedEdge> edges_of(const std::vector<SheetVote>& votes) {
+/// The signed edges between segments, the strongest first.
+std::vector<SignedEdge> edges_of(const std::vector<SegmentVote>& votes) {
   std::vector<SignedEdge> edges;
   for (std::size_t k = 0; k < votes.size();) {
     SignedEdge edge{votes[k].a, votes[k].b, {}};
@@ -123,18 +123,18 @@ Side side_of(const PartSums& part, const Evidence& evidence, const Vector3d& cen
   return turned(part.vector.dot(center - center_of_all));
 }
 
-/// The sums of every part, its normals turned by `signs` of the sheets, and of all.
-std::vector<PartSums> sums_of_parts(const SheetInput& input, const PointFits& own,
-                                    const SurfacePoints::Sheets& sheets,
+/// The sums of every part, its normals turned by `signs` of the segments, and of all.
+std::vector<PartSums> sums_of_parts(const SegmentInput& input, const PointFits& own,
+                                    const SurfacePoints::Segments& segments,
                                     const std::vector<int>& signs, PartSums& all) {
   std::vector<PartSums> sums(signs.size());
-  for (std::uint32_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone) continue;
+  for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
+    if (segments.segment[i] == SurfacePoints::Segments::kNone) continue;
     const Vector3d p = input.grid.points()[i].cast<double>();
-    const Vector3d n = signs[sheets.sheet[i]] * own.normals[i].cast<double>();
+    const Vector3d n = signs[segments.segment[i]] * own.normals[i].cast<double>();
     const double area =
         static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
-    PartSums& part = sums[sheets.part[sheets.sheet[i]]];
+    PartSums& part = sums[segments.part[segments.segment[i]]];
     part.area += area;
     part.flux += area * n.dot(p);
     part.vector += area * n;
@@ -145,20 +145,23 @@ std::vector<PartSums> sums_of_parts(const SheetInput& input, const PointFits& ow
   return sums;
 }
 
-/// Turns the normals of whole sheets.
-void turn(const std::vector<int>& sign_of_sheet, const SurfacePoints::Sheets& sheets,
+/// Turns the normals of whole segments.
+void turn(const std::vector<int>& sign_of_segment, const SurfacePoints::Segments& segments,
           PointFits& own) {
-  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == SurfacePoints::Sheets::kNone || sign_of_sheet[sheets.sheet[i]] > 0)
+  for (std::size_t i = 0; i < segments.segment.size(); ++i) {
+    if (segments.segment[i] == SurfacePoints::Segments::kNone ||
+        sign_of_segment[segments.segment[i]] > 0)
       continue;
     own.normals[i] = -own.normals[i];
   }
 }
 
-/// Joins sheets in clusters, along the strongest edges first. An edge that contradicts the evidence
-/// of both of its sides is passed over. `evidence`: becomes that of the clusters, at their roots.
-SheetClusters join_clusters(const std::vector<SignedEdge>& edges, std::vector<Evidence>& evidence) {
-  SheetClusters clusters(edges, evidence.size());
+/// Joins segments in clusters, along the strongest edges first. An edge that contradicts the
+/// evidence of both of its sides is passed over. `evidence`: becomes that of the clusters, at their
+/// roots.
+SegmentClusters join_clusters(const std::vector<SignedEdge>& edges,
+                              std::vector<Evidence>& evidence) {
+  SegmentClusters clusters(edges, evidence.size());
   for (const SignedEdge& edge : edges) {
     const std::uint32_t root_a = clusters.find(edge.a).first;
     const std::uint32_t root_b = clusters.find(edge.b).first;
@@ -175,54 +178,55 @@ SheetClusters join_clusters(const std::vector<SignedEdge>& edges, std::vector<Ev
   return clusters;
 }
 
-/// Makes parts of clusters of sheets and turns their normals to the free side.
-void join_parts(const SheetInput& input, const std::vector<SignedEdge>& edges,
+/// Makes parts of clusters of segments and turns their normals to the free side.
+void join_parts(const SegmentInput& input, const std::vector<SignedEdge>& edges,
                 std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
-                PointFits& own, SurfacePoints::Sheets& sheets) {
-  SheetClusters clusters = join_clusters(edges, evidence);
+                PointFits& own, SurfacePoints::Segments& segments) {
+  SegmentClusters clusters = join_clusters(edges, evidence);
   std::vector<int> signs;
   std::vector<std::uint32_t> roots;  // of the parts
-  for (std::uint32_t k = 0; k < sheets.part.size(); ++k) {
+  for (std::uint32_t k = 0; k < segments.part.size(); ++k) {
     const auto [root, sign] = clusters.find(k);
     if (root == k) roots.push_back(k);
-    sheets.part[k] = root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : sheets.part[root];
+    segments.part[k] =
+        root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : segments.part[root];
     signs.push_back(sign);
   }
   PartSums all;
-  const std::vector<PartSums> sums = sums_of_parts(input, own, sheets, signs, all);
+  const std::vector<PartSums> sums = sums_of_parts(input, own, segments, signs, all);
   const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
   std::vector<Side> sides;
   for (std::uint32_t k = 0; k < roots.size(); ++k) {
     sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
-    sheets.known.push_back(sides.back().known ? 1 : 0);
+    segments.known.push_back(sides.back().known ? 1 : 0);
   }
-  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[sheets.part[k]].sign;
-  turn(signs, sheets, own);
+  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[segments.part[k]].sign;
+  turn(signs, segments, own);
 }
 
 }  // namespace
 
-SurfacePoints::Sheets make_sheets(const SheetInput& input, const KnownSigns& known, PointFits& own,
-                                  std::vector<SecondPlane>& second_planes) {
-  Growths grown = grow_sheets(input, own);
+SurfacePoints::Segments make_segments(const SegmentInput& input, const KnownSigns& known,
+                                      PointFits& own, std::vector<SecondPlane>& second_planes) {
+  Growths grown = grow_segments(input, own);
   second_planes = std::move(grown.second_planes);
-  const std::vector<SheetVote> votes = look_around(input, own, known.eye, grown);
+  const std::vector<SegmentVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
-  SurfacePoints::Sheets sheets = std::move(grown.sheets);
-  join_parts(input, edges_of(votes), evidence, known.middle, own, sheets);
-  sheets.residual = own.residuals;
-  return sheets;
+  SurfacePoints::Segments segments = std::move(grown.segments);
+  join_parts(input, edges_of(votes), evidence, known.middle, own, segments);
+  segments.residual = own.residuals;
+  return segments;
 }
 
-void refine_sheets(Surfels& s) {
+void refine_segments(Surfels& s) {
   if (s.fits.normals.empty()) return;
   for (std::size_t i = 0; i < s.weights.values.size(); ++i) {
     if (s.weights.values[i] <= 0) s.fits.confidences[i] = 0;
   }
   const KnownSigns known = given_signs(s.placed, s.sampling, s.options);
-  s.sheets =
-      make_sheets({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
-                  known, s.fits, s.second_planes);
+  s.segments =
+      make_segments({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
+                    known, s.fits, s.second_planes);
 }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// The sheets near a tool, and what it sees of them from where it is (docs/method.md 2.7).
+// The segments near a tool, and what it sees of them from where it is (docs/method.md 2.7).
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct Rise {
 
 inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to tell a side; judgement
 
-/// How a sheet is seen from the tool. Its points' normals are turned to the tool's side of it.
+/// How a segment is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
   kInFront = 0,  ///< what is above it is free
   kBehind = 1,   ///< it meets what is in front at a convex edge, or what is across at one beyond
@@ -46,19 +46,19 @@ void swap_labels(auto& labelled, std::uint8_t a, std::uint8_t b) noexcept {
   for (auto& x : labelled) x.label = x.label == a ? b : x.label == b ? a : x.label;
 }
 
-/// Sheets whose normals face away from each other by this cosine or more may be the sides of a
+/// Segments whose normals face away from each other by this cosine or more may be the sides of a
 /// plate, which is kept from cutting itself off (docs/method.md 2.8); judgement.
 inline constexpr double kBackToBack = 0.8;
 
-/// The sheets near the tool, in the order in which they were added, and their parts. All memory is
-/// taken by the constructor.
-struct SheetTable {
-  static constexpr std::size_t kMost = 96;  ///< sheets; further ones are in front; judgement
+/// The segments near the tool, in the order in which they were added, and their parts. All memory
+/// is taken by the constructor.
+struct SegmentTable {
+  static constexpr std::size_t kMost = 96;  ///< segments; further ones are in front; judgement
   static constexpr std::uint8_t kUndecided = 0xff;  ///< no label yet; above every Label
 
-  /// Names a sheet or a part: the surface points that it is of, and its number among theirs. Layers
-  /// without sheets of their own share one (key_of_all()), and all that was seen from one side
-  /// alone is one part (kOneSided).
+  /// Names a segment or a part: the surface points that it is of, and its number among theirs.
+  /// Layers without segments of their own share one (key_of_all()), and all that was seen from one
+  /// side alone is one part (kOneSided).
   struct Key {
     const void* owner = nullptr;
     std::uint32_t number = 0;
@@ -80,7 +80,7 @@ struct SheetTable {
     // The factor for its normals, 1 or -1; 0: not decided. One-sided parts are never turned.
     [[nodiscard]] int factor() const noexcept { return is_absent() ? 1 : sign; }
   };
-  struct Sheet {
+  struct Segment {
     Key key;
     int source = 0;
     std::uint32_t part = 0;
@@ -91,38 +91,38 @@ struct SheetTable {
     double weight = 0;
   };
 
-  SheetTable();
+  SegmentTable();
   void clear() noexcept;
-  void clear_sheets() noexcept;
+  void clear_segments() noexcept;
 
-  /// The place of a layer's sheet, which is added if it is new, with what `before` has decided of
+  /// The place of a layer's segment, which is added if it is new, with what `before` has decided of
   /// it; kMost: there are too many.
   std::uint32_t add(const ActiveLayer& layer, std::uint32_t number,
-                    const SheetTable& before) noexcept;
-  /// Puts in front the sheets of the label `touched`, or those that are left where none is in
+                    const SegmentTable& before) noexcept;
+  /// Puts in front the segments of the label `touched`, or those that are left where none is in
   /// front: what comes into view is told by how it meets them. Labels that change places leave the
   /// field as it is, but for front and behind where something lies across: they stay.
   void put_in_front(std::uint8_t touched) noexcept;
-  /// Where the sheet is in `slots`, or would be.
+  /// Where the segment is in `slots`, or would be.
   [[nodiscard]] std::uint8_t find(const Key& key) const noexcept;
   [[nodiscard]] bool sees_from_behind() const noexcept {
     return std::ranges::any_of(parts, &Part::is_absent);
   }
-  /// The key of the one sheet and part that points without sheets of their own belong to.
+  /// The key of the one segment and part that points without segments of their own belong to.
   [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept {
     return points.one_sided() ? kOneSided : Key{};
   }
 
   std::vector<Part> parts;
-  std::vector<Sheet> sheets;
-  std::array<std::uint8_t, 256> slots;  // of sheets, by their keys' hashes and what follows
+  std::vector<Segment> segments;
+  std::array<std::uint8_t, 256> slots;  // of segments, by their keys' hashes and what follows
 };
 
-/// The sheets of the chosen points, and what an eye at the tool sees of them. All memory is taken
+/// The segments of the chosen points, and what an eye at the tool sees of them. All memory is taken
 /// by the constructor.
-struct SheetView {
-  static constexpr std::uint32_t kNone = SheetTable::kMost;           ///< a point of no sheet
-  static constexpr std::uint32_t kUncertain = SheetTable::kMost + 1;  ///< and of a single view
+struct SegmentView {
+  static constexpr std::uint32_t kNone = SegmentTable::kMost;           ///< a point of no segment
+  static constexpr std::uint32_t kUncertain = SegmentTable::kMost + 1;  ///< and of a single view
 
   /// One point with confidence, and what is asked of it again and again.
   struct Point {
@@ -131,7 +131,7 @@ struct SheetView {
     float confidence;
     float radius;
     float residual;
-    std::uint32_t sheet;
+    std::uint32_t segment;
   };
 
   // Where the tool looks from.
@@ -142,7 +142,7 @@ struct SheetView {
   };
 
   /// `capacity`: points at most.
-  explicit SheetView(std::size_t capacity);
+  explicit SegmentView(std::size_t capacity);
 
   /// Lists what the proxy is among, with what is decided of it by now.
   void list(std::span<const ActiveLayer> layers, const Selection& chosen, const Rise& height,
@@ -152,19 +152,19 @@ struct SheetView {
   void look(const Stance& stance, double way, bool from_behind) noexcept;
   /// The label of what a proxy with this contact normal touches most; kInFront: of nothing.
   [[nodiscard]] std::uint8_t touched_label(const Eigen::Vector3f& normal) const noexcept;
-  /// Is a sheet gone that was near the proxy when the last list was made?
+  /// Is a segment gone that was near the proxy when the last list was made?
   [[nodiscard]] bool has_lost_one() const noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept {
-    return table.parts[table.sheets[point.sheet].part].is_one_sided();
+    return table.parts[table.segments[point.segment].part].is_one_sided();
   }
   /// Is the eye in front of the point's surface?
   [[nodiscard]] bool is_above(const Point& point) const noexcept;
 
-  SheetTable table;
-  SheetTable before;  // the last list
+  SegmentTable table;
+  SegmentTable before;  // the last list
   std::vector<Point> points;
-  std::vector<std::uint32_t> sheet_of_place;  // of all chosen points; or kNone, kUncertain
-  std::vector<std::uint32_t> order;           // of `points`, sheet by sheet
+  std::vector<std::uint32_t> segment_of_point;  // of all chosen points; or kNone, kUncertain
+  std::vector<std::uint32_t> order;             // of `points`, segment by segment
   Eye eye;
   float radius = 0;  // R around the tool, m
   Rise rise;

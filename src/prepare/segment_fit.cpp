@@ -1,6 +1,6 @@
-// Fits a plane and a quadric to the points of one sheet.
+// Fits a plane and a quadric to the points of one segment.
 
-#include "prepare/sheet_fit.hpp"
+#include "prepare/segment_fit.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,13 +18,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// A plane fits that leaves no more than this, of R or of the noise. Two sheets half a spacing apart
-// (0.2 R) leave 0.05 R where the other has one point in fifteen.
+// A plane fits that leaves no more than this, of R or of the noise. Two segments half a spacing
+// apart (0.2 R) leave 0.05 R where the other has one point in fifteen.
 constexpr double kFlat = 0.05;      // judgement (docs/method.md 5.5)
 constexpr double kNoisyFlat = 1.2;  // judgement (docs/method.md 5.5)
 
-constexpr std::size_t kFewestInSheet = 5;  // points; with fewer confidence is 0; judgement
-constexpr double kNearest = 1.75;  // spacings: the first two rings, which rarely see a second sheet
+constexpr std::size_t kFewestInSegment = 5;  // points; with fewer confidence is 0; judgement
+constexpr double kNearest = 1.75;      // spacings: the first two rings, seldom of a second segment
 constexpr double kFlatNearest = 0.25;  // of the middle eigenvalue; judgement
 
 constexpr int kTerms = 6;  // derived: terms of a quadric's height
@@ -79,14 +79,14 @@ double ramp(double value, double from, double to) {
 
 double planarity_of(const Plane& plane, std::size_t points) {
   const Vector3d& v = plane.variances;
-  if (points < kFewestInSheet || !(v[1] > 0)) return 0;
+  if (points < kFewestInSegment || !(v[1] > 0)) return 0;
   return ramp(v[1] / v[2], 0.03, 0.07) * (1 - ramp(v[0] / v[1], 0.4, 0.6));
 }
 
-// What a sheet's fit may leave, of R or of the noise, and how far off it its points may be, of R.
+// What a segment's fit may leave, of R or of the noise, and how far off it its points may be, of R.
 constexpr double kSmooth = 0.03;      // judgement (docs/method.md 5.6)
 constexpr double kNoisySmooth = 1.6;  // judgement (docs/method.md 5.6)
-constexpr double kOnSheet = 0.12;     // judgement
+constexpr double kOnSegment = 0.12;   // judgement
 
 double smooth_residual(double radius, double noise) {
   return std::max(kSmooth * radius, kNoisySmooth * noise);
@@ -98,19 +98,19 @@ double flat_residual(double radius, double noise) {
   return std::max(kFlat * radius, kNoisyFlat * noise);
 }
 
-bool SheetFit::is_smooth(double radius, double noise) const {
+bool SegmentFit::is_smooth(double radius, double noise) const {
   return planarity >= kPlanar && (residual <= flat_residual(radius, noise) ||
                                   quadric_residual <= smooth_residual(radius, noise));
 }
 
-bool SheetFit::is_sheet(double radius, double noise) const {
-  return points >= SheetFitter::kEnough && planarity >= kPlanar &&
-         quadric_residual <= smooth_residual(radius, noise) && off <= kOnSheet * radius;
+bool SegmentFit::is_segment(double radius, double noise) const {
+  return points >= SegmentFitter::kEnough && planarity >= kPlanar &&
+         quadric_residual <= smooth_residual(radius, noise) && off <= kOnSegment * radius;
 }
 
 /// Leaves the offsets on this side of a gap along the axis. False: there is none.
-bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
-  if (offsets_.size() <= kFewestInSheet || axis.isZero()) return false;
+bool SegmentFitter::keep_own_group(const Vector3d& axis, double spacing) {
+  if (offsets_.size() <= kFewestInSegment || axis.isZero()) return false;
   heights_.clear();
   for (const Vector3d& offset : offsets_) heights_.push_back(axis.dot(offset));
   const double gap = gap_in(heights_, spacing);
@@ -119,26 +119,26 @@ bool SheetFitter::keep_own_group(const Vector3d& axis, double spacing) {
   for (const Vector3d& offset : offsets_) {
     if ((axis.dot(offset) < gap) == (0 < gap)) some_.push_back(offset);
   }
-  if (some_.size() < kFewestInSheet) return false;
+  if (some_.size() < kFewestInSegment) return false;
   std::swap(some_, offsets_);
   return true;
 }
 
 /// The normal that the nearest points have, where they are flat.
-Vector3d SheetFitter::axis_of_nearest(double spacing, const Vector3d& fallback) {
+Vector3d SegmentFitter::axis_of_nearest(double spacing, const Vector3d& fallback) {
   some_.clear();
   const double reach = kNearest * spacing;
   for (const Vector3d& offset : offsets_) {
     if (offset.squaredNorm() <= reach * reach) some_.push_back(offset);
   }
-  if (some_.size() <= kFewestInSheet) return fallback;
+  if (some_.size() <= kFewestInSegment) return fallback;
   const Plane plane = plane_of(some_);
   const bool flat = plane.variances[0] < kFlatNearest * plane.variances[1];
   return flat && !plane.normal.isZero() ? plane.normal : fallback;
 }
 
-SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
-                          double spacing, double smooth) {
+SegmentFit SegmentFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, double reach,
+                              double spacing, double smooth) {
   near_.clear();
   grid.within(center, static_cast<float>(reach), near_);
   if (const std::size_t step = (near_.size() + kMostPoints - 1) / kMostPoints; step > 1) {
@@ -148,12 +148,12 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center, d
   return fit(grid, center, near_, reach, spacing, smooth);
 }
 
-SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
-                          std::span<const std::uint32_t> near, double reach, double spacing,
-                          double smooth) {
+SegmentFit SegmentFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
+                              std::span<const std::uint32_t> near, double reach, double spacing,
+                              double smooth) {
   offsets_.clear();
   for (const auto i : near) offsets_.push_back((grid.points()[i] - center).cast<double>());
-  SheetFit fit = fit_offsets(reach);
+  SegmentFit fit = fit_offsets(reach);
   if (fit.quadric_residual > smooth && spacing > 0 && !fit.normal.isZero()) {
     Vector3d axis = axis_of_nearest(spacing, fit.normal);
     bool others = false;
@@ -167,9 +167,9 @@ SheetFit SheetFitter::fit(const CellGrid& grid, const Eigen::Vector3f& center,
   return fit;
 }
 
-SheetFit SheetFitter::fit_offsets(double reach) {
+SegmentFit SegmentFitter::fit_offsets(double reach) {
   const Plane plane = plane_of(offsets_);
-  SheetFit fit;
+  SegmentFit fit;
   placed_.clear();
   if (plane.normal.isZero()) return fit;
   fit.points = offsets_.size();
@@ -182,7 +182,7 @@ SheetFit SheetFitter::fit_offsets(double reach) {
   return fit;
 }
 
-void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
+void SegmentFitter::subtract_quadric(double reach, SegmentFit& fit) {
   const Vector3d& normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
@@ -224,7 +224,7 @@ void SheetFitter::subtract_quadric(double reach, SheetFit& fit) {
 
 /// Mean over the tiles of (sum of residuals)^2 / number: the variance itself where they are
 /// independent.
-double SheetFitter::tile_variance(double reach, double tile) const {
+double SegmentFitter::tile_variance(double reach, double tile) const {
   struct Tile {
     double sum = 0;
     int count = 0;

@@ -1,4 +1,4 @@
-// Joins points whose planes continue each other into sheets.
+// Joins points whose planes continue each other into smooth segments.
 
 #include <algorithm>
 #include <cmath>
@@ -9,21 +9,21 @@
 #include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"
 #include "refine/cannot_link_sets.hpp"
-#include "refine/sheets.hpp"
+#include "refine/segments.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3f;
 
-// When two points continue each other's sheet; judgement (docs/preparation.md, Sheets).
+// When two points continue each other's segment; judgement (docs/preparation.md, Segments).
 constexpr float kPairReach = 1.6f;  // spacings
-constexpr float kTurn = 0.28f;      // rad (16 degrees) that normals of one sheet may turn, or more
+constexpr float kTurn = 0.28f;  // rad (16 degrees) that normals of one segment may turn, or more
 constexpr float kTolerance =
     0.15f;  // spacings; a point may be off by three of these, or of the noise
 
-constexpr std::uint32_t kFewestOnSheet = 8;  // points of a sheet; fewer prove little; judgement
-// Factor on the confidence of points of smaller sheets; judgement.
+constexpr std::uint32_t kFewestOnSegment = 8;  // points of a segment; fewer prove little; judgement
+// Factor on the confidence of points of smaller segments; judgement.
 constexpr float kTrustOfFew = 0.1f;
 
 // Points whose normals turn by no more than this are joined as they come, for time; measured: with
@@ -44,15 +44,16 @@ struct Later {
   std::vector<Pair> stacked;   // cannot link: one lies over the other
 };
 
-/// Joins points that continue each other's sheets: those with parallel normals within each block on
-/// its own, all others afterwards, the most parallel first. So signs spread from normal to normal
-/// where they turn the least (Hoppe et al., Surface reconstruction from unorganized points, 1992).
-/// Where no signs agree all around, as beside a fold that is too thin to tell its sides apart, they
-/// part where normals turn the most.
+/// Joins points that continue each other's segments: those with parallel normals within each block
+/// on its own, all others afterwards, the most parallel first. So signs spread from normal to
+/// normal where they turn the least (Hoppe et al., Surface reconstruction from unorganized points,
+/// 1992). Where no signs agree all around, as beside a fold that is too thin to tell its sides
+/// apart, they part where normals turn the most.
 class Growth {
  public:
-  /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no sheet.
-  Growth(const SheetInput& input, const PointFits& own, const std::vector<std::uint32_t>& assigned)
+  /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
+  Growth(const SegmentInput& input, const PointFits& own,
+         const std::vector<std::uint32_t>& assigned)
       : input_(input), own_(own), assigned_(assigned), sets_(input.grid.size()) {}
 
   detail::SignedSets& run() {
@@ -99,7 +100,7 @@ class Growth {
         });
   }
 
-  /// Joins i and j, which are near each other, if they lie on one sheet. Compares their assigned
+  /// Joins i and j, which are near each other, if they lie on one segment. Compares their assigned
   /// planes: at a sharp rim, where two sides meet, these are as far apart as the sides are.
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
     if (i == j || assigned_[i] == kUnassigned || assigned_[j] == kUnassigned) return;
@@ -123,7 +124,7 @@ class Growth {
     const float arc_turn = std::min(kTurnMargin * curvature * length, turned + kTurn);
     const float arc = kChord * std::max(kTurn * near, arc_turn * length);
     const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
-    if (off > std::max(sheet_tolerance(input_, a, b), arc)) {
+    if (off > std::max(segment_tolerance(input_, a, b), arc)) {
       if (a == i && b == j && lie_over(i, j, way)) later.stacked.push_back(pair);
     } else if (pair.skew > 0.5f * kParallel * kParallel) {
       later.turning.push_back(pair);
@@ -139,10 +140,10 @@ class Growth {
     const float height =
         std::min(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
     const float aside = std::sqrt(std::max(0.f, way.squaredNorm() - height * height));
-    return height > sheet_tolerance(input_, i, j) && height >= kGapSlope * aside;
+    return height > segment_tolerance(input_, i, j) && height >= kGapSlope * aside;
   }
 
-  const SheetInput& input_;
+  const SegmentInput& input_;
   const PointFits& own_;
   const std::vector<std::uint32_t>& assigned_;
   detail::SignedSets sets_;
@@ -150,12 +151,12 @@ class Growth {
 
 }  // namespace
 
-float sheet_tolerance(const SheetInput& input, std::uint32_t i, std::uint32_t j) {
+float segment_tolerance(const SegmentInput& input, std::uint32_t i, std::uint32_t j) {
   return 3 * std::max(std::max(input.noise[i], input.noise[j]),
                       kTolerance * std::min(input.spacings[i], input.spacings[j]));
 }
 
-Growths grow_sheets(const SheetInput& input, PointFits& own) {
+Growths grow_segments(const SegmentInput& input, PointFits& own) {
   Growths result;
   Snapped snapped = snap_to_planes(input, own);
   result.confident = std::move(snapped.confident);
@@ -163,26 +164,26 @@ Growths grow_sheets(const SheetInput& input, PointFits& own) {
   Growth growth(input, own, snapped.assigned);
   detail::SignedSets& sets = growth.run();
   const std::size_t count = input.grid.size();
-  std::vector<std::uint32_t>& sheet = result.sheets.sheet;
-  sheet.assign(count, SurfacePoints::Sheets::kNone);
+  std::vector<std::uint32_t>& segment = result.segments.segment;
+  segment.assign(count, SurfacePoints::Segments::kNone);
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (snapped.assigned[i] == kUnassigned) continue;
     const auto [root, sign] = sets.find(i);
     if (sign < 0) own.normals[i] = -own.normals[i];
-    if (root == i) {  // before all others of its sheet
-      sheet[i] = static_cast<std::uint32_t>(sizes.size());
+    if (root == i) {  // before all others of its segment
+      segment[i] = static_cast<std::uint32_t>(sizes.size());
       sizes.push_back(0);
     }
-    ++sizes[sheet[i] = sheet[root]];
+    ++sizes[segment[i] = segment[root]];
   }
   std::erase_if(result.second_planes, [&](const SecondPlane& second) {
-    return sheet[second.point] == sheet[second.owner];
+    return segment[second.point] == segment[second.owner];
   });
-  result.sheets.part.resize(sizes.size());
-  std::iota(result.sheets.part.begin(), result.sheets.part.end(), 0u);
+  result.segments.part.resize(sizes.size());
+  std::iota(result.segments.part.begin(), result.segments.part.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (sheet[i] != SurfacePoints::Sheets::kNone && sizes[sheet[i]] < kFewestOnSheet) {
+    if (segment[i] != SurfacePoints::Segments::kNone && sizes[segment[i]] < kFewestOnSegment) {
       own.confidences[i] *= kTrustOfFew;
     }
   }

@@ -1,5 +1,5 @@
-// Which sets of sheets hang together: those that agree as a whole.
-#include "refine/sheet_clusters.hpp"
+// Which sets of segments hang together: those that agree as a whole.
+#include "refine/segment_clusters.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,11 +13,11 @@ namespace {
 
 using Eigen::Vector3f;
 
-TEST(SheetClusters, JoinSetsThatAgreeAsAWhole) {
-  // 1 and 2 are opposite. Sheet 0 likes both alike, 3 likes 1 and dislikes 2.
+TEST(SegmentClusters, JoinSetsThatAgreeAsAWhole) {
+  // 1 and 2 are opposite. Segment 0 agrees with both alike, 3 agrees with 1 and not with 2.
   const std::vector<SignedEdge> edges{
       {0, 1, {20, 20}}, {0, 2, {20, 20}}, {1, 2, {-30, 30}}, {1, 3, {8, 8}}, {2, 3, {-0.2, 0.2}}};
-  SheetClusters sets(edges, 4);
+  SegmentClusters sets(edges, 4);
   EXPECT_EQ(sets.sign_between(0, 1), 1);
   EXPECT_EQ(sets.sign_between(2, 3), 0);  // too few votes
   ASSERT_EQ(sets.sign_between(1, 2), -1);
@@ -30,11 +30,11 @@ TEST(SheetClusters, JoinSetsThatAgreeAsAWhole) {
   EXPECT_EQ(sets.sign_between(0, 1), 0);
 }
 
-TEST(SheetClusters, TurnWithTheSetThatTheyAreOf) {
+TEST(SegmentClusters, TurnWithTheSetThatTheyAreOf) {
   // The set of 2 and 3 has more to say, but its root becomes 1.
   const std::vector<SignedEdge> edges{
       {0, 2, {9, 9}}, {0, 3, {9, 9}}, {1, 2, {-20, 20}}, {2, 3, {40, 40}}, {3, 4, {7, 7}}};
-  SheetClusters sets(edges, 5);
+  SegmentClusters sets(edges, 5);
   sets.join(2, 3, sets.sign_between(2, 3));
   sets.join(1, 2, sets.sign_between(1, 2));
   EXPECT_EQ(sets.find(3), std::pair(1u, -1));
@@ -69,7 +69,7 @@ std::vector<Vector3f> box_on_floor(unsigned seed, int height) {
   return points;
 }
 
-TEST(SheetClusters, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
+TEST(SegmentClusters, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
   int apart = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
     PointCloud cloud;
@@ -78,9 +78,9 @@ TEST(SheetClusters, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
     const auto part_at = [&](const Vector3f& place) {
       std::vector<CellGrid::Neighbor> nearest;
       points.grid.nearest(place - points.origin.cast<float>(), 1, nearest);
-      const std::uint32_t sheet = points.sheets.sheet[nearest.front().index];
-      EXPECT_NE(sheet, SurfacePoints::Sheets::kNone);
-      return sheet == SurfacePoints::Sheets::kNone ? sheet : points.sheets.part[sheet];
+      const std::uint32_t segment = points.segments.segment[nearest.front().index];
+      EXPECT_NE(segment, SurfacePoints::Segments::kNone);
+      return segment == SurfacePoints::Segments::kNone ? segment : points.segments.part[segment];
     };
     const std::uint32_t floor = part_at({-10, 15, 0});
     EXPECT_EQ(part_at({5, 15, 0}), floor) << seed;
@@ -88,7 +88,7 @@ TEST(SheetClusters, LeaveMostBoxesApartFromAFloorThatGoesOnBeneathThem) {
                           part_at({5, 30, 4}) == floor;
     apart += together ? 0 : 1;
   }
-  EXPECT_GE(apart, 28);  // of 300 seeds 242 are, and 122 where sheets are joined one by one
+  EXPECT_GE(apart, 28);  // of 300 seeds 242 are, and 122 where segments are joined one by one
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Lists the sheets near the tool and their points, and sums what the eye sees of them.
+// Lists the segments near the tool and their points, and sums what the eye sees of them.
 
-#include "field/sheet_view.hpp"
+#include "field/segment_view.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using Part = SheetTable::Part;
-using Sheet = SheetTable::Sheet;
-using Point = SheetView::Point;
+using Part = SegmentTable::Part;
+using Segment = SegmentTable::Segment;
+using Point = SegmentView::Point;
 
-// A part keeps its sign while one of its points is within kHolds, a sheet its label within kMeets.
-// Both are above 1 R, where weights end. Labels are settled later, when more is known.
+// A part keeps its sign while one of its points is within kHolds, a segment its label within
+// kMeets. Both are above 1 R, where weights end. Labels are settled later, when more is known.
 constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
 
@@ -28,9 +28,9 @@ constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which points tell
 constexpr double kFades = 1;   // R of way on which what was seen fades to a third
 
-/// The index of a part, which is added if it is new. Parts are never more than sheets, so there is
-/// room for them.
-std::uint32_t add_part(std::vector<Part>& parts, Part part, const SheetTable& before) noexcept {
+/// The index of a part, which is added if it is new. Parts are never more than segments, so there
+/// is room for them.
+std::uint32_t add_part(std::vector<Part>& parts, Part part, const SegmentTable& before) noexcept {
   for (std::size_t k = parts.size(); k-- > 0;) {
     if (parts[k].key == part.key) return static_cast<std::uint32_t>(k);
   }
@@ -43,38 +43,38 @@ std::uint32_t add_part(std::vector<Part>& parts, Part part, const SheetTable& be
   return static_cast<std::uint32_t>(parts.size() - 1);
 }
 
-/// Has the sheet a label, and is it seen from its one side? Then what is seen of it decides
+/// Has the segment a label, and is it seen from its one side? Then what is seen of it decides
 /// nothing.
-bool is_decided(const Sheet& sheet, const Part& part) noexcept {
-  return sheet.label != SheetTable::kUndecided && part.is_one_sided() && part.sign > 0;
+bool is_decided(const Segment& segment, const Part& part) noexcept {
+  return segment.label != SegmentTable::kUndecided && part.is_one_sided() && part.sign > 0;
 }
 
-void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
+void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
                 const Vector3d& proxy) noexcept {
   const SurfacePoints& surface = *layer.points;
-  const SurfacePoints::Sheets& own = surface.sheets;
-  const std::uint32_t none = surface.one_sided() ? SheetView::kUncertain : SheetView::kNone;
-  std::uint32_t last = SurfacePoints::Sheets::kNone;
-  std::uint32_t slot = SheetView::kNone;
+  const SurfacePoints::Segments& own = surface.segments;
+  const std::uint32_t none = surface.one_sided() ? SegmentView::kUncertain : SegmentView::kNone;
+  std::uint32_t last = SurfacePoints::Segments::kNone;
+  std::uint32_t slot = SegmentView::kNone;
   for (const std::uint32_t i : places) {
     const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
-    const std::uint32_t sheet = own.empty() ? 0 : own.sheet[i];
-    if (confidence <= 0 || sheet == SurfacePoints::Sheets::kNone) {
-      view.sheet_of_place.push_back(none);
+    const std::uint32_t segment = own.empty() ? 0 : own.segment[i];
+    if (confidence <= 0 || segment == SurfacePoints::Segments::kNone) {
+      view.segment_of_point.push_back(none);
       continue;
     }
-    if (sheet != last) slot = view.table.add(layer, last = sheet, view.before);
-    view.sheet_of_place.push_back(slot == SheetView::kNone ? none : slot);
-    if (slot == SheetView::kNone) continue;
+    if (segment != last) slot = view.table.add(layer, last = segment, view.before);
+    view.segment_of_point.push_back(slot == SegmentView::kNone ? none : slot);
+    if (slot == SegmentView::kNone) continue;
     Point point{};
     point.place = position_now(layer, i, proxy).cast<float>();
     point.normal = normal_now(layer, i).cast<float>();
     point.confidence = static_cast<float>(confidence);
     point.radius = static_cast<float>(radius_now(layer, i));
-    point.sheet = slot;
+    point.segment = slot;
     point.residual = own.empty() ? 0 : own.residual[i];
     view.points.push_back(point);
-    Sheet& s = view.table.sheets[slot];
+    Segment& s = view.table.segments[slot];
     const float distance = point.place.norm();
     Part& part = view.table.parts[s.part];
     // A part that all points share keeps its side until free space.
@@ -85,29 +85,29 @@ void list_layer(SheetView& view, const ActiveLayer& layer, std::span<const std::
   }
 }
 
-void group(SheetView& view) noexcept {
+void group(SegmentView& view) noexcept {
   std::uint32_t begin = 0;
-  for (Sheet& sheet : view.table.sheets) {
-    sheet.begin = begin;
-    begin += sheet.count;
-    sheet.count = 0;
+  for (Segment& segment : view.table.segments) {
+    segment.begin = begin;
+    begin += segment.count;
+    segment.count = 0;
   }
   view.order.resize(view.points.size());
   for (std::uint32_t i = 0; i < view.points.size(); ++i) {
-    Sheet& sheet = view.table.sheets[view.points[i].sheet];
-    view.order[sheet.begin + sheet.count++] = i;
+    Segment& segment = view.table.segments[view.points[i].segment];
+    view.order[segment.begin + segment.count++] = i;
   }
 }
 
 /// The height of the surface above a point, m.
-float rise_of(const SheetView& view, const Point& point) noexcept {
+float rise_of(const SegmentView& view, const Point& point) noexcept {
   return static_cast<float>(view.rise.length + view.rise.share * static_cast<double>(point.radius));
 }
 
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
 /// of what the closest point says keeps these down.
-float height_over(const SheetView& view, const Point& point) noexcept {
+float height_over(const SegmentView& view, const Point& point) noexcept {
   const Vector3f way = view.eye.place - point.place;
   const float height = point.normal.dot(way);
   const bool bent = view.is_one_sided(point) && point.normal.dot(view.eye.beside) > 0.5f;
@@ -115,7 +115,7 @@ float height_over(const SheetView& view, const Point& point) noexcept {
 }
 
 /// The tool looks from where it is or, where it touches, from a little above.
-void choose_eye(SheetView& view, const Stance& stance) noexcept {
+void choose_eye(SegmentView& view, const Stance& stance) noexcept {
   const float lift = stance.touches() ? kLift * view.radius : 0;
   view.eye.place = lift * stance.normal.cast<float>();
   float closest = std::numeric_limits<float>::infinity();
@@ -132,71 +132,72 @@ void choose_eye(SheetView& view, const Stance& stance) noexcept {
 
 }  // namespace
 
-SheetTable::SheetTable() {
+SegmentTable::SegmentTable() {
   parts.reserve(kMost);
-  sheets.reserve(kMost);
+  segments.reserve(kMost);
   clear();
 }
 
-void SheetTable::clear_sheets() noexcept {
-  sheets.clear();
+void SegmentTable::clear_segments() noexcept {
+  segments.clear();
   slots.fill(kMost);
 }
 
-void SheetTable::clear() noexcept {
+void SegmentTable::clear() noexcept {
   parts.clear();
-  clear_sheets();
+  clear_segments();
 }
 
-void SheetTable::put_in_front(std::uint8_t touched) noexcept {
+void SegmentTable::put_in_front(std::uint8_t touched) noexcept {
   const auto any = [this](std::uint8_t label) {
-    return std::ranges::any_of(sheets, [=](const Sheet& sheet) { return sheet.label == label; });
+    return std::ranges::any_of(segments,
+                               [=](const Segment& segment) { return segment.label == label; });
   };
   const bool across = any(kAcross);
   const std::uint8_t left = across ? kAcross : kBehind;
   const std::uint8_t first = any(kInFront) ? touched : left;
   if (first == kInFront || (first == kBehind && across)) return;
-  swap_labels(sheets, kInFront, first);
+  swap_labels(segments, kInFront, first);
 }
 
-std::uint8_t SheetTable::find(const Key& key) const noexcept {
+std::uint8_t SegmentTable::find(const Key& key) const noexcept {
   auto at = static_cast<std::uint8_t>((key.number * 2654435761u) >> 24);
-  while (slots[at] < kMost && sheets[slots[at]].key != key) ++at;
+  while (slots[at] < kMost && segments[slots[at]].key != key) ++at;
   return at;
 }
 
-std::uint32_t SheetTable::add(const ActiveLayer& layer, std::uint32_t number,
-                              const SheetTable& before) noexcept {
+std::uint32_t SegmentTable::add(const ActiveLayer& layer, std::uint32_t number,
+                                const SegmentTable& before) noexcept {
   const SurfacePoints& points = *layer.points;
-  const SurfacePoints::Sheets& own = points.sheets;
+  const SurfacePoints::Segments& own = points.segments;
   const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
   std::uint8_t& slot = slots[find(key)];
-  if (slot < kMost || sheets.size() == kMost) return slot;
+  if (slot < kMost || segments.size() == kMost) return slot;
   Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
   part.uncertain = points.one_sided() && !part.known;
   if (!own.empty() && (part.uncertain || !points.one_sided()))
     part.key = {&points, own.part[number]};
-  Sheet sheet{.key = key, .source = layer.source, .part = add_part(parts, part, before)};
+  Segment segment{.key = key, .source = layer.source, .part = add_part(parts, part, before)};
   const std::uint8_t old = before.slots[before.find(key)];
-  if (old < kMost) sheet.label = before.sheets[old].label;
-  slot = static_cast<std::uint8_t>(sheets.size());
-  sheets.push_back(sheet);
+  if (old < kMost) segment.label = before.segments[old].label;
+  slot = static_cast<std::uint8_t>(segments.size());
+  segments.push_back(segment);
   return slot;
 }
 
-SheetView::SheetView(std::size_t capacity) {
+SegmentView::SegmentView(std::size_t capacity) {
   points.reserve(capacity);
-  sheet_of_place.reserve(capacity);
+  segment_of_point.reserve(capacity);
   order.reserve(capacity);
 }
 
-void SheetView::list(std::span<const ActiveLayer> layers, const Selection& chosen,
-                     const Rise& height, const Vector3d& proxy) noexcept {
+void SegmentView::list(std::span<const ActiveLayer> layers, const Selection& chosen,
+                       const Rise& height, const Vector3d& proxy) noexcept {
   rise = height;
   std::swap(before, table);
   table.clear();
   points.clear();
-  sheet_of_place.clear();
+  segment_of_point.clear();
   for (std::size_t k = 0; k < layers.size(); ++k) {
     list_layer(*this, layers[k], chosen.places(chosen.runs()[k]), proxy);
   }
@@ -206,55 +207,55 @@ void SheetView::list(std::span<const ActiveLayer> layers, const Selection& chose
   group(*this);
 }
 
-std::uint8_t SheetView::touched_label(const Vector3f& normal) const noexcept {
+std::uint8_t SegmentView::touched_label(const Vector3f& normal) const noexcept {
   if (normal.isZero(0)) return kInFront;
   std::array<double, simd::kLabels> touched{};
   for (const Point& p : points) {
-    const Sheet& sheet = table.sheets[p.sheet];
-    const auto sign = static_cast<float>(table.parts[sheet.part].factor());
+    const Segment& segment = table.segments[p.segment];
+    const auto sign = static_cast<float>(table.parts[segment.part].factor());
     const float cosine = sign * p.normal.dot(normal);
-    if (sheet.label == SheetTable::kUndecided || cosine <= 0) continue;
-    touched[sheet.label] +=
+    if (segment.label == SegmentTable::kUndecided || cosine <= 0) continue;
+    touched[segment.label] +=
         static_cast<double>(cosine) * weight_within(p.place.squaredNorm(), p.radius);
   }
   return static_cast<std::uint8_t>(std::ranges::max_element(touched) - touched.begin());
 }
 
-bool SheetView::has_lost_one() const noexcept {
-  return std::ranges::any_of(before.sheets, [this](const Sheet& old) {
+bool SegmentView::has_lost_one() const noexcept {
+  return std::ranges::any_of(before.segments, [this](const Segment& old) {
     return old.near && table.slots[table.find(old.key)] == kNone;
   });
 }
 
-bool SheetView::is_above(const Point& point) const noexcept {
+bool SegmentView::is_above(const Point& point) const noexcept {
   return height_over(*this, point) >= rise_of(*this, point);
 }
 
 /// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
 /// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
 /// of some are wrong.
-void SheetView::look(const Stance& stance, double way, bool from_behind) noexcept {
-  const auto decided = [this](const Sheet& sheet) {
-    return is_decided(sheet, table.parts[sheet.part]);
+void SegmentView::look(const Stance& stance, double way, bool from_behind) noexcept {
+  const auto decided = [this](const Segment& segment) {
+    return is_decided(segment, table.parts[segment.part]);
   };
-  if (std::ranges::all_of(table.sheets, decided)) return;
+  if (std::ranges::all_of(table.segments, decided)) return;
   choose_eye(*this, stance);
   const double kept = std::exp(-way / (kFades * static_cast<double>(radius)));
   std::array<double, kNone> seen{};
   for (const Point& p : points) {
-    Sheet& sheet = table.sheets[p.sheet];
-    if (decided(sheet)) continue;
+    Segment& segment = table.segments[p.segment];
+    if (decided(segment)) continue;
     const Vector3f back = eye.place - p.place;
     const float squared = back.squaredNorm();
     if (squared >= eye.view * eye.view) continue;
     const float height = height_over(*this, p);
     const double w = static_cast<double>(p.confidence) * weight_within(squared, eye.view);
-    sheet.weight += w;
+    segment.weight += w;
     const float length = std::max(std::sqrt(squared), 1e-12f);
     // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = from_behind && is_one_sided(p) ? height - rise_of(*this, p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    seen[sheet.part] += w * sharp * (over < 0 ? -1 : 1);
+    seen[segment.part] += w * sharp * (over < 0 ? -1 : 1);
   }
   for (std::size_t k = 0; k < table.parts.size(); ++k) {
     Part& part = table.parts[k];
