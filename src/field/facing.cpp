@@ -12,11 +12,11 @@ using Eigen::Vector3f;
 
 constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
-/// Forgets the sign of a part without weight at the proxy, or that a free proxy is behind, and the
-/// label of a segment that has moved away.
+/// Forgets the sign of a component without weight at the proxy, or that a free proxy is behind, and
+/// the label of a segment that has moved away.
 void let_go(SegmentTable& table, const Stance& stance) noexcept {
-  for (SegmentTable::Part& part : table.parts) {
-    if (!part.near || (part.is_absent() && !stance.touches())) part.sign = 0;
+  for (SegmentTable::Component& component : table.components) {
+    if (!component.near || (component.is_absent() && !stance.touches())) component.sign = 0;
   }
   for (SegmentTable::Segment& segment : table.segments) {
     if (!segment.near) segment.label = SegmentTable::kUndecided;
@@ -37,7 +37,7 @@ void Facing::forget() noexcept {
 
 void Facing::reopen() noexcept {
   view_.table.clear_segments();
-  for (Part& part : view_.table.parts) part.sign = 0;
+  for (Component& component : view_.table.components) component.sign = 0;
   remembered_.clear();
 }
 
@@ -45,20 +45,20 @@ void Facing::follow(const Facing& other) noexcept {
   follows_ = true;
   touched_ = other.touched_;
   was_behind_ = other.was_behind_;
-  if (other.view_.table.parts.empty()) return;
+  if (other.view_.table.components.empty()) return;
   view_.table = other.view_.table;  // within what was reserved
   remembered_ = other.remembered_;
   remembered_from_ = other.remembered_from_;
 }
 
 void Facing::add_references(const Segment& segment) noexcept {
-  const Part& part = view_.table.parts[segment.part];
-  const int sign = part.factor();
+  const Component& component = view_.table.components[segment.component];
+  const int sign = component.factor();
   if (segment.label == SegmentTable::kUndecided || sign == 0) return;
   for (std::uint32_t k = 0; k < segment.count; ++k) {
     const Point& p = view_.points[view_.order[segment.begin + k]];
     if (references_.size() == references_.capacity()) return;
-    if (part.is_absent() && !view_.is_above(p)) continue;
+    if (component.is_absent() && !view_.is_above(p)) continue;
     references_.push_back({segment.key.owner, segment.source, p.place,
                            static_cast<float>(sign) * p.normal, p.confidence, p.residual,
                            segment.label});
@@ -80,7 +80,7 @@ void Facing::list_references(const Eigen::Vector3d& proxy, bool vanished) noexce
   for (const Segment& segment : view_.table.segments) add_references(segment);
 }
 
-/// Are all points of one part whose side is decided, so that nothing needs a look?
+/// Are all points of one component whose side is decided, so that nothing needs a look?
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
   const SegmentTable& table = view_.table;
   if (table.segments.size() != 1 || table.segments[0].label != kInFront ||
@@ -116,9 +116,9 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
 /// Does what is near say whether the proxy is behind it? Points of one view whose side is not known
 /// say nothing: for a proxy behind them they count for nothing.
 bool Facing::tells() const noexcept {
-  const std::vector<Part>& parts = view_.table.parts;
-  return std::ranges::any_of(parts, &Part::is_one_sided) ||
-         (std::ranges::none_of(parts, &Part::uncertain) &&
+  const std::vector<Component>& components = view_.table.components;
+  return std::ranges::any_of(components, &Component::is_one_sided) ||
+         (std::ranges::none_of(components, &Component::uncertain) &&
           std::ranges::count(view_.segment_of_point, SegmentView::kUncertain) == 0);
 }
 
@@ -133,11 +133,11 @@ bool Facing::write(const Points& points) const noexcept {
     std::uint8_t label = kInFront;
     if (slot < SegmentView::kNone) {
       const Segment& segment = view_.table.segments[slot];
-      const Part& part = view_.table.parts[segment.part];
-      sign = static_cast<std::int8_t>(part.sign);
-      uncertain = part.uncertain;
+      const Component& component = view_.table.components[segment.component];
+      sign = static_cast<std::int8_t>(component.sign);
+      uncertain = component.uncertain;
       label = segment.label;
-      if (part.is_absent()) sign = view_.is_above(view_.points[next]) ? 1 : 0;
+      if (component.is_absent()) sign = view_.is_above(view_.points[next]) ? 1 : 0;
       ++next;
     }
     if (uncertain && was_behind_) sign = 0;

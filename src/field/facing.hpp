@@ -51,7 +51,7 @@ class Facing {
   void follow(const Facing& other) noexcept;
 
  private:
-  using Part = SegmentTable::Part;
+  using Component = SegmentTable::Component;
   using Segment = SegmentTable::Segment;
   using Point = SegmentView::Point;
   /// A point that is decided and counts for those that are not.
@@ -77,7 +77,7 @@ class Facing {
   void add_references(const Segment& segment) noexcept;
   void each_meeting(const Segment& segment, float reach, const auto& visit) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
-  [[nodiscard]] double votes_on(std::uint32_t part) noexcept;
+  [[nodiscard]] double votes_on(std::uint32_t component) noexcept;
   void decide_signs(bool continued) noexcept;
   void decide_labels() noexcept;
   struct Meeting;

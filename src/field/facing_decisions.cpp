@@ -1,4 +1,4 @@
-// Decides the signs of parts that come into view, and the labels of their segments.
+// Decides the signs of components that come into view, and the labels of their segments.
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,11 @@ namespace {
 using Eigen::Vector3f;
 
 // Signs (docs/method.md 2.7); all are judgement.
-constexpr double kAgainst = 0.5;     // share of the agreement with a contact that turns a part
+constexpr double kAgainst = 0.5;     // share of the agreement with a contact that turns a component
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;  // R within which segments meet and parts tell signs
+constexpr float kMeetReach = 1.3f;  // R within which segments meet and components tell signs
 constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do not meet
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
@@ -69,12 +69,12 @@ void Facing::each_meeting(const Segment& segment, float reach, const auto& visit
   }
 }
 
-/// Sums the votes of decided points around a part on its sign; below 0: turn it. What moved keeps
-/// its normals; an arc joins points of one time.
-double Facing::votes_on(std::uint32_t part) noexcept {
+/// Sums the votes of decided points around a component on its sign; below 0: turn it. What moved
+/// keeps its normals; an arc joins points of one time.
+double Facing::votes_on(std::uint32_t component) noexcept {
   double sum = 0;
   for (const Segment& segment : view_.table.segments) {
-    if (segment.part != part) continue;
+    if (segment.component != component) continue;
     each_meeting(segment, kMeetReach,
                  [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
                    const float a = q.is_of_another_time(segment)
@@ -87,7 +87,8 @@ double Facing::votes_on(std::uint32_t part) noexcept {
   return sum;
 }
 
-/// Turns parts whose points say the opposite of a contact that begins: what it touches is in front.
+/// Turns components whose points say the opposite of a contact that begins: what it touches is in
+/// front.
 void Facing::turn_by(const Vector3f& normal) noexcept {
   std::array<double, SegmentTable::kMost> agreed{};
   std::array<double, SegmentTable::kMost> all{};
@@ -95,36 +96,38 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
     const float squared = p.place.squaredNorm();
     if (squared >= p.radius * p.radius) continue;
     const double w = static_cast<double>(p.confidence) * weight_within(squared, p.radius);
-    const std::uint32_t part = view_.table.segments[p.segment].part;
+    const std::uint32_t component = view_.table.segments[p.segment].component;
     const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
-    agreed[part] += w * static_cast<double>(a * std::abs(a)) * view_.table.parts[part].sign;
-    all[part] += w;
+    agreed[component] +=
+        w * static_cast<double>(a * std::abs(a)) * view_.table.components[component].sign;
+    all[component] += w;
   }
-  for (std::size_t k = 0; k < view_.table.parts.size(); ++k) {
-    Part& part = view_.table.parts[k];
-    if (part.is_one_sided() || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k]))) continue;
-    part.sign = -part.sign;
+  for (std::size_t k = 0; k < view_.table.components.size(); ++k) {
+    Component& component = view_.table.components[k];
+    if (component.is_one_sided() || !(-agreed[k] > std::max(kLeastVote, kAgainst * all[k])))
+      continue;
+    component.sign = -component.sign;
     for (Segment& segment : view_.table.segments) {
-      if (segment.part == k) segment.label = SegmentTable::kUndecided;
+      if (segment.component == k) segment.label = SegmentTable::kUndecided;
     }
   }
 }
 
-/// `continued`: take a part's sign from its decided neighbours, not from visibility, which decides
-/// where they do not. One-sided parts always use visibility.
+/// `continued`: take a component's sign from its decided neighbours, not from visibility, which
+/// decides where they do not. One-sided components always use visibility.
 void Facing::decide_signs(bool continued) noexcept {
-  std::vector<Part>& parts = view_.table.parts;
-  int beside = 0;  // of parts whose normals point outward, as they are seen
-  for (const Part& part : parts) {
-    if (part.known) beside += part.sign;
+  std::vector<Component>& components = view_.table.components;
+  int beside = 0;  // of components whose normals point outward, as they are seen
+  for (const Component& component : components) {
+    if (component.known) beside += component.sign;
   }
-  for (std::uint32_t k = 0; k < parts.size(); ++k) {
-    Part& part = parts[k];
-    if (part.sign != 0) continue;
-    const bool told = continued && !part.is_one_sided();
-    const double vote = !told ? 0 : part.known && beside != 0 ? beside : votes_on(k);
-    const double told_or_seen = std::abs(vote) > kLeastVote ? vote : part.seen;
-    if (told_or_seen != 0) part.sign = told_or_seen < 0 ? -1 : 1;
+  for (std::uint32_t k = 0; k < components.size(); ++k) {
+    Component& component = components[k];
+    if (component.sign != 0) continue;
+    const bool told = continued && !component.is_one_sided();
+    const double vote = !told ? 0 : component.known && beside != 0 ? beside : votes_on(k);
+    const double told_or_seen = std::abs(vote) > kLeastVote ? vote : component.seen;
+    if (told_or_seen != 0) component.sign = told_or_seen < 0 ? -1 : 1;
   }
 }
 
@@ -154,7 +157,7 @@ struct Facing::Meeting {
 /// `beyond`: the weight of pairs where what is in front goes on beyond the segment's plane.
 Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexcept {
   Meetings result{};
-  const auto sign = static_cast<float>(view_.table.parts[segment.part].factor());
+  const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
   each_meeting(segment, kMeetReach,
                [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
                  const float length = way.norm();
@@ -201,7 +204,7 @@ std::uint8_t Facing::label_of(const Segment& segment) noexcept {
     return swap_front(view_.table.segments, references_) ? kAcross : kInFront;
   }
   if (other == kAcross && !concave) {
-    const auto sign = static_cast<float>(view_.table.parts[segment.part].factor());
+    const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
     bool cuts = false;  // something of what is in front off
     each_meeting(segment, kAnywhere,
                  [&](const Point& p, const Reference& q, const Vector3f& way, double) {
@@ -221,10 +224,11 @@ void Facing::decide_labels() noexcept {
         next = &segment;
     }
     if (!next) return;
-    Part& part = view_.table.parts[next->part];
-    // Nothing of the part is seen: what is decided beside it tells its sign.
-    const bool turned = part.sign == 0 && !part.is_one_sided() && votes_on(next->part) < 0;
-    if (part.sign == 0) part.sign = turned ? -1 : 1;
+    Component& component = view_.table.components[next->component];
+    // Nothing of the component is seen: what is decided beside it tells its sign.
+    const bool turned =
+        component.sign == 0 && !component.is_one_sided() && votes_on(next->component) < 0;
+    if (component.sign == 0) component.sign = turned ? -1 : 1;
     next->label = label_of(*next);
     add_references(*next);
   }

@@ -14,11 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using Part = SegmentTable::Part;
+using Component = SegmentTable::Component;
 using Segment = SegmentTable::Segment;
 using Point = SegmentView::Point;
 
-// A part keeps its sign while one of its points is within kHolds, a segment its label within
+// A component keeps its sign while one of its points is within kHolds, a segment its label within
 // kMeets. Both are above 1 R, where weights end. Labels are settled later, when more is known.
 constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
@@ -28,25 +28,27 @@ constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which points tell
 constexpr double kFades = 1;   // R of way on which what was seen fades to a third
 
-/// The index of a part, which is added if it is new. Parts are never more than segments, so there
-/// is room for them.
-std::uint32_t add_part(std::vector<Part>& parts, Part part, const SegmentTable& before) noexcept {
-  for (std::size_t k = parts.size(); k-- > 0;) {
-    if (parts[k].key == part.key) return static_cast<std::uint32_t>(k);
+/// The index of a component, which is added if it is new. Components are never more than segments,
+/// so there is room for them.
+std::uint32_t add_component(std::vector<Component>& components, Component component,
+                            const SegmentTable& before) noexcept {
+  for (std::size_t k = components.size(); k-- > 0;) {
+    if (components[k].key == component.key) return static_cast<std::uint32_t>(k);
   }
-  for (const Part& old : before.parts) {
-    if (old.key != part.key) continue;
-    part.sign = old.sign;
-    if (old.weighs) part.seen = old.seen;
+  for (const Component& old : before.components) {
+    if (old.key != component.key) continue;
+    component.sign = old.sign;
+    if (old.weighs) component.seen = old.seen;
   }
-  parts.push_back(part);
-  return static_cast<std::uint32_t>(parts.size() - 1);
+  components.push_back(component);
+  return static_cast<std::uint32_t>(components.size() - 1);
 }
 
 /// Has the segment a label, and is it seen from its one side? Then what is seen of it decides
 /// nothing.
-bool is_decided(const Segment& segment, const Part& part) noexcept {
-  return segment.label != SegmentTable::kUndecided && part.is_one_sided() && part.sign > 0;
+bool is_decided(const Segment& segment, const Component& component) noexcept {
+  return segment.label != SegmentTable::kUndecided && component.is_one_sided() &&
+         component.sign > 0;
 }
 
 void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
@@ -76,10 +78,10 @@ void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std
     view.points.push_back(point);
     Segment& s = view.table.segments[slot];
     const float distance = point.place.norm();
-    Part& part = view.table.parts[s.part];
-    // A part that all points share keeps its side until free space.
-    part.near |= own.empty() || part.is_one_sided() || distance <= kHolds * point.radius;
-    part.weighs |= distance <= point.radius;
+    Component& component = view.table.components[s.component];
+    // A component that all points share keeps its side until free space.
+    component.near |= own.empty() || component.is_one_sided() || distance <= kHolds * point.radius;
+    component.weighs |= distance <= point.radius;
     if (own.empty() || distance <= kMeets * point.radius) s.near = true;
     ++s.count;
   }
@@ -133,7 +135,7 @@ void choose_eye(SegmentView& view, const Stance& stance) noexcept {
 }  // namespace
 
 SegmentTable::SegmentTable() {
-  parts.reserve(kMost);
+  components.reserve(kMost);
   segments.reserve(kMost);
   clear();
 }
@@ -144,7 +146,7 @@ void SegmentTable::clear_segments() noexcept {
 }
 
 void SegmentTable::clear() noexcept {
-  parts.clear();
+  components.clear();
   clear_segments();
 }
 
@@ -173,11 +175,14 @@ std::uint32_t SegmentTable::add(const ActiveLayer& layer, std::uint32_t number,
   const Key key = own.empty() ? key_of_all(points) : Key{&points, number};
   std::uint8_t& slot = slots[find(key)];
   if (slot < kMost || segments.size() == kMost) return slot;
-  Part part{.key = key_of_all(points), .known = own.empty() || own.known[own.part[number]] != 0};
-  part.uncertain = points.one_sided() && !part.known;
-  if (!own.empty() && (part.uncertain || !points.one_sided()))
-    part.key = {&points, own.part[number]};
-  Segment segment{.key = key, .source = layer.source, .part = add_part(parts, part, before)};
+  Component component{.key = key_of_all(points),
+                      .known = own.empty() || own.known[own.component[number]] != 0};
+  component.uncertain = points.one_sided() && !component.known;
+  if (!own.empty() && (component.uncertain || !points.one_sided()))
+    component.key = {&points, own.component[number]};
+  Segment segment{.key = key,
+                  .source = layer.source,
+                  .component = add_component(components, component, before)};
   const std::uint8_t old = before.slots[before.find(key)];
   if (old < kMost) segment.label = before.segments[old].label;
   slot = static_cast<std::uint8_t>(segments.size());
@@ -212,7 +217,7 @@ std::uint8_t SegmentView::touched_label(const Vector3f& normal) const noexcept {
   std::array<double, simd::kLabels> touched{};
   for (const Point& p : points) {
     const Segment& segment = table.segments[p.segment];
-    const auto sign = static_cast<float>(table.parts[segment.part].factor());
+    const auto sign = static_cast<float>(table.components[segment.component].factor());
     const float cosine = sign * p.normal.dot(normal);
     if (segment.label == SegmentTable::kUndecided || cosine <= 0) continue;
     touched[segment.label] +=
@@ -236,7 +241,7 @@ bool SegmentView::is_above(const Point& point) const noexcept {
 /// of some are wrong.
 void SegmentView::look(const Stance& stance, double way, bool from_behind) noexcept {
   const auto decided = [this](const Segment& segment) {
-    return is_decided(segment, table.parts[segment.part]);
+    return is_decided(segment, table.components[segment.component]);
   };
   if (std::ranges::all_of(table.segments, decided)) return;
   choose_eye(*this, stance);
@@ -255,12 +260,12 @@ void SegmentView::look(const Stance& stance, double way, bool from_behind) noexc
     // A proxy that comes from behind is in front only above the surface, not above its points.
     const float over = from_behind && is_one_sided(p) ? height - rise_of(*this, p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
-    seen[segment.part] += w * sharp * (over < 0 ? -1 : 1);
+    seen[segment.component] += w * sharp * (over < 0 ? -1 : 1);
   }
-  for (std::size_t k = 0; k < table.parts.size(); ++k) {
-    Part& part = table.parts[k];
-    const bool fades = part.seen != 0 && !part.is_one_sided();
-    part.seen = fades ? kept * part.seen + (1 - kept) * seen[k] : seen[k];
+  for (std::size_t k = 0; k < table.components.size(); ++k) {
+    Component& component = table.components[k];
+    const bool fades = component.seen != 0 && !component.is_one_sided();
+    component.seen = fades ? kept * component.seen + (1 - kept) * seen[k] : seen[k];
   }
 }
 

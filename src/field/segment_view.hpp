@@ -50,22 +50,22 @@ void swap_labels(auto& labelled, std::uint8_t a, std::uint8_t b) noexcept {
 /// plate, which is kept from cutting itself off (docs/method.md 2.8); judgement.
 inline constexpr double kBackToBack = 0.8;
 
-/// The segments near the tool, in the order in which they were added, and their parts. All memory
-/// is taken by the constructor.
+/// The segments near the tool, in the order in which they were added, and their components. All
+/// memory is taken by the constructor.
 struct SegmentTable {
   static constexpr std::size_t kMost = 96;  ///< segments; further ones are in front; judgement
   static constexpr std::uint8_t kUndecided = 0xff;  ///< no label yet; above every Label
 
-  /// Names a segment or a part: the surface points that it is of, and its number among theirs.
+  /// Names a segment or a component: the surface points that it is of, and its number among theirs.
   /// Layers without segments of their own share one (key_of_all()), and all that was seen from one
-  /// side alone is one part (kOneSided).
+  /// side alone is one component (kOneSided).
   struct Key {
     const void* owner = nullptr;
     std::uint32_t number = 0;
     bool operator==(const Key&) const = default;
   };
-  static constexpr Key kOneSided{nullptr, 1};  ///< the part of all points seen from one side only
-  struct Part {
+  static constexpr Key kOneSided{nullptr, 1};  ///< of all points seen from one side only
+  struct Component {
     Key key;
     int sign = 0;            // 0: not decided
     bool known = false;      // are its normals known to point outward?
@@ -77,13 +77,13 @@ struct SegmentTable {
     [[nodiscard]] bool is_one_sided() const noexcept { return key == kOneSided; }
     // Is it seen from behind, the side that no sensor saw?
     [[nodiscard]] bool is_absent() const noexcept { return is_one_sided() && sign < 0; }
-    // The factor for its normals, 1 or -1; 0: not decided. One-sided parts are never turned.
+    // The factor for its normals, 1 or -1; 0: not decided. One-sided components are never turned.
     [[nodiscard]] int factor() const noexcept { return is_absent() ? 1 : sign; }
   };
   struct Segment {
     Key key;
     int source = 0;
-    std::uint32_t part = 0;
+    std::uint32_t component = 0;
     std::uint8_t label = kUndecided;
     bool near = false;
     std::uint32_t begin = 0;  // of its points in the view's order
@@ -106,14 +106,14 @@ struct SegmentTable {
   /// Where the segment is in `slots`, or would be.
   [[nodiscard]] std::uint8_t find(const Key& key) const noexcept;
   [[nodiscard]] bool sees_from_behind() const noexcept {
-    return std::ranges::any_of(parts, &Part::is_absent);
+    return std::ranges::any_of(components, &Component::is_absent);
   }
-  /// The key of the one segment and part that points without segments of their own belong to.
+  /// The key of the one segment and component that points without segments of their own belong to.
   [[nodiscard]] static Key key_of_all(const SurfacePoints& points) noexcept {
     return points.one_sided() ? kOneSided : Key{};
   }
 
-  std::vector<Part> parts;
+  std::vector<Component> components;
   std::vector<Segment> segments;
   std::array<std::uint8_t, 256> slots;  // of segments, by their keys' hashes and what follows
 };
@@ -155,7 +155,7 @@ struct SegmentView {
   /// Is a segment gone that was near the proxy when the last list was made?
   [[nodiscard]] bool has_lost_one() const noexcept;
   [[nodiscard]] bool is_one_sided(const Point& point) const noexcept {
-    return table.parts[table.segments[point.segment].part].is_one_sided();
+    return table.components[table.segments[point.segment].component].is_one_sided();
   }
   /// Is the eye in front of the point's surface?
   [[nodiscard]] bool is_above(const Point& point) const noexcept;

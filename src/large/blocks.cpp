@@ -84,15 +84,18 @@ std::vector<std::uint32_t> renumber(std::vector<std::uint32_t>& numbers) {
   return old;
 }
 
-/// The segments and parts that are left on some points.
+/// The segments and components that are left on some points.
 void renumber(const SurfacePoints::Segments& from, SurfacePoints::Segments& to) {
-  for (const std::uint32_t segment : renumber(to.segment)) to.part.push_back(from.part[segment]);
-  for (const std::uint32_t part : renumber(to.part)) to.known.push_back(from.known[part]);
+  for (const std::uint32_t segment : renumber(to.segment))
+    to.component.push_back(from.component[segment]);
+  for (const std::uint32_t component : renumber(to.component))
+    to.known.push_back(from.known[component]);
 }
 
 void append(const SurfacePoints::Segments& from, SurfacePoints::Segments& to) {
-  const auto parts = static_cast<std::uint32_t>(to.known.size());
-  for (const std::uint32_t part : from.part) to.part.push_back(parts + part);
+  const auto components = static_cast<std::uint32_t>(to.known.size());
+  for (const std::uint32_t component : from.component)
+    to.component.push_back(components + component);
   to.known.insert(to.known.end(), from.known.begin(), from.known.end());
 }
 
@@ -220,7 +223,7 @@ class Joining {
 
   void add(const Piece& piece) {
     SurfacePoints& points = joined_.points;
-    const auto segments = static_cast<std::uint32_t>(points.segments.part.size());
+    const auto segments = static_cast<std::uint32_t>(points.segments.component.size());
     const std::size_t before = points.segments.segment.size();
     append_to(positions_, piece.positions);
     each_column([&](const auto& from, auto& to) { append_to(to, from); }, piece.columns, points);

@@ -32,7 +32,7 @@ struct Piece {
 
 /// The blocks of a cloud. What a block becomes depends on the facts, on its own points and on those
 /// that lie near, so it is the same whenever and with whatever others it is prepared; segments and
-/// parts end at its faces. All but construction may be called by several threads.
+/// components end at its faces. All but construction may be called by several threads.
 class Blocks {
  public:
   /// Measures the facts where the options give none. `placed` has to outlive it. `halvings`: of the

@@ -48,7 +48,7 @@ struct Later {
 /// on its own, all others afterwards, the most parallel first. So signs spread from normal to
 /// normal where they turn the least (Hoppe et al., Surface reconstruction from unorganized points,
 /// 1992). Where no signs agree all around, as beside a fold that is too thin to tell its sides
-/// apart, they part where normals turn the most.
+/// apart, they separate where normals turn the most.
 class Growth {
  public:
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
@@ -180,8 +180,8 @@ Growths grow_segments(const SegmentInput& input, PointFits& own) {
   std::erase_if(result.second_planes, [&](const SecondPlane& second) {
     return segment[second.point] == segment[second.owner];
   });
-  result.segments.part.resize(sizes.size());
-  std::iota(result.segments.part.begin(), result.segments.part.end(), 0u);
+  result.segments.component.resize(sizes.size());
+  std::iota(result.segments.component.begin(), result.segments.component.end(), 0u);
   for (std::uint32_t i = 0; i < count; ++i) {
     if (segment[i] != SurfacePoints::Segments::kNone && sizes[segment[i]] < kFewestOnSegment) {
       own.confidences[i] *= kTrustOfFew;

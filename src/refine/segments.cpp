@@ -1,4 +1,4 @@
-// Makes parts of segments, within which signs agree, and turns their normals outward.
+// Makes oriented components of segments, within which signs agree, and turns their normals outward.
 
 #include "refine/segments.hpp"
 
@@ -19,11 +19,12 @@ constexpr double kAgree = 0.96;    // it is certain: 98 % agree; judgement
 
 constexpr double kMostHidden = 0.5;  // share of a segment's points; judgement
 
-constexpr double kOpen = 0.3;  // |sum a n| / sum a above which a part does not close; judgement
-// Sine of the lean that gives an open part an upper side; judgement.
+constexpr double kOpen = 0.3;  // |sum a n| / sum a of open components, at least; judgement
+// Sine of the lean that gives an open component an upper side; judgement.
 constexpr double kUpright = 0.2;
 
-/// What is known from outside of which side of a segment or part is free, relative to its normals.
+/// What is known from outside of which side of a segment or component is free, relative to its
+/// normals.
 struct Evidence {
   double signs = 0;  // sum of votes
   double all = 0;    // sum of their sizes
@@ -47,9 +48,9 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const KnownSigns& k
     double points = 0;
     double hidden = 0;
   };
-  std::vector<Evidence> given(segments.part.size());
-  std::vector<Evidence> seen(segments.part.size());
-  std::vector<Counts> counts(segments.part.size());
+  std::vector<Evidence> given(segments.component.size());
+  std::vector<Evidence> seen(segments.component.size());
+  std::vector<Counts> counts(segments.component.size());
   for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
     const std::uint32_t segment = segments.segment[i];
     if (segment == SurfacePoints::Segments::kNone) continue;
@@ -93,52 +94,55 @@ std::vector<SignedEdge> edges_of(const std::vector<SegmentVote>& votes) {
   return edges;
 }
 
-/// Sums over the points of one part.
-struct PartSums {
+/// Sums over the points of one component.
+struct ComponentSums {
   double area = 0;                     // m^2
   double flux = 0;                     // sum a n.p, m^3
   Vector3d vector = Vector3d::Zero();  // sum a n, m^2
   Vector3d moment = Vector3d::Zero();  // sum a p, m^3
 };
 
-/// The sign that turns a part's normals to its free side, and whether evidence told it.
+/// The sign that turns a component's normals to its free side, and whether evidence told it.
 struct Side {
   int sign = 1;
   bool known = false;
 };
 
-/// Evidence counts where nearly all of it agrees. Else a part that closes around something gets its
-/// normals outward: the far side of a whole object faces away from where it was seen. A part that
-/// does not close, such as terrain, a wall or one view of a scene, has no outside: evidence that
-/// mostly agrees decides or, without any, the mean normal is to point up (+z) or, if it lies, away
-/// from the centre of all points.
-Side side_of(const PartSums& part, const Evidence& evidence, const Vector3d& center_of_all) {
+/// Evidence counts where nearly all of it agrees. Else a component that closes around something
+/// gets its normals outward: the far side of a whole object faces away from where it was seen. A
+/// component that does not close, such as terrain, a wall or one view of a scene, has no outside:
+/// evidence that mostly agrees decides or, without any, the mean normal is to point up (+z) or, if
+/// it lies, away from the centre of all points.
+Side side_of(const ComponentSums& component, const Evidence& evidence,
+             const Vector3d& center_of_all) {
   if (const int sign = evidence.sign(kAgree); sign != 0) return {sign, true};
-  if (!(part.area > 0)) return {};
+  if (!(component.area > 0)) return {};
   const auto turned = [](double along) { return Side{along < 0 ? -1 : 1, false}; };
-  const Vector3d center = part.moment / part.area;
-  if (part.vector.norm() <= kOpen * part.area) return turned(part.flux - center.dot(part.vector));
+  const Vector3d center = component.moment / component.area;
+  if (component.vector.norm() <= kOpen * component.area)
+    return turned(component.flux - center.dot(component.vector));
   if (const int sign = evidence.sign(kCoherent); sign != 0) return {sign, true};
-  if (std::abs(part.vector.z()) > kUpright * part.vector.norm()) return turned(part.vector.z());
-  return turned(part.vector.dot(center - center_of_all));
+  if (std::abs(component.vector.z()) > kUpright * component.vector.norm())
+    return turned(component.vector.z());
+  return turned(component.vector.dot(center - center_of_all));
 }
 
-/// The sums of every part, its normals turned by `signs` of the segments, and of all.
-std::vector<PartSums> sums_of_parts(const SegmentInput& input, const PointFits& own,
-                                    const SurfacePoints::Segments& segments,
-                                    const std::vector<int>& signs, PartSums& all) {
-  std::vector<PartSums> sums(signs.size());
+/// The sums of every component, its normals turned by `signs` of the segments, and of all.
+std::vector<ComponentSums> sums_of_components(const SegmentInput& input, const PointFits& own,
+                                              const SurfacePoints::Segments& segments,
+                                              const std::vector<int>& signs, ComponentSums& all) {
+  std::vector<ComponentSums> sums(signs.size());
   for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
     if (segments.segment[i] == SurfacePoints::Segments::kNone) continue;
     const Vector3d p = input.grid.points()[i].cast<double>();
     const Vector3d n = signs[segments.segment[i]] * own.normals[i].cast<double>();
     const double area =
         static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
-    PartSums& part = sums[segments.part[segments.segment[i]]];
-    part.area += area;
-    part.flux += area * n.dot(p);
-    part.vector += area * n;
-    part.moment += area * p;
+    ComponentSums& component = sums[segments.component[segments.segment[i]]];
+    component.area += area;
+    component.flux += area * n.dot(p);
+    component.vector += area * n;
+    component.moment += area * p;
     all.area += area;
     all.moment += area * p;
   }
@@ -178,29 +182,29 @@ SegmentClusters join_clusters(const std::vector<SignedEdge>& edges,
   return clusters;
 }
 
-/// Makes parts of clusters of segments and turns their normals to the free side.
-void join_parts(const SegmentInput& input, const std::vector<SignedEdge>& edges,
-                std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
-                PointFits& own, SurfacePoints::Segments& segments) {
+/// Makes components of clusters of segments and turns their normals to the free side.
+void join_components(const SegmentInput& input, const std::vector<SignedEdge>& edges,
+                     std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
+                     PointFits& own, SurfacePoints::Segments& segments) {
   SegmentClusters clusters = join_clusters(edges, evidence);
   std::vector<int> signs;
-  std::vector<std::uint32_t> roots;  // of the parts
-  for (std::uint32_t k = 0; k < segments.part.size(); ++k) {
+  std::vector<std::uint32_t> roots;  // of the components
+  for (std::uint32_t k = 0; k < segments.component.size(); ++k) {
     const auto [root, sign] = clusters.find(k);
     if (root == k) roots.push_back(k);
-    segments.part[k] =
-        root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : segments.part[root];
+    segments.component[k] =
+        root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : segments.component[root];
     signs.push_back(sign);
   }
-  PartSums all;
-  const std::vector<PartSums> sums = sums_of_parts(input, own, segments, signs, all);
+  ComponentSums all;
+  const std::vector<ComponentSums> sums = sums_of_components(input, own, segments, signs, all);
   const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
   std::vector<Side> sides;
   for (std::uint32_t k = 0; k < roots.size(); ++k) {
     sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
     segments.known.push_back(sides.back().known ? 1 : 0);
   }
-  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[segments.part[k]].sign;
+  for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[segments.component[k]].sign;
   turn(signs, segments, own);
 }
 
@@ -213,7 +217,7 @@ SurfacePoints::Segments make_segments(const SegmentInput& input, const KnownSign
   const std::vector<SegmentVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
   SurfacePoints::Segments segments = std::move(grown.segments);
-  join_parts(input, edges_of(votes), evidence, known.middle, own, segments);
+  join_components(input, edges_of(votes), evidence, known.middle, own, segments);
   segments.residual = own.residuals;
   return segments;
 }

@@ -1,4 +1,4 @@
-// The refinement that puts points on smooth segments, and these into parts.
+// The refinement that puts points on smooth segments, and these into oriented components.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,9 +29,9 @@ struct SegmentInput {
 /// Puts each point on a segment: confident points that continue each other's planes make one; an
 /// uncertain point joins the segment whose plane it lies on and takes over its fit. Those that lie
 /// on none are fitted to each other; without a plane they have no confidence left. Turns
-/// `own.normals` so that they agree within a part, outward where nothing else is known.
+/// `own.normals` so that they agree within a component, outward where nothing else is known.
 ///
-/// Sets of segments that lie side by side are one part where nearby pairs of their points agree on
+/// Segments that lie side by side are one component where nearby pairs of their points agree on
 /// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
 /// arc joined the two. `second_planes`: gets those of points that lie on two segments, in rising
 /// order.
@@ -41,7 +41,7 @@ struct SegmentInput {
 
 /// Which segment each point lies on.
 struct Growths {
-  SurfacePoints::Segments segments;        ///< every segment is a part of its own
+  SurfacePoints::Segments segments;        ///< every segment is a component of its own
   std::vector<std::uint8_t> confident;     ///< 1: by its own fit; 0: by another's, or none
   std::vector<SecondPlane> second_planes;  ///< in rising order
   std::vector<std::uint8_t>

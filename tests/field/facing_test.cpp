@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts all points on the first of these segments, whose parts know no side.
-void put_on_segments(SurfacePoints& points, std::vector<std::uint32_t> parts) {
+/// Puts all points on the first of these segments, whose components have no known side.
+void put_on_segments(SurfacePoints& points, std::vector<std::uint32_t> components) {
   points.segments = {.segment = std::vector<std::uint32_t>(points.size(), 0),
-                     .part = std::move(parts),
+                     .component = std::move(components),
                      .known = {0},
                      .residual = std::vector<float>(points.size(), 0)};
 }
@@ -56,7 +56,7 @@ TEST(Facing, ASurfaceThatRisesFromCloudToCloudKeepsItsSide) {
 TEST(Facing, WhatDoesNotKnowItsSideStaysAbsentForAHandThatCameFromBehind) {
   std::unique_ptr<SurfacePoints> seen = sheet_at(0, 1);
   seen->eye.emplace(SurfaceEye{{0, 0, 1}, {}});
-  seen->segments.part = {0, 1};
+  seen->segments.component = {0, 1};
   seen->segments.known = {1, 0};
   for (std::size_t i = 0; i < seen->size(); ++i) {
     seen->segments.segment[i] =

@@ -35,7 +35,7 @@ std::vector<Vector3f> both(std::vector<Vector3f> points, const std::vector<Vecto
 TEST(Growth, OfAFloorAndAWallMakesTwoSegments) {
   Fitted fitted(floor_and_wall(15));
   const Growths grown = grow_segments(fitted.input(), fitted.own);
-  ASSERT_EQ(grown.segments.part.size(), 2u);
+  ASSERT_EQ(grown.segments.component.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const Vector3f& p = fitted.grid.points()[i];
     if (p.x() < 1.5f && p.z() < 1.5f) continue;  // beside the crease: on either
@@ -85,7 +85,7 @@ TEST(Growth, LetsSignsPartWhereASegmentTurnsTheMost) {
 TEST(Growth, OfASphereMakesOneSegmentWhoseNormalsAgree) {
   Fitted fitted(test::Clouds(2).sphere(3000, 15));
   const Growths grown = grow_segments(fitted.input(), fitted.own);
-  ASSERT_EQ(grown.segments.part.size(), 1u);
+  ASSERT_EQ(grown.segments.component.size(), 1u);
   const float sign = fitted.own.normals[0].dot(fitted.grid.points()[0]) < 0 ? -1.f : 1.f;
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     EXPECT_GT(sign * fitted.own.normals[i].dot(fitted.grid.points()[i].normalized()), 0.9f);
@@ -101,7 +101,7 @@ TEST(Growth, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
   Fitted fitted(both(plane(12), few));
   const std::vector<float> before = fitted.own.confidences;
   const Growths grown = grow_segments(fitted.input(), fitted.own);
-  EXPECT_EQ(grown.segments.part.size(), 2u);
+  EXPECT_EQ(grown.segments.component.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const float share = fitted.grid.points()[i].x() > 40 ? 0.1f : 1.f;
     EXPECT_FLOAT_EQ(fitted.own.confidences[i], share * before[i]);
@@ -133,7 +133,7 @@ TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
 TEST(Votes, AreNotHeardAcrossMoreThanR) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 3.5f})));
   Growths grown = grow_segments(fitted.input(), fitted.own);
-  EXPECT_EQ(grown.segments.part.size(), 2u);
+  EXPECT_EQ(grown.segments.component.size(), 2u);
   EXPECT_TRUE(look_around(fitted.input(), fitted.own, {}, grown).empty());
 }
 

@@ -1,4 +1,5 @@
-// Which side is outside: normals of one part agree, outward where nothing else is known of them.
+// Which side is outside: normals of one component agree, outward where nothing else is known of
+// them.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -218,7 +219,7 @@ TEST(Signs, DoNotDependOnTheNumberOfThreads) {
   const SurfacePoints few = prepared(points);
   EXPECT_EQ(many.normals, few.normals);
   EXPECT_EQ(many.segments.segment, few.segments.segment);
-  EXPECT_EQ(many.segments.part, few.segments.part);
+  EXPECT_EQ(many.segments.component, few.segments.component);
 }
 
 /// Vertices and, from the faces, their outward directions.

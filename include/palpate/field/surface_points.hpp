@@ -53,9 +53,9 @@ struct SurfacePoints {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no segment: above every index
 
     std::vector<std::uint32_t> segment;  ///< of each point; kNone: on none, and without confidence
-    std::vector<std::uint32_t> part;  ///< of each segment: normals of one part agree in their signs
-    std::vector<std::uint8_t> known;  ///< of each part: 1: its normals are known to point outward
-    std::vector<float> residual;      ///< rms distance of the segment's points from their plane, m
+    std::vector<std::uint32_t> component;  ///< of each segment: signs agree within one
+    std::vector<std::uint8_t> known;       ///< of each component, 1: its normals point outward
+    std::vector<float> residual;  ///< rms distance of the segment's points from their plane, m
 
     [[nodiscard]] bool empty() const { return segment.empty(); }
   };
@@ -83,7 +83,7 @@ struct SurfacePoints {
   Edges edges;
 
   /// What saw all of it, from the side that its normals point to: it holds towards that eye alone.
-  /// Of segments, those of known parts. None: it holds from every side.
+  /// Of segments, those of known components. None: it holds from every side.
   std::optional<SurfaceEye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for

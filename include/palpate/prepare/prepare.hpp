@@ -17,8 +17,8 @@ namespace palpate {
 
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
-  /// What tells the signs of normals. They help segments to form parts whose signs agree; the free
-  /// side of each is the one that the tool comes from. Parts that nothing is known of point
+  /// What tells the signs of normals. They help segments to form oriented components; the free side
+  /// of each is the one that the tool comes from. Components that nothing is known of point
   /// outward.
   enum class Orientation {
     automatic,  ///< what is given; else a viewpoint where one is known
