@@ -9,7 +9,7 @@
 
 #include "geometry/normals.hpp"
 #include "palpate/geometry/spacing.hpp"
-#include "prepare/limit_growth.hpp"
+#include "prepare/limit_radii.hpp"
 
 namespace palpate {
 namespace {
@@ -93,7 +93,7 @@ std::vector<float> radii_of(const Sampling& sampling, const PrepareOptions& opti
     radius = std::max(static_cast<float>(options.smoothing) * radius,
                       static_cast<float>(options.minimum_radius));
   }
-  limit_growth(sampling.grid, kSlope, radii);
+  limit_radii(sampling.grid, kSlope, radii);
   const auto largest = static_cast<float>(largest_radius(sampling.facts));
   for (float& radius : radii) radius = std::min(radius, largest);
   return radii;

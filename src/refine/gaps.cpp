@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "geometry/neighborhoods.hpp"
-#include "prepare/limit_growth.hpp"
+#include "prepare/limit_radii.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/segment_fit.hpp"
 #include "refine/holes.hpp"
@@ -122,7 +122,7 @@ void refine_gaps(Surfels& s) {
                  s.radii.values, s.fits, largest) == 0) {
     return;
   }
-  limit_growth(sampling.grid, kSlope, s.radii.values, &s.fits);
+  limit_radii(sampling.grid, kSlope, s.radii.values, &s.fits);
   s.sums.update(sampling.grid, before, s.radii.values, options.kernel);
 }
 

@@ -49,11 +49,11 @@ struct Later {
 /// normal where they turn the least (Hoppe et al., Surface reconstruction from unorganized points,
 /// 1992). Where no signs agree all around, as beside a fold that is too thin to tell its sides
 /// apart, they separate where normals turn the most.
-class Growth {
+class SegmentGrowing {
  public:
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
-  Growth(const SegmentInput& input, const PointFits& own,
-         const std::vector<std::uint32_t>& assigned)
+  SegmentGrowing(const SegmentInput& input, const PointFits& own,
+                 const std::vector<std::uint32_t>& assigned)
       : input_(input), own_(own), assigned_(assigned), sets_(input.grid.size()) {}
 
   detail::SignedSets& run() {
@@ -156,13 +156,13 @@ float segment_tolerance(const SegmentInput& input, std::uint32_t i, std::uint32_
                       kTolerance * std::min(input.spacings[i], input.spacings[j]));
 }
 
-Growths grow_segments(const SegmentInput& input, PointFits& own) {
-  Growths result;
+GrownSegments grow_segments(const SegmentInput& input, PointFits& own) {
+  GrownSegments result;
   Snapped snapped = snap_to_planes(input, own);
   result.confident = std::move(snapped.confident);
   result.second_planes = std::move(snapped.second_planes);
-  Growth growth(input, own, snapped.assigned);
-  detail::SignedSets& sets = growth.run();
+  SegmentGrowing growing(input, own, snapped.assigned);
+  detail::SignedSets& sets = growing.run();
   const std::size_t count = input.grid.size();
   std::vector<std::uint32_t>& segment = result.segments.segment;
   segment.assign(count, SurfacePoints::Segments::kNone);

@@ -34,7 +34,7 @@ constexpr int kVotesEach = 3;             // points of each, the nearest
 class Outlook {
  public:
   Outlook(const SegmentInput& input, const PointFits& own, const std::optional<Vector3f>& eye,
-          Growths& grown)
+          GrownSegments& grown)
       : input_(input), own_(own), viewer_(eye), grown_(grown), segments_(grown.segments) {}
 
   void look(const detail::Block& block, detail::Surroundings& surroundings,
@@ -156,7 +156,7 @@ class Outlook {
   const PointFits& own_;
   const std::optional<Vector3f>& viewer_;
   const float reach_ = viewer_ ? kGapReach : kVoteReach;  // R
-  Growths& grown_;
+  GrownSegments& grown_;
   const SurfacePoints::Segments& segments_;
   detail::NearPairs pairs_;
   std::array<Eye, simd::kQueries> eyes_;
@@ -166,7 +166,7 @@ class Outlook {
 }  // namespace
 
 std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
-                                     const std::optional<Vector3f>& eye, Growths& grown) {
+                                     const std::optional<Vector3f>& eye, GrownSegments& grown) {
   if (eye) grown.hidden.assign(input.grid.size(), 0);
   const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
   std::vector<std::vector<SegmentVote>> votes(blocks.size());

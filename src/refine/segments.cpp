@@ -42,7 +42,7 @@ struct Evidence {
 
 /// For each segment: given normals where nearly all agree, else what the eye sees of it.
 std::vector<Evidence> evidence_of(const SegmentInput& input, const KnownSigns& known,
-                                  const PointFits& own, const Growths& grown) {
+                                  const PointFits& own, const GrownSegments& grown) {
   const SurfacePoints::Segments& segments = grown.segments;
   struct Counts {
     double points = 0;
@@ -212,7 +212,7 @@ void join_components(const SegmentInput& input, const std::vector<SignedEdge>& e
 
 SurfacePoints::Segments make_segments(const SegmentInput& input, const KnownSigns& known,
                                       PointFits& own, std::vector<SecondPlane>& second_planes) {
-  Growths grown = grow_segments(input, own);
+  GrownSegments grown = grow_segments(input, own);
   second_planes = std::move(grown.second_planes);
   const std::vector<SegmentVote> votes = look_around(input, own, known.eye, grown);
   const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);

@@ -40,7 +40,7 @@ struct SegmentInput {
                                                     std::vector<SecondPlane>& second_planes);
 
 /// Which segment each point lies on.
-struct Growths {
+struct GrownSegments {
   SurfacePoints::Segments segments;        ///< every segment is a component of its own
   std::vector<std::uint8_t> confident;     ///< 1: by its own fit; 0: by another's, or none
   std::vector<SecondPlane> second_planes;  ///< in rising order
@@ -49,7 +49,7 @@ struct Growths {
 };
 
 /// The first half of make_segments(). Normals of one segment agree afterwards.
-[[nodiscard]] Growths grow_segments(const SegmentInput& input, PointFits& own);
+[[nodiscard]] GrownSegments grow_segments(const SegmentInput& input, PointFits& own);
 
 /// How far the points i and j may be off each other's plane when they lie on one segment, m.
 [[nodiscard]] float segment_tolerance(const SegmentInput& input, std::uint32_t i, std::uint32_t j);
@@ -66,7 +66,7 @@ struct SegmentVote {
 /// notes which points another segment hides from it.
 [[nodiscard]] std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
                                                    const std::optional<Eigen::Vector3f>& eye,
-                                                   Growths& grown);
+                                                   GrownSegments& grown);
 
 inline constexpr std::uint32_t kUnassigned = ~std::uint32_t{0};  ///< no point: above every index
 

@@ -61,7 +61,7 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
     padded_.lay_out_places(depth, v, first, count);
     start(depth, v, first, count);
   });
-  limit_growth(depth);
+  limit_radii(depth);
   hidden_.find({depth, radii_}, padded_);
   rims_.find(depth, radii_, padded_, hidden_, balls, exact, whole);
   if (rims_.largest_half() > padded_.margin) {
@@ -98,7 +98,7 @@ void BlockSurface::start(const FilteredDepth& depth, int v, int first, int count
 
 // Two passes over the image carry a small radius to everywhere (a chamfer transform). Most blocks
 // have no much smaller one beside them; they are passed over until one becomes smaller.
-void BlockSurface::limit_growth(const FilteredDepth& depth) {
+void BlockSurface::limit_radii(const FilteredDepth& depth) {
   fours_ = (static_cast<std::size_t>(depth.columns) + kLanes - 1) / kLanes;
   steep_.resize(fours_ * static_cast<std::size_t>(depth.rows));
   each_row(depth, [&](std::size_t v) { find_steep(depth, static_cast<int>(v)); });

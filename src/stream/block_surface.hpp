@@ -60,7 +60,7 @@ class BlockSurface {
  private:
   void measure(const FilteredDepth& depth, std::span<const Ball> balls, BlockRims::Exact exact);
   void start(const FilteredDepth& depth, int v, int first, int count);
-  void limit_growth(const FilteredDepth& depth);
+  void limit_radii(const FilteredDepth& depth);
   void find_steep(const FilteredDepth& depth, int v);
   void carry(const FilteredDepth& depth, std::ptrdiff_t sign);
   void lay_out(const FilteredDepth& depth, int v, int first, int count);

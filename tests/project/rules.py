@@ -47,7 +47,7 @@ FLOORS = CORE | {
 # The files of two floors from the first step on: what stands in one line sees what stands above it.
 STEPS = {
     "prepare": [{"description", "stopwatch", "point_fits", "places", "height_groups"},
-                {"given_normals", "lines", "segment_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_growth"},
+                {"given_normals", "lines", "segment_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_radii"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
     "refine": [{"cluster_edges", "holes"}, {"segment_clusters", "cannot_link_sets"}, {"outliers"}, {"gaps"}, {"segments"},
                {"snapping"}, {"grow_segments", "look_around"}, {"second_planes"}, {"refinements"}],

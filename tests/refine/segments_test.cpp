@@ -32,9 +32,9 @@ std::vector<Vector3f> both(std::vector<Vector3f> points, const std::vector<Vecto
   return points;
 }
 
-TEST(Growth, OfAFloorAndAWallMakesTwoSegments) {
+TEST(SegmentGrowing, OfAFloorAndAWallMakesTwoSegments) {
   Fitted fitted(floor_and_wall(15));
-  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  const GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   ASSERT_EQ(grown.segments.component.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const Vector3f& p = fitted.grid.points()[i];
@@ -63,7 +63,7 @@ std::vector<Vector3f> band_with_half_twist(int length, int twist) {
 }
 
 // No signs agree all around such a band.
-TEST(Growth, LetsSignsPartWhereASegmentTurnsTheMost) {
+TEST(SegmentGrowing, LetsSignsPartWhereASegmentTurnsTheMost) {
   constexpr int kLength = 400;
   constexpr int kTwist = 20;
   PointCloud cloud;
@@ -82,9 +82,9 @@ TEST(Growth, LetsSignsPartWhereASegmentTurnsTheMost) {
   EXPECT_TRUE(up == 0 || up == all) << up << " of " << all;
 }
 
-TEST(Growth, OfASphereMakesOneSegmentWhoseNormalsAgree) {
+TEST(SegmentGrowing, OfASphereMakesOneSegmentWhoseNormalsAgree) {
   Fitted fitted(test::Clouds(2).sphere(3000, 15));
-  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  const GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   ASSERT_EQ(grown.segments.component.size(), 1u);
   const float sign = fitted.own.normals[0].dot(fitted.grid.points()[0]) < 0 ? -1.f : 1.f;
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
@@ -92,7 +92,7 @@ TEST(Growth, OfASphereMakesOneSegmentWhoseNormalsAgree) {
   }
 }
 
-TEST(Growth, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
+TEST(SegmentGrowing, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
   std::vector<Vector3f> few = {{50, 0, 0}};
   for (int k = 0; k < 6; ++k) {
     const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3;
@@ -100,7 +100,7 @@ TEST(Growth, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
   }
   Fitted fitted(both(plane(12), few));
   const std::vector<float> before = fitted.own.confidences;
-  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  const GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   EXPECT_EQ(grown.segments.component.size(), 2u);
   for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
     const float share = fitted.grid.points()[i].x() > 40 ? 0.1f : 1.f;
@@ -111,7 +111,7 @@ TEST(Growth, LeavesASegmentOfFewPointsATenthOfItsConfidence) {
 TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
   for (const float turned : {1.f, -1.f}) {
     Fitted fitted(floor_and_wall(15));
-    Growths grown = grow_segments(fitted.input(), fitted.own);
+    GrownSegments grown = grow_segments(fitted.input(), fitted.own);
     for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
       Vector3f& n = fitted.own.normals[i];
       const bool wall = std::abs(n.x()) > 0.9f;
@@ -132,14 +132,14 @@ TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
 
 TEST(Votes, AreNotHeardAcrossMoreThanR) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 3.5f})));
-  Growths grown = grow_segments(fitted.input(), fitted.own);
+  GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   EXPECT_EQ(grown.segments.component.size(), 2u);
   EXPECT_TRUE(look_around(fitted.input(), fitted.own, {}, grown).empty());
 }
 
 TEST(LookAround, TellsWhatAnotherSegmentHides) {
   Fitted fitted(both(plane(12), plane(12, {0, 0, 2})));
-  Growths grown = grow_segments(fitted.input(), fitted.own);
+  GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   for (const float z : {-20.f, 20.f}) {
     (void)look_around(fitted.input(), fitted.own, Vector3f(6, 6, z), grown);
     for (std::size_t i = 0; i < fitted.grid.size(); ++i) {
@@ -151,7 +151,7 @@ TEST(LookAround, TellsWhatAnotherSegmentHides) {
 
 TEST(SecondPlanes, AreThePointsOfACreaseAndOfNothingElse) {
   Fitted fitted(floor_and_wall(15));
-  const Growths grown = grow_segments(fitted.input(), fitted.own);
+  const GrownSegments grown = grow_segments(fitted.input(), fitted.own);
   EXPECT_GE(grown.second_planes.size(), 15u);
   for (const SecondPlane& second : grown.second_planes) {
     const Vector3f& p = fitted.grid.points()[second.point];

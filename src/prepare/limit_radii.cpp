@@ -1,5 +1,5 @@
 // Lets support radii grow slowly from place to place.
-#include "prepare/limit_growth.hpp"
+#include "prepare/limit_radii.hpp"
 
 #include <algorithm>
 #include <array>
@@ -98,8 +98,8 @@ class Limiter {
 
 }  // namespace
 
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
-                  const PointFits* own) {
+void limit_radii(const CellGrid& grid, float slope, std::vector<float>& radii,
+                 const PointFits* own) {
   if (radii.empty()) return;
   const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
   if (*low >= kMatters * *high) return;

@@ -1,6 +1,6 @@
 // R varies slowly from point to point.
 
-#include "prepare/limit_growth.hpp"
+#include "prepare/limit_radii.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,14 +22,14 @@ std::vector<Vector3f> scattered(std::size_t count) {
   return points;
 }
 
-TEST(LimitGrowth, IsTheLowestConeOverAllPoints) {
+TEST(LimitRadii, IsTheLowestConeOverAllPoints) {
   const CellGrid grid(scattered(600));
   std::mt19937 random(6);
   std::uniform_real_distribution<float> size(-4, 0);
   std::vector<float> radii;
   for (std::size_t i = 0; i < grid.size(); ++i) radii.push_back(std::pow(10.0f, size(random)));
   std::vector<float> limited = radii;
-  limit_growth(grid, 0.5f, limited);
+  limit_radii(grid, 0.5f, limited);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     float expected = radii[i];
     for (std::size_t j = 0; j < grid.size(); ++j) {
@@ -41,24 +41,24 @@ TEST(LimitGrowth, IsTheLowestConeOverAllPoints) {
   }
 }
 
-TEST(LimitGrowth, LeavesEvenRadiiAlone) {
+TEST(LimitRadii, LeavesEvenRadiiAlone) {
   const CellGrid grid(scattered(100));
   const std::vector<float> even(100, 0.1f);
   std::vector<float> radii = even;
-  limit_growth(grid, 0.5f, radii);
+  limit_radii(grid, 0.5f, radii);
   EXPECT_EQ(radii, even);
   std::vector<float> none;
-  limit_growth(CellGrid(), 0.5f, none);
+  limit_radii(CellGrid(), 0.5f, none);
   EXPECT_TRUE(none.empty());
 }
 
-TEST(LimitGrowth, SparsePointsDoNotReachIntoFineSampling) {
+TEST(LimitRadii, SparsePointsDoNotReachIntoFineSampling) {
   std::vector<Vector3f> points = scattered(1000);  // 3 cm apart
   points.emplace_back(2.0f, 0.5f, 0.0f);
   const CellGrid grid(points);
   std::vector<float> radii;
   for (const Vector3f& p : grid.points()) radii.push_back(p.x() > 1.5f ? 5.0f : 0.08f);
-  limit_growth(grid, 0.5f, radii);
+  limit_radii(grid, 0.5f, radii);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (grid.points()[i].x() > 1.5f) {
       EXPECT_LT(radii[i], 0.6f);
@@ -66,7 +66,7 @@ TEST(LimitGrowth, SparsePointsDoNotReachIntoFineSampling) {
   }
 }
 
-TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
+TEST(LimitRadii, SparsePointsOfTheSamePlaneMayReach) {
   std::vector<Vector3f> points = scattered(1000);
   points.emplace_back(2.0f, 0.5f, 0.0f);
   points.emplace_back(2.0f, 0.5f, 1.0f);
@@ -79,7 +79,7 @@ TEST(LimitGrowth, SparsePointsOfTheSamePlaneMayReach) {
                       {},
                       {},
                       {}};
-  limit_growth(grid, 0.5f, radii, &own);
+  limit_radii(grid, 0.5f, radii, &own);
   for (std::size_t i = 0; i < grid.size(); ++i) {
     const Vector3f& p = grid.points()[i];
     if (p.x() < 1.5f) continue;

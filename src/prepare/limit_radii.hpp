@@ -1,4 +1,4 @@
-// Part of the third step of prepare(), and of what follows the fourth: how fast R may grow.
+// Part of the third step of prepare(), and of what follows the fourth: how fast R may vary.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct PointFits;
 /// what is sampled finely. In sorted order, m.
 /// `own`: points on the plane of a point do not limit it, since it tells nothing else of them;
 /// nullptr: all do.
-void limit_growth(const CellGrid& grid, float slope, std::vector<float>& radii,
-                  const PointFits* own = nullptr);
+void limit_radii(const CellGrid& grid, float slope, std::vector<float>& radii,
+                 const PointFits* own = nullptr);
 
 }  // namespace palpate
