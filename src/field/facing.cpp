@@ -83,7 +83,7 @@ void Facing::list_references(const Eigen::Vector3d& proxy, bool vanished) noexce
 /// Are all points of one component whose side is decided, so that nothing needs a look?
 bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
   const SegmentTable& table = view_.table;
-  if (table.segments.size() != 1 || table.segments[0].label != kInFront ||
+  if (table.segments.size() != 1 || table.segments[0].label != kNearFace ||
       table.sees_from_behind()) {
     return false;
   }
@@ -102,7 +102,7 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   const bool begins = stance.touches() && !touched_;
   touched_ = stance.touches();
   if (begins) turn_by(stance.normal.cast<float>());
-  view_.table.put_in_front(view_.touched_label(stance.normal.cast<float>()));
+  view_.table.make_near_face(view_.touched_label(stance.normal.cast<float>()));
   const auto older = static_cast<std::ptrdiff_t>(remembered_.size());
   const bool vanished = view_.has_lost_one();
   list_references(stance.proxy, vanished);
@@ -130,7 +130,7 @@ bool Facing::write(const Points& points) const noexcept {
     const std::uint32_t slot = segments[k];
     std::int8_t sign = 1;
     bool uncertain = slot == SegmentView::kUncertain;  // of one view, with no side of its own
-    std::uint8_t label = kInFront;
+    std::uint8_t label = kNearFace;
     if (slot < SegmentView::kNone) {
       const Segment& segment = view_.table.segments[slot];
       const Component& component = view_.table.components[segment.component];

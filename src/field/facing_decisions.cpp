@@ -41,14 +41,14 @@ bool is_beyond(const SegmentView::Point& p, const auto& q, const Vector3f& way,
          kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
 }
 
-/// Puts what is behind in front, where nothing is across, which leaves the field as it is. False:
-/// something is.
-bool swap_front(auto& segments, auto& references) noexcept {
-  const auto across = [](const auto& x) { return x.label == kAcross; };
-  if (std::ranges::any_of(segments, across) || std::ranges::any_of(references, across))
+/// Swaps near and far faces where there is no concave neighbour, which leaves the field as it is.
+/// False: something is.
+bool swap_faces(auto& segments, auto& references) noexcept {
+  const auto concave = [](const auto& x) { return x.label == kConcave; };
+  if (std::ranges::any_of(segments, concave) || std::ranges::any_of(references, concave))
     return false;
-  swap_labels(segments, kInFront, kBehind);
-  swap_labels(references, kInFront, kBehind);
+  swap_labels(segments, kNearFace, kFarFace);
+  swap_labels(references, kNearFace, kFarFace);
   return true;
 }
 
@@ -154,7 +154,7 @@ struct Facing::Meeting {
   }
 };
 
-/// `beyond`: the weight of pairs where what is in front goes on beyond the segment's plane.
+/// `beyond`: the weight of pairs where a near face goes on beyond the segment's plane.
 Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexcept {
   Meetings result{};
   const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
@@ -172,7 +172,7 @@ Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexce
                    m.now += w;
                    m.off_now += off;
                  }
-                 if (q.label == kInFront && is_beyond(p, q, way, sign)) beyond += w;
+                 if (q.label == kNearFace && is_beyond(p, q, way, sign)) beyond += w;
                });
   return result;
 }
@@ -191,28 +191,28 @@ std::uint8_t Facing::label_of(const Segment& segment) noexcept {
   for (Meeting& meeting : with) {
     if (!meeting.is_edge()) meeting = {};
   }
-  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) return kInFront;
-  const int other = with[kInFront].all > 0                  ? kInFront
-                    : with[kBehind].all > with[kAcross].all ? kBehind
-                                                            : kAcross;
+  if (with[0].all + with[1].all + with[2].all <= kLeastMeeting) return kNearFace;
+  const int other = with[kNearFace].all > 0                   ? kNearFace
+                    : with[kFarFace].all > with[kConcave].all ? kFarFace
+                                                              : kConcave;
   const bool concave = with[other].above >= 0;
-  // No edge is where the front goes on beyond the segment's plane: the segment would cut it off
-  // there.
+  // There is no edge where the near face goes on beyond the segment's plane: the segment would cut
+  // it off there.
   const bool plate = with[other].parallel < -kBackToBack * with[other].all;
-  if (other == kInFront && !plate && beyond > kLeastMeeting) return kAcross;
-  if (other == kBehind && concave) {
-    return swap_front(view_.table.segments, references_) ? kAcross : kInFront;
+  if (other == kNearFace && !plate && beyond > kLeastMeeting) return kConcave;
+  if (other == kFarFace && concave) {
+    return swap_faces(view_.table.segments, references_) ? kConcave : kNearFace;
   }
-  if (other == kAcross && !concave) {
+  if (other == kConcave && !concave) {
     const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
-    bool cuts = false;  // something of what is in front off
+    bool cuts = false;  // something of a near face off
     each_meeting(segment, kAnywhere,
                  [&](const Point& p, const Reference& q, const Vector3f& way, double) {
-                   cuts = cuts || (q.label == kInFront && is_beyond(p, q, way, sign));
+                   cuts = cuts || (q.label == kNearFace && is_beyond(p, q, way, sign));
                  });
-    return cuts || pairs_ == 0 ? kInFront : kBehind;
+    return cuts || pairs_ == 0 ? kNearFace : kFarFace;
   }
-  return concave ? kAcross : kBehind;
+  return concave ? kConcave : kFarFace;
 }
 
 /// Labels the segments that have no label, the weightiest first.

@@ -126,21 +126,21 @@ Value difference(const Value& a, const Value& b) noexcept {
   return {a.f - b.f, a.grad - b.grad};
 }
 
-/// How much what is behind faces away from what is in front, 0 to 1: by d = -Nb . Nb' of the two.
+/// How much the far face faces away from the near one, 0 to 1: by d = -Nb . Nb' of the two.
 Value back_to_back(FieldPlace place) noexcept {
   const int labels = place.columns->labels;
-  double v[2] = {};  // of what is in front, and behind
+  double v[2] = {};  // of the near face, and of the far one
   Vector3d n[2] = {Vector3d::Zero(), Vector3d::Zero()};
   for (int k = 0; k < labels; ++k) {
-    v[k == kBehind] += place.all->label[k].v;
-    n[k == kBehind] += vector(place.all->label[k].vn);
+    v[k == kFarFace] += place.all->label[k].v;
+    n[k == kFarFace] += vector(place.all->label[k].vn);
   }
   for (int side = 0; side < 2; ++side) n[side] /= v[side];
   const double d = -n[0].dot(n[1]);
   const SmoothStep away = smooth_step(d, kBackToBack, 1 - kBackToBack);
   Value result{away.value, Vector3d::Zero()};
   for (place.label = 0; away.slope > 0 && place.label < labels; ++place.label) {
-    const int side = place.label == kBehind;
+    const int side = place.label == kFarFace;
     const double by = -away.slope / v[side];
     simd::Linear b{};
     assign(b.alpha, by * n[1 - side]);
@@ -150,8 +150,9 @@ Value back_to_back(FieldPlace place) noexcept {
   return result;
 }
 
-/// The height behind. On the far side of a plate it stays away from the front by the width of a
-/// soft edge: otherwise the plate would end in a hole before its two surfaces run together.
+/// The height of the far face. On the far side of a plate it stays away from the near one by the
+/// width of a soft edge: otherwise the plate would end in a hole before its two surfaces run
+/// together.
 Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
   const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
                       behind.grad + front.grad + kOverEdges * place.radius.grad};
@@ -189,20 +190,20 @@ std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place
     weight[k] = {sums.v, vector(sums.grad_v)};
   }
   const Value& radius = place.radius;
-  if (!there[kInFront] && !there[kAcross] && !there[kBehind]) return std::nullopt;
-  Value front = there[kInFront] ? height[kInFront] : height[kAcross];
-  Value front_weight = there[kInFront] ? weight[kInFront] : weight[kAcross];
-  if (there[kInFront] && there[kAcross]) {
-    front_weight = sum(weight[kInFront], weight[kAcross]);
-    front = smooth_min(sum(height[kInFront], leave(weight[kInFront], front_weight, radius)),
-                       sum(height[kAcross], leave(weight[kAcross], front_weight, radius)), radius,
+  if (!there[kNearFace] && !there[kConcave] && !there[kFarFace]) return std::nullopt;
+  Value front = there[kNearFace] ? height[kNearFace] : height[kConcave];
+  Value front_weight = there[kNearFace] ? weight[kNearFace] : weight[kConcave];
+  if (there[kNearFace] && there[kConcave]) {
+    front_weight = sum(weight[kNearFace], weight[kConcave]);
+    front = smooth_min(sum(height[kNearFace], leave(weight[kNearFace], front_weight, radius)),
+                       sum(height[kConcave], leave(weight[kConcave], front_weight, radius)), radius,
                        kInCreases);
   }
-  if (!there[kBehind]) return front;
-  if (!there[kInFront] && !there[kAcross]) return height[kBehind];
-  const Value both = sum(front_weight, weight[kBehind]);
+  if (!there[kFarFace]) return front;
+  if (!there[kNearFace] && !there[kConcave]) return height[kFarFace];
+  const Value both = sum(front_weight, weight[kFarFace]);
   front = difference(front, leave(front_weight, both, radius));
-  const Value behind = difference(height[kBehind], leave(weight[kBehind], both, radius));
+  const Value behind = difference(height[kFarFace], leave(weight[kFarFace], both, radius));
   return smooth_max(front, far_side(place, front, behind), radius, kOverEdges);
 }
 

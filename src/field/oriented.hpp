@@ -126,9 +126,9 @@ struct FieldPlace {
 [[nodiscard]] Value smooth_max(const Value& a, const Value& b, const Value& radius,
                                double width) noexcept;
 
-/// The height above the surfaces at a place as they meet there: what is across bounds free space
-/// with what is in front, and what is behind bounds the solid with both (Facing). Nothing where no
-/// label has more than `least` of trusted weight. With its exact gradient.
+/// The height above the surfaces at a place as they meet there: concave neighbours bound free space
+/// with near faces, and far faces bound the solid with both (Facing). Nothing where no label has
+/// more than `least` of trusted weight. With its exact gradient.
 [[nodiscard]] std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
                                                  double least) noexcept;
 

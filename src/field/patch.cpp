@@ -78,7 +78,7 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   points_.sources = sources;
   points_.layers.assign(layers.begin(), layers.end());  // within what was reserved
   points_.signs.assign(count, 1);
-  points_.labels.assign(count, kInFront);
+  points_.labels.assign(count, kNearFace);
   if (points_.options.stance && whole) turn(*points_.options.stance);
   points_.options.stance = nullptr;
   eyes_.begin(center());

@@ -150,16 +150,16 @@ void SegmentTable::clear() noexcept {
   clear_segments();
 }
 
-void SegmentTable::put_in_front(std::uint8_t touched) noexcept {
+void SegmentTable::make_near_face(std::uint8_t touched) noexcept {
   const auto any = [this](std::uint8_t label) {
     return std::ranges::any_of(segments,
                                [=](const Segment& segment) { return segment.label == label; });
   };
-  const bool across = any(kAcross);
-  const std::uint8_t left = across ? kAcross : kBehind;
-  const std::uint8_t first = any(kInFront) ? touched : left;
-  if (first == kInFront || (first == kBehind && across)) return;
-  swap_labels(segments, kInFront, first);
+  const bool concave = any(kConcave);
+  const std::uint8_t left = concave ? kConcave : kFarFace;
+  const std::uint8_t first = any(kNearFace) ? touched : left;
+  if (first == kNearFace || (first == kFarFace && concave)) return;
+  swap_labels(segments, kNearFace, first);
 }
 
 std::uint8_t SegmentTable::find(const Key& key) const noexcept {
@@ -213,7 +213,7 @@ void SegmentView::list(std::span<const ActiveLayer> layers, const Selection& cho
 }
 
 std::uint8_t SegmentView::touched_label(const Vector3f& normal) const noexcept {
-  if (normal.isZero(0)) return kInFront;
+  if (normal.isZero(0)) return kNearFace;
   std::array<double, simd::kLabels> touched{};
   for (const Point& p : points) {
     const Segment& segment = table.segments[p.segment];

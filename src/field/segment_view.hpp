@@ -33,13 +33,13 @@ inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to te
 
 /// How a segment is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
-  kInFront = 0,  ///< what is above it is free
-  kBehind = 1,   ///< it meets what is in front at a convex edge, or what is across at one beyond
-                 ///< the front: solid is what is below both
-  kAcross = 2,   ///< it meets what is in front in a crease, or that goes on beyond its plane: free
-                 ///< is what is above both
+  kNearFace = 0,  ///< near face: what is above it is free
+  kFarFace = 1,  ///< far face: it meets a near face at a convex edge, or a concave neighbour at one
+                 ///< beyond the near face; solid is what is below both
+  kConcave = 2,  ///< concave neighbour: it meets a near face in a crease, or that goes on beyond
+                 ///< its plane; free is what is above both
 };
-static_assert(kAcross == simd::kLabels - 1);
+static_assert(kConcave == simd::kLabels - 1);
 
 /// Lets two labels change places in what has a `label`.
 void swap_labels(auto& labelled, std::uint8_t a, std::uint8_t b) noexcept {
@@ -53,7 +53,7 @@ inline constexpr double kBackToBack = 0.8;
 /// The segments near the tool, in the order in which they were added, and their components. All
 /// memory is taken by the constructor.
 struct SegmentTable {
-  static constexpr std::size_t kMost = 96;  ///< segments; further ones are in front; judgement
+  static constexpr std::size_t kMost = 96;  ///< segments; further ones are near faces; judgement
   static constexpr std::uint8_t kUndecided = 0xff;  ///< no label yet; above every Label
 
   /// Names a segment or a component: the surface points that it is of, and its number among theirs.
@@ -99,10 +99,11 @@ struct SegmentTable {
   /// it; kMost: there are too many.
   std::uint32_t add(const ActiveLayer& layer, std::uint32_t number,
                     const SegmentTable& before) noexcept;
-  /// Puts in front the segments of the label `touched`, or those that are left where none is in
-  /// front: what comes into view is told by how it meets them. Labels that change places leave the
-  /// field as it is, but for front and behind where something lies across: they stay.
-  void put_in_front(std::uint8_t touched) noexcept;
+  /// Makes near faces of the segments with the label `touched`, or of those that are left where
+  /// there is no near face: the labels of what comes into view follow from how it meets them.
+  /// Labels that change places leave the field as it is, but for near and far faces beside a
+  /// concave neighbour: they stay.
+  void make_near_face(std::uint8_t touched) noexcept;
   /// Where the segment is in `slots`, or would be.
   [[nodiscard]] std::uint8_t find(const Key& key) const noexcept;
   [[nodiscard]] bool sees_from_behind() const noexcept {
@@ -150,7 +151,7 @@ struct SegmentView {
   /// Sums what speaks for the sides that the tool sees. `way`, m: of the proxy since the last call;
   /// `from_behind`: it was behind what was seen from one side only.
   void look(const Stance& stance, double way, bool from_behind) noexcept;
-  /// The label of what a proxy with this contact normal touches most; kInFront: of nothing.
+  /// The label of what a proxy with this contact normal touches most; kNearFace: of nothing.
   [[nodiscard]] std::uint8_t touched_label(const Eigen::Vector3f& normal) const noexcept;
   /// Is a segment gone that was near the proxy when the last list was made?
   [[nodiscard]] bool has_lost_one() const noexcept;

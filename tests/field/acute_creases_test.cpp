@@ -25,7 +25,7 @@ class Gathered {
   [[nodiscard]] double closure(const Vector3d& x) const {
     simd::Sums sums;
     surface_.sums->all(patch_.columns(), false, x.data(), sums);
-    if (!(sums.label[kInFront].v > 0)) return 0;
+    if (!(sums.label[kNearFace].v > 0)) return 0;
     const Value radius{sums.wr / sums.w[0], Vector3d::Zero()};
     return crease_closure({.functions = surface_.sums,
                            .columns = &patch_.columns(),
