@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// The one file that asks the compiler which machine it compiles for.
+// The one file that reads from the compiler which machine it compiles for.
 
 namespace palpate {
 

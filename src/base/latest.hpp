@@ -64,7 +64,7 @@ class Latest {
     }
   }
 
-  /// Grows whenever a value is set: tells whether looking is worth it. Wait-free.
+  /// Grows whenever a value is set: shows whether reading is worth it. Wait-free.
   [[nodiscard]] std::uint64_t generation() const noexcept { return generation_.load(); }
 
  private:

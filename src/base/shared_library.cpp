@@ -1,4 +1,4 @@
-// Loads a library at run time, and tells one that is absent from one that is broken.
+// Loads a library at run time, and separates one that is absent from one that is broken.
 #include "base/shared_library.hpp"
 
 #include <dlfcn.h>

@@ -16,10 +16,10 @@ class SharedLibrary {
   /// May the library be unloaded? Libraries of devices start threads that they leave behind.
   enum class Unload { with_the_last_copy, never };
 
-  /// Loads the first of `names` that loads: file names as the system's linker knows them, or paths.
+  /// Loads the first of `names` that loads: file names as for the system's linker, or paths.
   /// `remedy`: where to get it, for messages.
-  /// @throws Error that says why none loads; of several reasons, that of a library that is there
-  /// but broken.
+  /// @throws Error with the reason why none loads; of several reasons, that of a library that is
+  /// there but broken.
   SharedLibrary(const std::vector<std::string>& names, std::string remedy, Unload unload);
 
   /// A function of the library, for the pointer that it initialises.
@@ -40,7 +40,7 @@ class SharedLibrary {
 };
 
 /// `driver` with what `list(driver)` adds to it. Where that throws an Error, the driver is not
-/// available, and misses what the error says.
+/// available, and misses what the error names.
 template <class List>
 [[nodiscard]] DriverInfo listed(DriverInfo driver, const List& list) {
   try {

@@ -46,7 +46,7 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
 
 // Lets go of a hand whose proxy passed through a surface and is held by it from within: the spring
 // fades with a time constant of 20 ms. A proxy that moves fast is not looked at: what a step saw
-// beyond its patch tells the next one the sides (SceneField), and looking elsewhere would forget
+// beyond its patch hands the sides to the next one (SceneField), and looking elsewhere would forget
 // it. Lets go as well of a hand that is held hard in free air for long; the inside of a scanned
 // body is free air, too.
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,

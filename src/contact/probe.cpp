@@ -134,7 +134,7 @@ struct Interval {
 // Depth-first, near half first: each level leaves one interval behind.
 class Pending {
  public:
-  static constexpr int kDepth = 60;  // halvings: more than a double's 53 bits tell apart
+  static constexpr int kDepth = 60;  // halvings: more than a double's 53 bits resolve
 
   explicit Pending(const Interval& whole) noexcept { items_[0] = whole; }
   [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
@@ -182,7 +182,7 @@ class Sweeper {
     return probe_.swept + probe_.work() - spent_before_ >= kSweepWork;
   }
 
-  // The first interval is the whole way, of which the caller knows that its ball is not free.
+  // The first interval is the whole way, whose ball is not free, as the caller has found.
   [[nodiscard]] Sweep search() noexcept {
     Pending pending{{0, 1}};
     bool known_busy = true;

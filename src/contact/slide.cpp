@@ -210,7 +210,7 @@ Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
 
 namespace {
 
-constexpr double kLeastNormal = 0.5;    // a unit normal is there; zero says that none is
+constexpr double kLeastNormal = 0.5;    // a unit normal is there; zero means that none is
 constexpr double kSameWay = 0.5;        // cosine between the old and the new normal: 60 degrees
 constexpr double kLifted = 0.02;        // of R: the surface left the proxy
 constexpr double kSunk = 1e-3;          // of R: beyond Newton's rounding, the surface rose over it

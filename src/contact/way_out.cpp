@@ -18,13 +18,13 @@ constexpr int kMostWork = 8000;  // points, a step on the other ways: some 50 us
 
 constexpr double kOpenAir = 256;      // of R (judgement): who has so much room is in no body
 constexpr double kFirstBall = 0.5;    // of R (judgement); later ones double where there is room
-constexpr double kLeastBall = 0.25;   // of R (judgement): with less room the field is asked
+constexpr double kLeastBall = 0.25;   // of R (judgement): with less room the field is evaluated
 constexpr double kSurfaceEnds = 0.3;  // of W: the default of FieldOptions::minimum_support
 constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
 constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
 constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
 constexpr double kDeep = 1;       // of R (judgement), from the proxy: less is not held hard
-constexpr double kElsewhere = 1;  // of R that a proxy moves before it is asked again (judgement)
+constexpr double kElsewhere = 1;  // of R that a proxy moves before it is checked again (judgement)
 // Times that a way turns. Measured before sheets barred ways whatever their sides: of 288 hands in
 // tilted tubes 1 to 4 R in radius, up to 20 R deep, smooth or rough by 0.1 R, 94 are let go with 2,
 // two with 6, none with 12.

@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Tells, by a few looks a step, that a proxy is shut in by a surface that it passed through.
+/// Finds, by a few evaluations a step, that a proxy is trapped by a surface that it passed through.
 ///
 /// A place has a way out if one leads from it to open air, 256 R away: straight, or along what is
 /// in the way. A proxy that has been in open air hardly comes to a place without a way out, unless

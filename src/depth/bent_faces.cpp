@@ -8,8 +8,8 @@
 namespace palpate::depth {
 namespace {
 
-// Are a quadric's slopes about as certain as those that the block's window tells? Where no plane
-// serves windows are farther off than their variance says: there a quadric that tells more than a
+// Are a quadric's slopes about as certain as those by the block's window? Where no plane serves
+// windows are farther off than their variance states: there a quadric that explains more than a
 // plane need not be.
 bool knows_enough(const Quadric::Sight& sight, const BlockFits& fits, std::size_t i) {
   const double step = std::min(std::abs(fits.grid.step_x), std::abs(fits.grid.step_y));

@@ -98,7 +98,7 @@ void for_rows(const BlockGrid& grid, const Body& body) {
 /// The measured means of 2x2 blocks, in rows with a margin of empty blocks all around so that
 /// neighbours may be looked at without asking where the image ends.
 struct Blocks {
-  static constexpr int kMargin = 8;  ///< blocks on each side; kPlainLanes asks for it (derived)
+  static constexpr int kMargin = 8;  ///< blocks on each side; kPlainLanes requires it (derived)
 
   BlockGrid grid;
   std::size_t stride = 0;            ///< from row to row
@@ -147,7 +147,7 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
 }
 
 inline constexpr double kOffFace = 16;  ///< four deviations, squared (docs/method.md 6.4)
-/// Times the variance of slopes that a window tells; a vaguer face adds nothing (judgement).
+/// Times the variance of slopes by a window; a vaguer face adds nothing (judgement).
 inline constexpr double kLessSure = 2;
 
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.

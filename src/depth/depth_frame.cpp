@@ -159,7 +159,7 @@ Lens lens_of(const std::vector<Sight>& sights, double size) {
   return free.rms < along.rms ? free : along;
 }
 
-// Leaves out of `sights` what is not where the others say.
+// Leaves out of `sights` what is not where the others are.
 Lens fit(std::vector<Sight>& sights, double size) {
   const double fewest = kFewestKept * static_cast<double>(sights.size());
   Lens lens;

@@ -121,9 +121,9 @@ class FrameLifetime {
     double delay = 0;  // s
   };
 
-  // The longest and the shortest of 16 gaps tell as much as the longest of 32. Where each stamp is
-  // off by a tenth of the interval at most, a frame is later for 0.125 / 32^1.5 = 0.07 % of the
-  // time (derived).
+  // The longest and the shortest of 16 gaps are worth as much as the longest of 32. Where each
+  // stamp is off by a tenth of the interval at most, a frame is later for 0.125 / 32^1.5 = 0.07 %
+  // of the time (derived).
   static constexpr std::size_t kFrames = 16;
 
   std::array<Frame, kFrames> frames_;

@@ -24,7 +24,7 @@ inline constexpr int kNoiseBins = 32;  // to 26 m (derived)
 struct NoiseSample {
   double z = 0;       ///< m
   double sigma = 0;   ///< m
-  double weight = 0;  ///< how many windows or tiles say so
+  double weight = 0;  ///< how many windows or tiles show it
 };
 
 /// sigma(z) = s0 + s1 z + s2 z^2 through samples, robust against single wrong ones; relative errors
@@ -93,7 +93,7 @@ inline constexpr std::array<int, 3> kNoiseSizes{10, 20, 40};  // docs/method.md 
 struct SeenNoise {
   std::size_t level = 0;
   float z = 0;        ///< m; 0: no surface
-  WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can tell
+  WindowNoise noise;  ///< of depths, m^2; variance 0: less than what the sensor can resolve
 };
 
 /// Noise measured in all windows.
@@ -161,7 +161,7 @@ class NoiseTracker {
   NoiseTracker(NoiseTracker&&) noexcept;
   NoiseTracker& operator=(NoiseTracker&&) noexcept;
 
-  /// Looks at the next frame and says what to take for it. A frame that repeats the one before
+  /// Looks at the next frame and returns what to take for it. A frame that repeats the one before
   /// changes nothing.
   const NoiseModel& update(const DepthView& frame);
 

@@ -1,4 +1,4 @@
-// What a quadric tells of the blocks around its own.
+// What a quadric shows of the blocks around its own.
 #include "depth/quadric.hpp"
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@ namespace {
 
 using Terms = Quadric::Terms;
 
-constexpr int kNear = 2;  // blocks to each side of one that tell its slopes (judgement)
+constexpr int kNear = 2;  // blocks to each side of one that give its slopes (judgement)
 
 Terms terms(double u, double v, double r) {
   Terms t;

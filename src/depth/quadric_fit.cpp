@@ -15,7 +15,7 @@ using Terms = Quadric::Terms;
 // Blocks to each side: 66 mm at 0.7 m, what is held in a hand, and half of it where that is more
 // than one surface (judgement).
 constexpr int kReaches[] = {kLargestReach, kLargestReach / 2};
-// The second fit takes the blocks that lie on the first one. A third tells no more (measured).
+// The second fit takes the blocks that lie on the first one. A third adds no more (measured).
 constexpr int kPasses = 2;
 constexpr int kStepsAcross = 16;       // of the first pass (judgement)
 constexpr double kSamples = 256;       // blocks; half as many err twice as much (measured on balls)
@@ -81,7 +81,7 @@ struct Samples {
 // nullopt where it is no better than the best plane, which leaves `plane`. What errs together,
 // `shared` blocks, is one sample, and each term takes the power of one: of both sums of squares
 // only n / shared are told, and the terms beyond the plane's take so many times `shared` of the
-// noise alone. That is an F test, whose limit does not grow with what noise is said to be.
+// noise alone. That is an F test, whose limit does not grow with the assumed noise.
 std::optional<double> told_variance(double n, double plane, double quadric, double variance,
                                     double shared) {
   const double free = n - kFree * shared;

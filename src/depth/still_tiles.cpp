@@ -56,7 +56,7 @@ StillTiles::Change StillTiles::change_of(const Blocks& blocks, const NoiseModel&
   return change;
 }
 
-/// Is a tile where it was, and so are the tiles around it together, which tell smaller changes?
+/// Is a tile where it was, and so are the tiles around it together, which show smaller changes?
 /// `shared`: by how much a tile's mean varies more than if its blocks erred alone. The tiles around
 /// it are not granted that: some are filtered for nothing, but what creeps is followed.
 bool StillTiles::stays(int tile, int row, float shared) const {

@@ -96,7 +96,7 @@ class TemporalFilter {
   /// threads may take different rows. Empty blocks stay empty, but are remembered for
   /// TemporalOptions::hold frames, and continue if they are measured by then. A block whose state
   /// changes between plain and fitted starts again.
-  /// `settled`: tells for each whether its mean has as many frames as it will have.
+  /// `settled`: returns for each whether its mean has as many frames as it will have.
   void filter(const TemporalOptions& options, int row, int first, int count, BlockFits& fits,
               std::uint8_t* settled);
 

@@ -1,4 +1,4 @@
-// Fits a plane to each block's window, in the region that is asked for.
+// Fits a plane to each block's window, in the requested region.
 #include "depth/window_fits.hpp"
 
 #include <algorithm>

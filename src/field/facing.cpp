@@ -113,8 +113,8 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   remembered_from_ = stance.proxy;
 }
 
-/// Does what is near say whether the proxy is behind it? Points of one view whose side is not known
-/// say nothing: for a proxy behind them they count for nothing.
+/// Do the points near decide whether the proxy is behind them? Points of one view whose side is not
+/// known do not: for a proxy behind them they count for nothing.
 bool Facing::tells() const noexcept {
   const std::vector<Component>& components = view_.table.components;
   return std::ranges::any_of(components, &Component::is_one_sided) ||

@@ -92,7 +92,8 @@ class Facing {
   std::vector<Reference> remembered_;                          // of the last call
   Eigen::Vector3d remembered_from_ = Eigen::Vector3d::Zero();  // the proxy then
   bool touched_ = false;                                       // at the last call
-  bool was_behind_ = false;  // when points near it last told; those behind which it is do not count
+  bool was_behind_ =
+      false;  // when points near it last decided; those behind which it is do not count
   bool follows_ = false;
   int pairs_ = 0;  // that may still be compared
 };

@@ -17,7 +17,7 @@ constexpr double kAgainst = 0.5;     // share of the agreement with a contact th
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;  // R within which segments meet and components tell signs
+constexpr float kMeetReach = 1.3f;  // R within which segments meet and components give signs
 constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do not meet
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
@@ -87,8 +87,7 @@ double Facing::votes_on(std::uint32_t component) noexcept {
   return sum;
 }
 
-/// Turns components whose points say the opposite of a contact that begins: what it touches is in
-/// front.
+/// Turns components whose points contradict a contact that begins: what it touches is in front.
 void Facing::turn_by(const Vector3f& normal) noexcept {
   std::array<double, SegmentTable::kMost> agreed{};
   std::array<double, SegmentTable::kMost> all{};
@@ -141,7 +140,7 @@ struct Facing::Meeting {
   double off_now = 0;
 
   /// Is the segment what these points are of? It has to lie on their plane, but if it may be the
-  /// same surface at another time (`moved`): there planes tell only how far it went.
+  /// same surface at another time (`moved`): there planes show only how far it went.
   [[nodiscard]] bool continues(bool moved) const noexcept {
     if (!(all > kLeastMeeting) || !(parallel > kSameNormal * all)) return false;
     return std::abs(moved ? off_now : off) <= kSamePlane * (moved ? now : all);
@@ -225,7 +224,7 @@ void Facing::decide_labels() noexcept {
     }
     if (!next) return;
     Component& component = view_.table.components[next->component];
-    // Nothing of the component is seen: what is decided beside it tells its sign.
+    // Nothing of the component is seen: what is decided beside it gives its sign.
     const bool turned =
         component.sign == 0 && !component.is_one_sided() && votes_on(next->component) < 0;
     if (component.sign == 0) component.sign = turned ? -1 : 1;

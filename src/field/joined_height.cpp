@@ -65,7 +65,7 @@ using Eigen::Vector3d;
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
 constexpr double kOverEdges = 0.2;
 
-/// Can the surface of these normals be told here at all?
+/// Can the surface of these normals be located here at all?
 bool has_normals(const FieldOptions& options, const simd::LabelSums& sums, double least) noexcept {
   if (!(sums.v > least)) return false;
   return options.kind == FieldOptions::Kind::balanced ||
@@ -91,7 +91,7 @@ Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   return {oriented.f, oriented.base + place.gradient(oriented.b)};
 }
 
-/// The same, where several sources may tell of one surface at different heights, with its creases
+/// The same, where several sources may have one surface at different heights, with its creases
 /// closed and its edges sharp.
 Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
   Value height = height_at(options, place);

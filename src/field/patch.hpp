@@ -41,7 +41,7 @@ class Patch {
   [[nodiscard]] const Facing& sides() const noexcept { return facing_; }
 
   /// Gathers again at the same place after advance() was refused, and looks for points in those
-  /// layers alone that are others. False as gather() says it.
+  /// layers alone that are others. False as by gather().
   bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits,
              const Stance* stance = nullptr) noexcept;
 

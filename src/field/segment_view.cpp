@@ -25,7 +25,7 @@ constexpr float kMeets = 1.1f;  // R; judgement
 
 // What the eye sees (docs/method.md 2.7); all are judgement.
 constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
-constexpr float kView = 1.2f;  // R beyond the nearest point, within which points tell
+constexpr float kView = 1.2f;  // R beyond the nearest point, within which points count
 constexpr double kFades = 1;   // R of way on which what was seen fades to a third
 
 /// The index of a component, which is added if it is new. Components are never more than segments,
@@ -108,7 +108,7 @@ float rise_of(const SegmentView& view, const Point& point) noexcept {
 
 /// How high the eye is above the surface at a point, m. What was seen from one side alone is never
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
-/// of what the closest point says keeps these down.
+/// of the closest point's vote keeps these down.
 float height_over(const SegmentView& view, const Point& point) noexcept {
   const Vector3f way = view.eye.place - point.place;
   const float height = point.normal.dot(way);
@@ -237,7 +237,7 @@ bool SegmentView::is_above(const Point& point) const noexcept {
 }
 
 /// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
-/// longer the way is; it counts since close to a sparse bend few points tell a side, and the planes
+/// longer the way is; it counts since close to a sparse bend few points show a side, and the planes
 /// of some are wrong.
 void SegmentView::look(const Stance& stance, double way, bool from_behind) noexcept {
   const auto decided = [this](const Segment& segment) {

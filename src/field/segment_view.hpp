@@ -29,7 +29,7 @@ struct Rise {
   double share = 0;
 };
 
-inline constexpr float kUnsharp = 2;  ///< residuals that a height exceeds to tell a side; judgement
+inline constexpr float kUnsharp = 2;  ///< residuals of a height that decides a side; judgement
 
 /// How a segment is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
@@ -69,7 +69,7 @@ struct SegmentTable {
     Key key;
     int sign = 0;            // 0: not decided
     bool known = false;      // are its normals known to point outward?
-    bool uncertain = false;  // was it seen in one view that does not tell its side?
+    bool uncertain = false;  // was it seen in one view that does not show its side?
     bool near = false;       // has one of its points weight at the proxy, or nearly?
     bool weighs = false;     // has one of them weight there?
     double seen = 0;         // what speaks for the side of its normals, less what speaks against it
@@ -125,7 +125,7 @@ struct SegmentView {
   static constexpr std::uint32_t kNone = SegmentTable::kMost;           ///< a point of no segment
   static constexpr std::uint32_t kUncertain = SegmentTable::kMost + 1;  ///< and of a single view
 
-  /// One point with confidence, and what is asked of it again and again.
+  /// One point with confidence, and what is read of it again and again.
   struct Point {
     Eigen::Vector3f place;  // from the proxy, m
     Eigen::Vector3f normal;

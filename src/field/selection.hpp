@@ -116,8 +116,8 @@ class CellStack {
   std::size_t size_ = 0;
 };
 
-/// Tells which cells come near a place, in single precision and on the safe side: what rounding
-/// takes away is given back by a little slack.
+/// Returns which cells come near a position, in single precision and on the safe side: what
+/// rounding takes away is given back by a little slack.
 class CellTest {
  public:
   /// x relative to the points' origin, m.
@@ -147,8 +147,8 @@ class CellTest {
   float slack_;
 };
 
-/// Tells which points certainly stay away from a place on all of their way: in single precision and
-/// on the safe side, since most of a cell's points do.
+/// Returns which points certainly stay away from a position on all of their path: in single
+/// precision and on the safe side, since most of a cell's points do.
 class PointTest {
  public:
   /// x relative to the points' origin, m.

@@ -103,10 +103,10 @@ struct Block {
 
 /// Search radii. Each is in metres, sorted, and may be empty for 0.
 struct Reach {
-  std::span<const float> of_points;  ///< a point asks for all candidates within its own radius ...
+  std::span<const float> of_points;  ///< a point visits all candidates within its own radius ...
   float times = 1;                   ///< ... times this
   std::span<const float>
-      of_cells;  ///< largest radius within which the points of a cell are asked for
+      of_cells;  ///< largest radius within which the points of a cell are visited
 };
 
 /// For each cell the one of its points' values that pick(a, b) leaves of any two.
@@ -178,7 +178,7 @@ class NearPairs {
     each_hit(make_join(grid, first, count, runs), simd::best_joins().within, squared, visit);
   }
 
-  /// The same where find(join, wanted, hits) tells what is near.
+  /// The same where find(join, wanted, hits) returns what is near.
   template <class Find, class Wanted, class Visit>
   void each_hit(const simd::Join& join, const Find& find, const Wanted& wanted,
                 const Visit& visit) {

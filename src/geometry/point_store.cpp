@@ -1,4 +1,4 @@
-// Says where the nodes of a point store are, reads some and joins them.
+// Lists where the nodes of a point store are, reads some and joins them.
 #include "palpate/geometry/point_store.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Tells rotations from matrices that scale, shear or mirror.
+// Separates rotations from matrices that scale, shear or mirror.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,7 +9,7 @@
 
 namespace palpate::detail {
 
-/// Disjoint sets whose members know their sign relative to their set's root, which is its lowest
+/// Disjoint sets whose members have a sign relative to their set's root, which is its lowest
 /// member. Threads may use one object together as long as each keeps to members of its own.
 class SignedSets {
  public:

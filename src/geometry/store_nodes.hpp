@@ -29,7 +29,7 @@ using NodeKey = std::pair<std::int32_t, std::array<std::int32_t, 3>>;
 }
 
 /// The coarsest node that has points, the first of several: they lie all over the cloud, so they
-/// tell what is the same for all nodes. There has to be one.
+/// give what is the same for all nodes. There has to be one.
 [[nodiscard]] std::size_t coarsest_node(const PointStore::Layout& layout);
 
 /// The clouds of some nodes, in their order, read on all cores. Where several are damaged, the

@@ -13,8 +13,8 @@ using State = CloudBlock::State;
 
 // Points of a surface that is not whole: joining them takes a tenth of a second; judgement.
 constexpr std::size_t kMostShown = std::size_t{1} << 19;
-// Boxes that a servo looks through, 1.4 us a step (measured). A tool is not told of others: so many
-// are the blocks of about a hundred million points of a surface.
+// Boxes that a servo looks through, 1.4 us a step (measured). A tool gets no others: so many are
+// the blocks of about a hundred million points of a surface.
 constexpr std::size_t kMostMissing = 1024;
 
 /// Ranks a block where there is no room for all: first what tools can reach, then what is near.

@@ -1,4 +1,4 @@
-// Chooses which blocks of a cloud are shown, and says where nothing is.
+// Chooses which blocks of a cloud are shown, and lists where nothing is.
 #pragma once
 
 #include <span>

@@ -140,7 +140,7 @@ namespace {
 
 PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
   options.clip.reset();
-  // A viewpoint of the file must not become one that was asked for: that would silence its normals.
+  // A viewpoint of the file must not become one of the options: that would disable its normals.
   if (options.viewpoint) options.viewpoint = placed.viewpoint;
   if (options.facts) {
     detail::require_finite(placed.cloud().positions);

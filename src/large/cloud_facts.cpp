@@ -28,7 +28,7 @@ constexpr std::size_t kDrawnPlaces = 32;  // places; judgement
 constexpr std::size_t kPointsAround =
     4096;                                // points around each: windows of 20 s fit in; judgement
 constexpr std::size_t kRun = 256;        // points that are passed over together; judgement
-constexpr std::size_t kAsked = 1 << 17;  // points that are asked how far that is; judgement
+constexpr std::size_t kAsked = 1 << 17;  // points whose distance is measured; judgement
 constexpr std::size_t kOneOutlierOf = 1000;  // points, one an outlier, at either end; judgement
 
 /// How far from a place `share` of the sampled points lie, m^2.

@@ -1,4 +1,4 @@
-// Reads nodes of a store, several at a time, and forgets those that were not asked for longest.
+// Reads nodes of a store, several at a time, and forgets those that were not requested longest.
 
 #include "large/node_cache.hpp"
 

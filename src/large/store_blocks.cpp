@@ -28,7 +28,7 @@ using Key = Division::Key;
 constexpr double kAround = 6.1;
 constexpr double kAroundSparse = 14.1;  // derived, too
 
-// Distances between points in the largest R that may be asked for. Derived: a block then has some
+// Distances between points in the largest R that may be requested. Derived: a block then has some
 // 4e8 pairs of points within R of each other, which take two cores some 10 s (measured).
 constexpr double kMostSpacings = 10;
 

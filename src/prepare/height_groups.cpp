@@ -44,8 +44,8 @@ bool may_fall_apart(std::span<const double> heights, double spacing) {
   const auto count = static_cast<double>(heights.size());
   const double variance = (squares - sum * sum / count) / count;
   // The variance of two groups is within^2 + share (1 - share) way^2, with `way` between their
-  // means and `within` at most way / kApart. So it says how long the way is at least, and with it
-  // the gap.
+  // means and `within` at most way / kApart. So it bounds from below how long the way is, and with
+  // it the gap.
   constexpr double kLeast = 0.999 * kEmpty * kEmpty;  // derived: less than rounding takes
   double below = 0;
   int last = 0;

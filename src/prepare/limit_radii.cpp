@@ -81,7 +81,7 @@ class Limiter {
     return limit < matters ? limit : radii_[i];
   }
 
-  /// Does j lie on the plane of i, as far as one can tell?
+  /// Does j lie on the plane of i, within noise?
   [[nodiscard]] bool on_plane(std::uint32_t i, std::uint32_t j, float distance) const {
     if (!own_ || own_->confidences[i] < kPlane) return false;
     const float off = std::abs(own_->normals[i].dot(grid_.points()[j] - grid_.points()[i]));

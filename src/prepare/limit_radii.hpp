@@ -12,7 +12,7 @@ struct PointFits;
 /// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
 /// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
 /// what is sampled finely. In sorted order, m.
-/// `own`: points on the plane of a point do not limit it, since it tells nothing else of them;
+/// `own`: points on the plane of a point do not limit it, since it shows nothing else of them;
 /// nullptr: all do.
 void limit_radii(const CellGrid& grid, float slope, std::vector<float>& radii,
                  const PointFits* own = nullptr);

@@ -123,7 +123,7 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
 }
 
 /// Calls visit(i) for about a thousand points, spread over the cloud. Clouds of fewer than 100
-/// points tell nothing: none.
+/// points decide nothing: none.
 template <class Visit>
 void each_sample(const CellGrid& grid, const Visit& visit) {
   constexpr std::size_t kSamples = 1000;  // points, about; judgement

@@ -30,7 +30,7 @@ constexpr double kShape = 0.65;  // of the wider window's noise: the rest is sha
 
 // A ball full of points has a residual of 0.3 to 0.45 of its reach, and a layer whose sigma is a
 // quarter of the reach 0.23 (computed: uniform and normal heights, less the quadric). Where a
-// residual is larger it tells the window's size and not the noise, so a window twice as wide is
+// residual is larger it measures the window's size and not the noise, so a window twice as wide is
 // fitted.
 constexpr double kFilled = 1 / kSigmasInReach;
 constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's filter; judgement
@@ -38,8 +38,8 @@ constexpr double kWidestReach = 24;  // spacings; more is left to the sensor's f
 // reach 0.34 (computed).
 constexpr double kVolume = 0.35;
 
-// Windows, in spacings, that noise and shape are told apart with: shape that a quadratic misses
-// grows with the third power of the window or faster.
+// Windows, in spacings, that separate noise from shape: shape that a quadratic misses grows with
+// the third power of the window or faster.
 constexpr std::size_t kWideSamples = 400;  // windows, about; judgement
 constexpr double kMapReach = 5;            // spacings, of the map of noise as well; judgement
 constexpr double kMiddleReach = 10;        // spacings; twice that
@@ -91,8 +91,8 @@ std::vector<Row> fit_windows(const CellGrid& grid, double spacing) {
   return rows;
 }
 
-/// The noise that rows tell, as the flatter quarter has it: where shape is finer than the window it
-/// passes for noise. 0 where no row has enough points.
+/// The noise by rows, as the flatter quarter has it: where shape is finer than the window it passes
+/// for noise. 0 where no row has enough points.
 double noise_in(const std::vector<Row>& rows, SegmentFit Row::*fit, const Window& window) {
   std::vector<float> residuals;
   for (const Row& row : rows) {
@@ -106,7 +106,7 @@ double noise_in(const std::vector<Row>& rows, SegmentFit Row::*fit, const Window
   return window.quarter_to_median * *quarter;
 }
 
-/// The noise that narrow windows tell, m; those that noise fills are widened.
+/// The noise in narrow windows, m; those that noise fills are widened.
 double narrow_noise(const CellGrid& grid, double spacing) {
   std::vector<Row> rows = fit_windows(grid, spacing);
   const double narrow = noise_in(rows, &Row::narrow, kNarrow);

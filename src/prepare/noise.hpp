@@ -18,9 +18,9 @@ inline constexpr double kSigmasInReach = 4;
 /// Measures it on a sample of the points. `spacing`: of the points, m.
 ///
 /// Noise that neighbours share (a depth camera's, mostly) is mistaken for shape in narrow windows
-/// and does not average out as fast as its variance says. Wide windows tell, as long as they see
-/// noise and no shape: on the flattest of them the residuals no longer grow with the window
-/// (docs/method.md 5.2).
+/// and does not average out as fast as its variance suggests. Wide windows measure it, as long as
+/// they see noise and no shape: on the flattest of them the residuals no longer grow with the
+/// window (docs/method.md 5.2).
 [[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
 
 /// The noise at each point, in sorted order.

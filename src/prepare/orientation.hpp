@@ -1,4 +1,4 @@
-// What tells the signs of normals, and how they agree where nothing better is done.
+// Signs of normals: where they come from, and how they agree where nothing better is done.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,9 +25,9 @@ struct KnownSigns {
                                      const PrepareOptions& options);
 
 /// Turns normals so that those of neighbours agree: pairs of neighbours whose planes are most
-/// parallel join first (Hoppe et al. 1992). What hangs together then faces the side that given
-/// normals or the viewpoint tell, else outward. For one smooth surface; where surfaces meet or lie
-/// close together, refinements do more.
+/// parallel join first (Hoppe et al. 1992). Each connected set then faces the side of given normals
+/// or of the viewpoint, else outward. For one smooth surface; where surfaces meet or lie close
+/// together, refinements do more.
 void orient(const Sampling& sampling, const KnownSigns& known, PointFits& fits);
 
 }  // namespace palpate

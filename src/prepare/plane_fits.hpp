@@ -30,7 +30,7 @@ inline constexpr float kNormalsReach = 1.15f;
                                    std::span<const float> radii, std::span<const float> noise);
 
 /// Fits the points' planes and lets given normals take part; outliers get no confidence. Empty
-/// where no normals are asked for.
+/// where no normals are requested.
 [[nodiscard]] PointFits fit_planes(const Sampling& sampling, const Radii& radii,
                                    const PrepareOptions& options);
 

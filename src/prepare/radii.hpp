@@ -20,12 +20,12 @@ struct Radii {
                                        ///< empty: nobody looked for them
 };
 
-/// The largest R that a point may have, m: 12 of the typical ones that the facts tell, since a
-/// block looks no farther around itself (Blocks::halo). Infinite where they tell none.
+/// The largest R that a point may have, m: 12 of the typical ones by the facts, since a block looks
+/// no farther around itself (Blocks::halo). Infinite where they have none.
 [[nodiscard]] double largest_radius(const CloudFacts& facts);
 
-/// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options say
-/// so.
+/// R = m s and more where there is noise (docs/method.md 5.3); one R for all where the options
+/// demand so.
 [[nodiscard]] Radii choose_radii(const Sampling& sampling, const PrepareOptions& options);
 
 /// Support radii for a noisy cloud: from place to place so large that noise tilts normals by

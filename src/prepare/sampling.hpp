@@ -21,7 +21,7 @@ struct Sampling {
   LocalNoise local;                      ///< without products: the same everywhere
   std::vector<std::uint32_t> counts;     ///< raw points that each stands for; empty: one each
   std::vector<Eigen::Vector3f> normals;  ///< that were given; empty: none
-  std::vector<float> intensities;        ///< empty: not asked for
+  std::vector<float> intensities;        ///< empty: not requested
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty: none
 
   CloudFacts facts;    ///< of the raw points: given, or measured of these

@@ -1,4 +1,4 @@
-// Counts cannot-link pairs between two sets of points, less the pairs that ask to join them.
+// Counts cannot-link pairs between two sets of points, less the pairs that vote to join them.
 
 #include "refine/cannot_link_sets.hpp"
 

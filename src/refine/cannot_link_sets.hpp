@@ -13,7 +13,7 @@ namespace palpate {
 /// Joins sets of points, but not those that lie over each other with normals that agree: the two
 /// sides of a blade continue each other at its edge, where they are too near to be separated, but
 /// are not one segment. Each pair of points that lie over each other is a cannot-link constraint
-/// between their sets. Sets are joined once more pairs have asked for it than constrain it.
+/// between their sets. Sets are joined once more pairs have voted for it than constrain it.
 class CannotLinkSets {
  public:
   /// `sets`: of so many points.
@@ -27,7 +27,7 @@ class CannotLinkSets {
   void join(std::uint32_t i, std::uint32_t j, int sign);
 
  private:
-  /// How many more pairs lie over each other than have asked to join, for either sign of one root
+  /// How many more pairs lie over each other than have voted to join, for either sign of one root
   /// relative to the other: -1, 1.
   struct Constraints {
     std::array<int, 2> pairs{};

@@ -19,7 +19,7 @@ void refine_gaps(Surfels& surfels);
 /// bridge, where one segment goes on over the hole: to those of the square grid with holes as wide
 /// or, where no segment goes on so far, to 2.5 times the hole's radius. That segment becomes the
 /// point's own. Clusters of points, points that lie anywhere and triangles of many sizes leave
-/// holes wider than spacings tell; beside far denser points limit_radii() makes R too small. An
+/// holes wider than spacings show; beside far denser points limit_radii() makes R too small. An
 /// outlier has all others on one side and keeps its radius; so does the border of a segment. Holes
 /// whose radius is above 0.8 R stay, except around points that hardly any other's support reaches,
 /// where those above 3 R do. `sums`: WeightSums::own; `noise`: of each point, m. None is raised

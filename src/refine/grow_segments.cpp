@@ -47,8 +47,8 @@ struct Later {
 /// Joins points that continue each other's segments: those with parallel normals within each block
 /// on its own, all others afterwards, the most parallel first. So signs spread from normal to
 /// normal where they turn the least (Hoppe et al., Surface reconstruction from unorganized points,
-/// 1992). Where no signs agree all around, as beside a fold that is too thin to tell its sides
-/// apart, they separate where normals turn the most.
+/// 1992). Where no signs agree all around, as beside a fold that is too thin to separate its sides,
+/// they separate where normals turn the most.
 class SegmentGrowing {
  public:
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.

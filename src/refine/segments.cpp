@@ -102,7 +102,7 @@ struct ComponentSums {
   Vector3d moment = Vector3d::Zero();  // sum a p, m^3
 };
 
-/// The sign that turns a component's normals to its free side, and whether evidence told it.
+/// The sign that turns a component's normals to its free side, and whether evidence decided it.
 struct Side {
   int sign = 1;
   bool known = false;

@@ -59,7 +59,7 @@ class Handoff {
     take_unused(unused);
   }
 
-  /// Makes `value` the newest; a null one says that there is nothing any more. Not real-time. Lets
+  /// Makes `value` the newest; a null one means that there is nothing any more. Not real-time. Lets
   /// go of what no reader holds any more.
   void publish(std::shared_ptr<const T> value) {
     Values unused;

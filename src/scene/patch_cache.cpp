@@ -32,7 +32,7 @@ void PatchCache::set_tool(const Vector3d& proxy) noexcept {
   faced_ = tool_;
   const Ball here{tool_.proxy, 0};
   const bool covered = near_.patch.covers(here);
-  // A step that went beyond the near patch knows from which side it came.
+  // A step that went beyond the near patch has stored from which side it came.
   for (const std::size_t k : {1 - step_.latest, step_.latest}) {
     const Patch& far = step_.far[k].patch;
     if (!covered && far.covers(here)) near_.patch.sides().follow(far.sides());
@@ -90,7 +90,7 @@ bool PatchCache::near_covers(std::span<const Ball> balls, double extra) noexcept
 }
 
 const Patch* PatchCache::patch_for(const Ball& ball, double margin) const noexcept {
-  // Balls that are asked about in the time of one sum for a sample, and sums in that of a gather.
+  // Balls that are tested in the time of one sum for a sample, and sums in that of a gather.
   constexpr int kBallsASum = 4;
   constexpr int kSumsAGather = 20;  // judgement, both
   const std::uint64_t before = step_.work.gathers;

@@ -13,8 +13,8 @@
 namespace palpate {
 
 /// Holds what a field has gathered: a patch around the proxy and its path, and two around
-/// wherever else it was asked last. Counts the work and bounds it: of each gather and each walk by
-/// itself, and in an update and in a proxy's step of all of them together. Real-time but for
+/// wherever else it was evaluated last. Counts the work and bounds it: of each gather and each walk
+/// by itself, and in an update and in a proxy's step of all of them together. Real-time but for
 /// construction.
 class PatchCache {
  public:
@@ -64,7 +64,7 @@ class PatchCache {
            step_.far[1].patch.covers(ball);
   }
 
-  /// Is the ball free? Asks the index; false when the visits did not suffice.
+  /// Is the ball free? Searches the index; false when the visits did not suffice.
   [[nodiscard]] bool walk_is_free(const Ball& ball) const noexcept;
 
   /// Clears the notes; take_nearest_radius() and gather_near() together get all visits.
@@ -76,8 +76,7 @@ class PatchCache {
   [[nodiscard]] const Work& work() const noexcept { return step_.work; }
 
  private:
-  // Parts of SceneField::kStepVisits (judgement: a walk asks about one ball, a gather takes
-  // points).
+  // Parts of SceneField::kStepVisits (judgement: a walk tests one ball, a gather takes points).
   static constexpr int kFreeVisits = SceneField::kStepVisits / 5;
   static constexpr int kGatherVisits = SceneField::kStepVisits - kFreeVisits;  // the rest
 

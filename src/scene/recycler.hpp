@@ -18,7 +18,7 @@ struct KeepAll {
 /// Gives out objects that come back by themselves when their last owner lets go of them, with the
 /// memory that they have gathered, and gives them out again. Once as many exist as are in use at a
 /// time, nothing is allocated any more, counts of owners included. Owners may let go on any thread,
-/// and may outlive the recycler. `Rest` says what an object must not keep while nobody uses it.
+/// and may outlive the recycler. `Rest` releases what an object must not keep while nobody uses it.
 template <class T, class Rest = KeepAll>
 class Recycler {
  public:

@@ -1,4 +1,4 @@
-// Keeps the sources of a scene, and says how wide supports have to be for surfaces to be one.
+// Keeps the sources of a scene, and computes how wide supports have to be for surfaces to be one.
 #include "palpate/scene/scene.hpp"
 
 #include <fmt/core.h>
@@ -63,7 +63,7 @@ Source::State Scene::state(std::size_t i) const {
 namespace {
 
 constexpr std::size_t kTried = 1000;  // points to compare, about (judgement)
-constexpr std::size_t kEnough = 30;   // distances; fewer tell no median (judgement)
+constexpr std::size_t kEnough = 30;   // distances; fewer give no median (judgement)
 constexpr float kReach = 3;           // radii
 constexpr float kAlike = 0.7071f;     // cosine between normals: 45 degrees
 

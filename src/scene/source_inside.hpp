@@ -44,7 +44,7 @@ class Seams {
     return least_radii_[place];
   }
 
-  /// Sets it until the next compare(), for a replay that knows what it was.
+  /// Sets it until the next compare(), for a replay that has recorded it.
   void set_least_radius(std::size_t place, double radius) noexcept {
     least_radii_[place].store(radius);
   }

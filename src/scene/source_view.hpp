@@ -116,8 +116,8 @@ class SourceView {
   return std::max(snapshot.end - snapshot.start, snapshot.interval);
 }
 
-/// How long a cloud's snapshot has to last, as far as its sensor tells, s. Clouds whose surfaces
-/// come late are apart for that reason: the longer tools reach, the later these come.
+/// How long a cloud's snapshot has to last by its sensor's rate, s. Clouds whose surfaces come late
+/// are apart for that reason: the longer tools reach, the later these come.
 [[nodiscard]] inline double time_to_next(const Snapshot& cloud) noexcept {
   return std::max(std::min(time_shown(cloud), kLateCloud), cloud.spare);
 }

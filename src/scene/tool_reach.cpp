@@ -55,7 +55,7 @@ constexpr double kFastest = 5;       // m/s
 
 // Memory of a speed (judgement).
 constexpr double kForget = 0.2;    // s in which a recent speed is forgotten
-constexpr double kLongStep = 0.1;  // s; over a longer gap a speed says nothing
+constexpr double kLongStep = 0.1;  // s; over a longer gap a speed means nothing
 
 }  // namespace
 

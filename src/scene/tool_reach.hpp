@@ -18,7 +18,7 @@ namespace palpate {
 using Reach = Ball;
 
 /// Where fields write their reach, each in a place of its own, and preparation reads it. Without
-/// locks: a version that is odd while a place is being written tells who reads to look again.
+/// locks: a version that is odd while a position is being written makes readers look again.
 class ReachTable {
  public:
   static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;  // one a reader
@@ -30,7 +30,7 @@ class ReachTable {
   /// One thread a place. Wait-free.
   void write(std::size_t place, const Reach& reach) noexcept;
 
-  /// The place says nothing from now on.
+  /// The position is not valid from now on.
   void clear(std::size_t place) noexcept { write(place, {Eigen::Vector3d::Zero(), -1}); }
 
   /// Replaces `found` by all that is known. Not real-time; allocates only to grow. A place that is

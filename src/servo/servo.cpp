@@ -52,7 +52,7 @@ double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
 
-// A hand that is not finite makes the proxy latch a fault first: that is the one which is told.
+// A hand that is not finite makes the proxy latch a fault first: that is the one which is reported.
 Guard::Fault known_fault(const ServoState& state) noexcept {
   if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
   return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;
@@ -81,7 +81,7 @@ struct Servo::Inside {
   Device& device;
   ServoOptions options;
   double stiffness_limit;
-  bool is_softened;  // a stiffer surface is asked for
+  bool is_softened;  // a stiffer surface is requested
   SceneField field;
   Proxy proxy;
   Guard guard;
@@ -90,7 +90,7 @@ struct Servo::Inside {
   ServoState state;                  // of the stepping thread; the others see what was shown
   StepInput basis;                   // of its last step
   bool started = false;
-  bool heard = false;  // the device has known where the hand is
+  bool heard = false;  // the device has had the hand's position
   std::uint64_t contact_seen = 0;
   std::uint64_t field_seen = 0;
 

@@ -14,11 +14,11 @@ inline constexpr int kHalfWindow =
     2;  // pixels: a window of 5 x 5 averages most noise and bends little
 inline constexpr int kWideWindow =
     2 * kHalfWindow;  // pixels: as far again beyond that window on each side (derived)
-inline constexpr double kMostLeverage = 1;  // pixels extrapolated so far tell less than one of them
+inline constexpr double kMostLeverage = 1;  // pixels extrapolated so far are worth less than one
 
 /// A pixel's inverse depth, which is affine in the pixel on planes.
 struct Pixel {
-  double u = 0;  // from the place that is asked for, pixels
+  double u = 0;  // from the requested position, pixels
   double v = 0;
   double inverse = 0;  // 1/m
 };
@@ -30,7 +30,7 @@ struct PixelWindow {
   [[nodiscard]] std::span<Pixel> span() { return {all.data(), count}; }
 };
 
-/// A plane through pixels: its inverse depth at the place that is asked for.
+/// A plane through pixels: its inverse depth at the requested position.
 struct PixelPlane {
   double inverse = 0;
   double leverage = std::numeric_limits<double>::infinity();  // its variance over a pixel's

@@ -1,4 +1,4 @@
-// A plane through 5 x 5 raw pixels on each ray says how far what is seen lies beyond a ball.
+// A plane through 5 x 5 raw pixels on each ray gives how far what is seen lies beyond a ball.
 #include "sight/sight.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr double kSure = 3;     // deviations: noise feigns more once in 700 fra
 constexpr double kNoPlane = 2;  // sigma of residual: two surfaces are in the window (judgement)
 constexpr int kStride = 2;  // pixels between windows that look at a ball: what is as wide is seen
 constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
-constexpr double kSpan = 0.1;  // s between frames that tell a speed: noise over less says little
+constexpr double kSpan = 0.1;  // s between frames that give a speed: noise over less is too large
 
 constexpr double kOtherClock = 0.5;  // s; a stamp further ahead is of another clock (docs/ros2.md)
 
@@ -133,7 +133,7 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
   seen.came = compares && before->free();
 }
 
-/// `before`: an earlier frame that tells how fast things come; null: there is none. `half`: of the
+/// `before`: an earlier frame that gives how fast things come; null: there is none. `half`: of the
 /// windows, pixels.
 Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball, double now,
            int half) {
@@ -159,7 +159,7 @@ Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball,
 
 }  // namespace
 
-// One frame from before the newest is late: it tells of a past that a newer one has told more of.
+// One frame from before the newest is late: it shows a past of which a newer one has shown more.
 // After two in a row the camera's clock was set back: nothing before them can be compared.
 void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor,
                 const NoiseModel& noise) {

@@ -23,8 +23,8 @@ struct FrameLimits {
   double later = 0;     ///< however late they are due then
 };
 
-/// Says whether places are free, from a depth camera's newest raw frames alone. The surface takes
-/// no part in it. One thread shows it frames, any thread asks.
+/// Decides whether places are free, from a depth camera's newest raw frames alone. The surface
+/// takes no part in it. One thread adds frames, any thread reads.
 class Sight {
  public:
   /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
@@ -36,9 +36,9 @@ class Sight {
   /// Forgets all frames.
   void forget();
 
-  /// Says what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until
-  /// the next one is due, and no longer than `limits`. Who asks often lets it know when frames are
-  /// due: it measures how old they are when they are first asked for. Nothing: no frame has come.
+  /// Returns what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until
+  /// the next one is due, and no longer than `limits`. Frequent calls let it measure when frames
+  /// are due: by how old they are at the first call. Nothing: no frame has come.
   [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, const FrameLimits& limits);
 
  private:
@@ -49,9 +49,9 @@ class Sight {
   std::mutex mutex_;  // of what follows
   PosedFrame newest_;
   PosedFrame before_;          // the one before
-  PosedFrame base_;            // an earlier one, that tells speeds where frames come quickly
+  PosedFrame base_;            // an earlier one, that gives speeds where frames come quickly
   int frames_ = 0;             // of the first three that have come
-  bool asked_ = false;         // has anybody asked the newest one?
+  bool asked_ = false;         // has the newest one been read?
   bool asked_before_ = false;  // and the one before?
   FrameLifetime lifetime_;
 

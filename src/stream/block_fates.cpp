@@ -34,7 +34,7 @@ void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) c
   }
 }
 
-/// Are four points live, beside no edge? Says where they are.
+/// Are four points live, beside no edge? Returns where they are.
 bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
   bool live = true;
   for (std::uint32_t k = 0; k < kLanes; ++k) {
@@ -47,8 +47,8 @@ bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
   return true;
 }
 
-/// Four points that the last frame showed, and of which this one says the same, go on to where they
-/// were going.
+/// Four points that the last frame showed, and of which this one shows the same, go on to where
+/// they were going.
 bool BlockFates::keep_going(std::uint32_t first, FourWays& ways) const {
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     if (shown_.entries()[first + k].confirmed != shown_.stamp()) return false;
@@ -135,7 +135,7 @@ bool BlockFates::is_sure(const SeenPoint& seen,
 }
 
 /// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
-/// shows that, too? Such a frame does not tell where the surface is.
+/// shows that, too? Such a frame does not show where the surface is.
 bool BlockFates::is_doubtful(const SeenPoint& seen, const PointState& before) const {
   return (before.position - seen.state.position).norm() > seen.state.radius &&
          blocks_.vouching(seen.place) < FrameBlocks::kVouchToMove;

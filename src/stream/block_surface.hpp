@@ -78,7 +78,7 @@ class BlockSurface {
   HiddenPlanes hidden_;
 };
 
-/// Finds where the faces of a fitted depth image meet, and tells each block beside an edge or a
+/// Finds where the faces of a fitted depth image meet, and gives each block beside an edge or a
 /// crease the plane of a block of the other face: the one that lies to the edge as it does itself,
 /// so that planes of many blocks take part.
 class EdgeFinder {
@@ -88,7 +88,7 @@ class EdgeFinder {
   /// `surface` has measured `depth`. Allocates only to grow.
   void look(const FilteredDepth& depth, const BlockSurface& surface);
 
-  /// The number by which plane() knows the edge beside a block; kNone: there is none.
+  /// The number for plane() of the edge beside a block; kNone: there is none.
   [[nodiscard]] std::uint32_t number(std::size_t block) const { return of_block_[block]; }
 
   /// The plane beyond an edge, in the sensor's frame.

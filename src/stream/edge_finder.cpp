@@ -103,8 +103,8 @@ bool EdgeFinder::meets(const BlockFaces& faces, std::size_t a, int x, int y) {
   return goes_on(faces, a, -x, -y) && goes_on(faces, b, x, y);
 }
 
-/// Tells rows (1, 0) or columns (0, 1) what lies beyond the edges at a few blocks of a row. No
-/// other lines are told, so that threads may share them.
+/// Writes to rows (1, 0) or columns (0, 1) what lies beyond the edges at a few blocks of a row. No
+/// other lines are written, so that threads may share them.
 void EdgeFinder::tell_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y) {
   const auto columns = static_cast<std::size_t>(faces.depth.columns);
   const std::size_t apart = kApart * (x != 0 ? columns : 1);
@@ -140,7 +140,7 @@ EdgeFinder::Meeting EdgeFinder::meeting_of(const BlockFaces& faces, std::size_t 
   return {a, b, edge, x != 0, share};
 }
 
-/// Tells the blocks of a's face within R of the edge, in its row or column, what lies beyond.
+/// Writes to the blocks of a's face within R of the edge, in its row or column, what lies beyond.
 void EdgeFinder::spread(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
   const float reach = faces.radii[meeting.a];
   const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
@@ -148,8 +148,8 @@ void EdgeFinder::spread(const BlockFaces& faces, const Meeting& meeting, int x, 
   for (int k = -half; k <= half; ++k) tell_one(faces, meeting, k * x, k * y);
 }
 
-/// Tells it to the block (x, y) from a, unless it knows of an edge that is as near: of two in its
-/// row and in its column, that in its row counts.
+/// Writes it to the block (x, y) from a, unless that has an edge that is as near: of two in its row
+/// and in its column, that in its row counts.
 void EdgeFinder::tell_one(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t block = faces.beside(meeting.a, x, y);

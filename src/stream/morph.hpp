@@ -41,9 +41,9 @@ struct MorphInput {
 /// farther, and it is gone. Nothing at all, or a camera that looks elsewhere: it stays for a while.
 /// Points appear and go by their presence, which is stiffness.
 ///
-/// FrameBlocks says what the frame shows, ShownPoints what was shown last, BlockMatches who is who,
-/// BlockFates what becomes of each (by fate()), PointMoves how it moves then; PointWriter writes
-/// it.
+/// FrameBlocks finds what the frame shows, ShownPoints what was shown last, BlockMatches who is
+/// who, BlockFates what becomes of each (by fate()), PointMoves how it moves then; PointWriter
+/// writes it.
 class Morph {
  public:
   explicit Morph(const MorphOptions& options);

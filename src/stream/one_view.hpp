@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// Finds the eye of clouds that were seen from one place: one that is asked for, or the viewpoint
-/// of a cloud that proves it.
+/// Finds the eye of clouds that were seen from one place: a requested one, or the viewpoint of a
+/// cloud that proves it.
 class OneView {
  public:
   /// The eye of a cloud, if all of it was seen from there and from the sides that its normals will

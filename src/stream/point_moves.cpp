@@ -1,4 +1,4 @@
-// Moves each point as its fate says.
+// Moves each point by its fate.
 #include "stream/point_moves.hpp"
 
 #include <algorithm>
@@ -136,7 +136,7 @@ Way PointMoves::unseen(Fate fate, std::uint32_t i) const {
   return leave(i);
 }
 
-/// Keeps a point of which nothing says whether it is gone or there.
+/// Keeps a point of which nothing shows whether it is gone or there.
 Way PointMoves::hold(std::uint32_t i) const {
   const Entry& entry = shown_.entries()[i];
   // Stamps may go back.

@@ -31,7 +31,7 @@ class PointWriter {
   /// Discards what `points` held. `expected`: about how many points will come.
   void begin(SurfacePoints& points, std::size_t expected);
 
-  /// Makes room for so many points behind those there are; tells where. Allocates only to grow.
+  /// Makes room for so many points behind those there are; returns where. Allocates only to grow.
   std::size_t append(std::size_t count);
 
   [[nodiscard]] std::size_t count() const { return count_; }

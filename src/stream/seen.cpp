@@ -1,4 +1,4 @@
-// Says what a source's raw frames show, and for how long.
+// Decides what a source's raw frames show, and for how long.
 #include <algorithm>
 #include <cmath>
 #include <limits>

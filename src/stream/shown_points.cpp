@@ -1,4 +1,4 @@
-// Says where the points that were shown last are by now.
+// Computes where the points that were shown last are by now.
 #include "stream/shown_points.hpp"
 
 #include <algorithm>

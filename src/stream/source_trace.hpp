@@ -14,7 +14,7 @@ class SourceTrace {
  public:
   explicit SourceTrace(Source& source) : source_(&source) {}
 
-  /// Where the fields said that tools can be, as the last push read it.
+  /// Where tools can be by the fields' reports, as the last push read them.
   [[nodiscard]] std::span<const Reach> reach() const;
 
   /// Snapshots that push(), set() and keep() have published so far.

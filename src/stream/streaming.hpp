@@ -34,8 +34,8 @@ struct CloudNotes {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
 };
 
-/// Makes a source's snapshots out of what is pushed into it, as its policy says. One thread uses
-/// it. Recycles the memory of snapshots that no reader holds.
+/// Makes a source's snapshots out of what is pushed into it, by its policy. One thread uses it.
+/// Recycles the memory of snapshots that no reader holds.
 class SnapshotBuilder {
  public:
   /// @throws Error when an option is out of its range.
@@ -69,14 +69,14 @@ class SnapshotBuilder {
     Policy frames;
     Policy clouds;
   };
-  /// What the last depth frame told.
+  /// What the last depth frame showed.
   struct Measured {
     Pinhole pinhole;
     NoiseModel noise;
     double median_depth = 0;    // m
     std::vector<float> depths;  // a sample, m; scratch
   };
-  /// What the clouds so far told.
+  /// What the clouds so far showed.
   struct Clouds {
     OneView view;
     int late = 0;  // in a row, whose surfaces came late; from kEnoughLate on it stays
@@ -125,9 +125,9 @@ struct Streaming {
   static void note_surface(const Snapshot& snapshot, Source::Inside& source);
   /// Notes there what a snapshot of the newest frame says.
   void note(const Snapshot& snapshot, Source::Inside& source) const;
-  /// Lets the frame say which places are free.
+  /// Lets the frame decide which places are free.
   void show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
-  /// The ages up to which a frame can say what is free.
+  /// The ages up to which a frame can show what is free.
   [[nodiscard]] FrameLimits frame_limits(const Source::Inside& source) const;
 
   std::unique_ptr<SnapshotBuilder> builder;
@@ -137,7 +137,7 @@ struct Streaming {
   std::uint64_t changes = 0;  // taken
   SourceOptions taken;        // with the last of them
   Sight sight;
-  std::atomic<bool> watched{false};  // does anybody ask what is seen?
+  std::atomic<bool> watched{false};  // is seen() called?
   std::atomic<bool> stays{false};    // is that an image of set(), and no stream's frame?
 };
 

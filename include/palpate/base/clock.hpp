@@ -2,7 +2,7 @@
 
 namespace palpate {
 
-/// Tells the time of a run, s. Everything that needs the time is given one.
+/// The time of a run, s. Everything that needs the time is given one.
 class Clock {
  public:
   virtual ~Clock() = default;

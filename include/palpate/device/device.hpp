@@ -115,7 +115,7 @@ struct DeviceProfile {
 
 /// Reads profiles: TOML, one table per kind, with the members above as keys, in SI units.
 /// `what`: name of the text in messages.
-/// @throws Error that says what is wrong, and where.
+/// @throws Error that states what is wrong, and where.
 [[nodiscard]] std::vector<DeviceProfile> parse_device_profiles(std::string_view toml,
                                                                const std::string& what);
 

@@ -29,7 +29,7 @@ class DeviceDriver {
   /// Applies a force to the hand, N, and reads where the hand is; status and time of the result are
   /// not used. May wait for the hardware. The force is finite and not longer than
   /// info().maximum_force.
-  /// @throws Error that says what failed and what to do. The driver is then closed.
+  /// @throws Error that states what failed and what to do. The driver is then closed.
   [[nodiscard]] virtual DeviceState exchange(const Eigen::Vector3d& force) = 0;
 
  protected:
@@ -42,7 +42,7 @@ struct ThreadedDeviceOptions {
   double force_timeout = 5e-3;  ///< s after which a force is no longer applied: the servo is stuck
   double retry_interval = 1;    ///< s between attempts to reopen lost hardware
   bool threaded = true;  ///< false: no thread; the owner calls service(), as in simulated time
-  /// Called first on the device's thread, to ask for a priority; does not throw.
+  /// Called first on the device's thread, to request a priority; does not throw.
   std::function<void()> begin = {};
 };
 
@@ -60,7 +60,7 @@ struct ThreadedDeviceOptions {
 /// whose position it answers. A force that is not finite latches `failed`.
 class ThreadedDevice final : public Device {
  public:
-  /// Opens the driver. @throws Error that says why that fails.
+  /// Opens the driver. @throws Error with the reason when that fails.
   using Open = std::function<std::unique_ptr<DeviceDriver>()>;
 
   /// Opens the device. `clock` outlives it; DeviceState::time is its time.
@@ -95,7 +95,8 @@ class ThreadedDevice final : public Device {
 ///    delay=MS; of ros:generic pose=TOPIC, wrench=TOPIC, twist=TOPIC, joy=TOPIC.
 /// Options follow as ",KEY=VALUE". All take profile=NAME (device_profile()), in place of the
 /// kind that the device reports. `clock` outlives the device.
-/// @throws Error when the name is none of these, or there is no such device; says what to do.
+/// @throws Error when the name is none of these, or there is no such device; its message states
+/// what to do.
 [[nodiscard]] std::unique_ptr<ThreadedDevice> open_device(
     const std::string& name, WaitingClock& clock, const ThreadedDeviceOptions& options = {});
 

@@ -17,7 +17,7 @@
 
 namespace palpate {
 
-/// Says step by step where a simulated device's hand wants to be, for motions that are not known in
+/// Returns step by step the target of a simulated device's hand, for motions that are not known in
 /// advance.
 class TargetSource {
  public:
@@ -25,7 +25,8 @@ class TargetSource {
   struct Target {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
     std::uint32_t buttons = 0;                           ///< bit k: button k is down
-    /// The hand pulls with no more, N, nor with more than its SimulatedDeviceOptions say; above 0.
+    /// The hand pulls with no more, N, nor with more than its SimulatedDeviceOptions allow; above
+    /// 0.
     double maximum_force = std::numeric_limits<double>::infinity();
   };
 
@@ -85,7 +86,7 @@ class SimulatedDevice final : public Device {
   /// @throws Error when an option is out of range or the target is not a valid trajectory.
   explicit SimulatedDevice(const SimulatedDeviceOptions& options = {}, Trajectory target = {});
 
-  /// The hand's target comes from `source`, which outlives the device; asked once a step.
+  /// The hand's target comes from `source`, which outlives the device; called once a step.
   /// @throws Error when an option is out of range.
   SimulatedDevice(const SimulatedDeviceOptions& options, TargetSource& source);
   ~SimulatedDevice() override;

@@ -21,7 +21,7 @@ class AnalyticField : public Field {
   /// Options that all analytic fields share.
   struct Options {
     Eigen::Isometry3d T_world_shape = Eigen::Isometry3d::Identity();  ///< pose of the shape's frame
-    double step_length = 0.01;        ///< what Sample::radius says everywhere, m
+    double step_length = 0.01;        ///< the value of Sample::radius everywhere, m
     double resolution = 2e-5;         ///< Field::Traits::resolution, m
     double tool_radius = 0;           ///< radius of the proxy's ball: pushes the surface out, m
     double reanchor_reach = 0;        ///< Field::Traits::reanchor_reach and step, m

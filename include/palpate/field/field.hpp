@@ -30,7 +30,7 @@ struct Surface {
   int source = -1;  ///< index of the source that contributes most; -1: none
 };
 
-/// All that a proxy knows of a scene: an implicit surface with its exact gradient.
+/// A proxy's view of a scene: an implicit surface with its exact gradient.
 ///
 /// Every member is noexcept, allocation-free, bounded in time, and gives finite results for finite
 /// arguments. A Field belongs to one thread: implementations may cache what they gathered.
@@ -59,8 +59,9 @@ class Field {
 
   [[nodiscard]] virtual Traits traits() const noexcept = 0;
 
-  /// Begins a proxy's step, which end_step() ends. What is asked in between is bounded together: a
-  /// field that has spent its work answers on the safe side: all that it does not know is solid.
+  /// Begins a proxy's step, which end_step() ends. The work of all calls in between is bounded
+  /// together: a field that has spent it answers on the safe side: all that it has not evaluated is
+  /// solid.
   virtual void begin_step() const noexcept {}
   /// Points that have been summed over since a step began: what its evaluations cost. A field that
   /// sums over none costs the same everywhere.

@@ -1,4 +1,4 @@
-// The options that say how points become a surface.
+// Options that define the surface of points.
 #pragma once
 
 namespace palpate {
@@ -30,8 +30,8 @@ struct FieldOptions {
   double tool_radius = 0;        ///< radius of the proxy's ball, m; the surface is pushed out by it
   /// Cap at Wmin, fill acute creases, and blend to the metaball where normals are uncertain.
   bool capped = true;
-  /// Edges and creases are sharp where points know what they meet (SurfacePoints::edges);
-  /// `balanced` with the exact gradient only.
+  /// Edges and creases are sharp where points have edge planes (SurfacePoints::edges); `balanced`
+  /// with the exact gradient only.
   bool sharp_edges = true;
   bool raw_weights = false;     ///< ignore density weights (the paper)
   bool nearest_radius = false;  ///< use the R of the point nearest to the proxy for all (the paper)

@@ -22,7 +22,7 @@ struct SurfaceEye {
 };
 
 /// Indexed points with all that a field needs of them, immutable once made. Every column is in the
-/// grid's sorted order and either as long as the grid or, where it says so, empty.
+/// grid's sorted order and either as long as the grid or, where stated, empty.
 ///
 /// A point may move in a straight line while a snapshot lasts: `grid` and the columns hold its
 /// start (A), the `end_` columns its end (B), empty when A = B.

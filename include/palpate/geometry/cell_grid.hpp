@@ -58,9 +58,10 @@ class CellGrid {
   CellGrid(std::span<const Eigen::Vector3f> positions, const Cube& cube);
 
   /// Builds the index again, in the memory of the last one, of points that stand along a curve
-  /// already, as those of a depth image do: `codes`, which never fall, say where on it, two bits a
-  /// level. A cell's points agree in their leading bits; those that agree in all of them stay
-  /// together, however many. Their order is kept. Allocates only to grow. Positions are finite.
+  /// already, as those of a depth image do: `codes`, which never fall, give the place on it, two
+  /// bits a level. A cell's points agree in their leading bits; those that agree in all of them
+  /// stay together, however many. Their order is kept. Allocates only to grow. Positions are
+  /// finite.
   ///
   /// `ends`: where the points are going, empty when they stay: the cells' boxes hold both, so a
   /// search finds what passes by on its way too. within() and nearest() see the positions alone.

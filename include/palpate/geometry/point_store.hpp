@@ -43,7 +43,7 @@ class PointStore {
   [[nodiscard]] virtual const Layout& layout() const = 0;
 
   /// The points of a node; those that are marked as not to be used are left out. Several threads
-  /// may read at once. @throws Error that says what is wrong with the file.
+  /// may read at once. @throws Error that names what is wrong with the file.
   [[nodiscard]] virtual PointCloud read(std::size_t node) const = 0;
 };
 

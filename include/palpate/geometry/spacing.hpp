@@ -18,7 +18,7 @@ inline constexpr double kLoneSpacing = 1e-3;
 /// Spacing from area for each point, in sorted order, m: the side of the square that a point has to
 /// itself on a surface, from the mean squared distance of its eight nearest others (places taken
 /// already are passed over), exact on a square grid, and averaged over its neighbourhood (by 0.75
-/// to 1.5). Finite and positive always: with fewer than eight others, which tell no area, a fifth
+/// to 1.5). Finite and positive always: with fewer than eight others, too few for an area, a fifth
 /// of the way to the nearest, with none the kLoneSpacing.
 ///
 /// A point beside a surface that is sampled much more densely gets twice that surface's spacing at

@@ -58,8 +58,8 @@ struct CloudFile {
 };
 
 /// Reads PLY, PCD, XYZ/TXT/CSV, PTS, PTX, OBJ, STL, glTF, GLB, LAS, LAZ (COPC too), E57, NumPy's
-/// .npy, KITTI's .bin, 16-bit depth PNG and PGM; gzip around any of them. The kind is told from the
-/// bytes first and from the name second; "-" is standard input. Points that are not finite are
+/// .npy, KITTI's .bin, 16-bit depth PNG and PGM; gzip around any of them. The kind is found from
+/// the bytes first and from the name second; "-" is standard input. Points that are not finite are
 /// dropped and counted; pixels without a depth, and those beyond ten times the image's median
 /// depth, too.
 ///

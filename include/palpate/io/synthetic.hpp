@@ -22,7 +22,7 @@ struct SyntheticName {
   std::string_view description;
 };
 
-/// The clouds that synthetic_cloud() knows.
+/// The clouds that synthetic_cloud() can make.
 [[nodiscard]] std::span<const SyntheticName> synthetic_names();
 
 /// Makes a cloud of some decimetres, in metres, with normals; those seen from one side have a

@@ -17,9 +17,8 @@ namespace palpate {
 
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
-  /// What tells the signs of normals. They help segments to form oriented components; the free side
-  /// of each is the one that the tool comes from. Components that nothing is known of point
-  /// outward.
+  /// The source of normals' signs. They help segments to form oriented components; the free side of
+  /// each is the one that the tool comes from. Components that nothing is known of point outward.
   enum class Orientation {
     automatic,  ///< what is given; else a viewpoint where one is known
     viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
@@ -33,8 +32,8 @@ struct PrepareOptions {
   double smoothing = 1;               ///< factor on the R that is chosen where none is given
   double minimum_radius = 0;          ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;         ///< wanted error of normals, rad (theta: 1.15 degrees)
-  /// Position of the sensor, in the cloud's frame, m. Tells signs instead of given normals,
-  /// unless these alone are asked for.
+  /// Position of the sensor, in the cloud's frame, m. Gives the signs in place of given normals,
+  /// unless these alone are requested.
   std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
   std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m

@@ -48,7 +48,7 @@ struct RosBridgeOptions {
 /// Publishes hands and their forces to ROS 2, and takes contact forces from robots, on a thread of
 /// its own that no servo waits for. docs/ros2.md lists the topics of each hand.
 ///
-/// In palpate::ros; where the build has no DDS, construction throws Error that says so.
+/// In palpate::ros; where the build has no DDS, construction throws Error.
 class RosBridge {
  public:
   struct Hand {

@@ -18,7 +18,7 @@ namespace palpate {
 /// what is around the tools is read, prepared and kept while there is memory for it. Where a block
 /// is there, forces are those of the whole, bit for bit, where prepare() goes by blocks; else they
 /// are nearly those, and the whole fades in at the end. Where it is missing there is no surface,
-/// which FieldNote::not_loaded says; once it is there its presence goes from 0 to 1 in 0.1 s, so
+/// as FieldNote::not_loaded reports; once it is there its presence goes from 0 to 1 in 0.1 s, so
 /// that it pushes nobody.
 ///
 /// Owns no thread: one thread calls advance() again and again. What it publishes depends on how

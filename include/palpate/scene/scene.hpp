@@ -12,7 +12,7 @@ namespace palpate {
 
 class Seams;
 
-/// The sources that are touched together. Knows no camera and owns no thread. Outlives every
+/// The sources that are touched together. Depends on no camera and owns no thread. Outlives every
 /// SceneField made of it; sources are added before the first of them.
 class Scene {
  public:

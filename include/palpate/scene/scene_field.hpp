@@ -23,7 +23,7 @@ enum class FieldNote : std::uint32_t {
   tool_too_large = 1u << 4,   ///< tool_radius is above 0.3 R here, or would bring a metaball's
                               ///< surface further than 0.85 R from its points, so it counts for
                               ///< less. Remedy: PrepareOptions::minimum_radius = tool_radius / 0.3
-  work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it did not know was solid
+  work_spent = 1u << 5,       ///< a step had looked at kStepVisits; what it had not seen was solid
   behind = 1u << 6,      ///< the proxy is behind what a camera sees, on the side that no camera
                          ///< saw: that holds it from the front alone
   not_loaded = 1u << 7,  ///< the proxy is where a cloud has points that are not prepared yet: there
@@ -62,8 +62,8 @@ class SceneField final : public Field {
   SceneField& operator=(const SceneField&) = delete;
 
   /// Picks up new snapshots, brings the surface to time `now` (s) and gathers the points around
-  /// the proxy and its path to the hand (m, world). Tells the sources where the tool can be next.
-  /// Wait-free, allocation-free.
+  /// the proxy and its path to the hand (m, world). Reports to the sources where the tool can be
+  /// next. Wait-free, allocation-free.
   void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;

@@ -105,9 +105,9 @@ struct Snapshot {
 /// The sensor's confidence in it at `time` (s), 0-1.
 [[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
-/// What a depth camera's newest frames say of a ball.
+/// What a depth camera's newest frames show of a ball.
 struct Seen {
-  /// In rising order: of what several cameras say, the last one in this list counts.
+  /// In rising order: of several cameras' answers, the last one in this list counts.
   enum class Says {
     outside,  ///< the ball, or part of it, is not in the picture
     nothing,  ///< nothing is measured there
@@ -155,12 +155,12 @@ class Source {
     [[nodiscard]] double rate() const { return interval > 0 ? 1 / interval : 0; }  ///< Hz
   };
 
-  /// Says when the surface of a pushed frame or cloud is to start being felt, s, on the clock that
-  /// SceneField::update is given. Asked once, when all that needs no start is done. Live: now
-  /// plus a lead in which the rest is done (some ms for a depth frame); a surface that comes after
-  /// its start all the same begins where the last one waits and catches up. In simulated time: the
-  /// frame's stamp plus the latency. A start before that of the surface pushed last counts as the
-  /// same.
+  /// Returns the time at which the surface of a pushed frame or cloud is to start being felt, s, on
+  /// the clock that SceneField::update is given. Called once, when all that needs no start is done.
+  /// Live: now plus a lead in which the rest is done (some ms for a depth frame); a surface that
+  /// comes after its start all the same begins where the last one waits and catches up. In
+  /// simulated time: the frame's stamp plus the latency. A start before that of the surface pushed
+  /// last counts as the same.
   using StartTime = std::function<double()>;
 
   /// @throws Error when an option is out of its range.
@@ -221,14 +221,14 @@ class Source {
   /// weight or presence outside 0-1, or times that are not finite and in order.
   void publish(std::shared_ptr<const Snapshot> snapshot);
 
-  /// What the newest depth frames say of a ball (m, world) at time `now` (s, on the clock of their
+  /// What the newest depth frames show of a ball (m, world) at time `now` (s, on the clock of their
   /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
   /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
   /// once the next one should have replaced it: at the longest gap between the stamps of the last
-  /// 16, lost frames left out, and their longest delay; of the first nine 2.5 mean intervals
-  /// after it came; at the latest PolicyOptions::silence after that. So is the last one before
-  /// keep(); one of set() never is. From raw depths, not from the surface. Nothing for clouds, and
-  /// until a frame is pushed after the first call. Any thread but a servo's.
+  /// 16, lost frames left out, and their longest delay; of the first nine 2.5 mean intervals after
+  /// it came; at the latest PolicyOptions::silence after that. So is the last one before keep();
+  /// one of set() never is. From raw depths, not from the surface. Nothing for clouds, and until a
+  /// frame is pushed after the first call. Any thread but a servo's.
   [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
 
   /// The newest surface's newest layer (of one that came by publish(), its first), for those who

@@ -14,13 +14,13 @@ namespace palpate {
 struct CameraInfo {
   std::string name;   ///< for messages, such as "simulated:table"
   double rate = 30;   ///< frames a second that it is made for, Hz
-  bool paces = true;  ///< read() waits for frames as they happen; false: as fast as it is asked
+  bool paces = true;  ///< read() waits for frames as they happen; false: as fast as it is read
   /// A frame may be the one before bit for bit though all is well: there is no noise in it, or one
-  /// image is all there is. From other cameras such a frame says that the picture is frozen.
+  /// image is all there is. From other cameras such a frame means that the picture is frozen.
   bool repeats = false;
   /// Another program sends its frames and may come at any time: until then it waits.
   bool awaits_sender = false;
-  /// Assumptions made because the camera does not say, in words; empty: none.
+  /// Assumptions made where the camera gives no value, in words; empty: none.
   std::string assumed = {};
 };
 
@@ -63,7 +63,7 @@ class DepthCamera {
 
 struct CameraOptions {
   /// Clock of the stamps; outlives the camera. Recordings and simulated cameras also wait for
-  /// it; null: they are as fast as they are asked, and real cameras stamp by the host's clock.
+  /// it; null: they are as fast as they are read, and real cameras stamp by the host's clock.
   const Clock* clock = nullptr;
   bool loop = false;  ///< recordings begin again at the end
 };
@@ -75,7 +75,7 @@ struct CameraOptions {
 /// "ros:TOPIC[,frame=FRAME][,unit=METRES]" (docs/ros2.md), "remote[:PATH]" (docs/remote_camera.md).
 /// Set-up: one thread at a time.
 /// @throws Error when the name is none of these, when the build lacks the driver, when there is no
-///   such camera, it is in use or may not be used; says what to do.
+///   such camera, it is in use or may not be used; its message states what to do.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_camera(const std::string& name,
                                                        const CameraOptions& options = {});
 

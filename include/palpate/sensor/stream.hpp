@@ -73,7 +73,7 @@ struct StreamOptions {
   /// play recordings in step. Unset: as soon as the stream is there.
   std::optional<double> start = {};
   /// Frames that repeat the one before bit for bit are real. Otherwise they are dropped, so that a
-  /// frozen camera's surface fades as a silent one's does. Unset: as CameraInfo::repeats says.
+  /// frozen camera's surface fades as a silent one's does. Unset: as CameraInfo::repeats.
   std::optional<bool> allow_repeats = {};
 };
 
@@ -83,7 +83,7 @@ struct StreamOptions {
 /// pace itself (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
 /// No frame of a camera, and nothing that it or preparation throws, ends a stream: it is counted
-/// and reported by state(). What stops coming fades as the source's PolicyOptions say; but what the
+/// and reported by state(). What stops coming fades by the source's PolicyOptions; but what the
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
@@ -129,7 +129,7 @@ struct SimulatedStreamOptions {
 /// plus latency less lead, so that nothing is overtaken and the same camera gives the same
 /// surfaces, bit for bit.
 ///
-/// A camera that has no frame, or none that comes after the one before, is asked again one frame's
+/// A camera that has no frame, or none that comes after the one before, is read again one frame's
 /// time later: it is not given up, and does not hold up time either.
 class SimulatedStream {
  public:

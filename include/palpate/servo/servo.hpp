@@ -89,7 +89,7 @@ class Ring {
   alignas(kCacheLine) std::atomic<std::uint64_t> popped_{0};  // the recorder writes it
 };
 
-/// All that a servo knows of its last step, for those who watch. World frame.
+/// The state of a servo after its last step, for those who watch. World frame.
 struct ServoState {
   /// Times of a step, measured by the loop that paces the servo, s. Not a number: not measured.
   struct Timing {

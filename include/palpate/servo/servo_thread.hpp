@@ -37,8 +37,8 @@ struct RealtimeReport {
 /// A line for each request: what was granted, what was not, why and how to permit it.
 [[nodiscard]] std::string in_words(const RealtimeReport& report);
 
-/// Asks for the calling thread; locked memory is the whole process's. Not real-time, never throws
-/// for what is refused.
+/// Requests it for the calling thread; locked memory is the whole process's. Not real-time, never
+/// throws for what is refused.
 [[nodiscard]] RealtimeReport make_realtime(const RealtimeOptions& options);
 
 /// Leaves a processor to the servo that is pinned there: the calling thread and those that it
@@ -85,9 +85,9 @@ class ServoThread {
   static constexpr double kLeastRate = 500;    // Hz (judgement)
   static constexpr double kMostRate = 10'000;  // Hz (judgement)
 
-  /// Starts, and returns when the system has answered what was asked for. Servo and clock outlive
-  /// it, and nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset:
-  /// what the device is made for. Devices that keep time (DeviceInfo::keeps_time) pace the thread
+  /// Starts, and returns when the system has answered the requests. Servo and clock outlive it, and
+  /// nobody else steps the servo meanwhile. `rate`: steps a second, 500 to 10000 Hz; unset: what
+  /// the device is made for. Devices that keep time (DeviceInfo::keeps_time) pace the thread
   /// themselves; theirs is then the rate.
   /// @throws Error when the rate is out of range or there is no thread to be had.
   ServoThread(Servo& servo, WaitingClock& clock, const RealtimeOptions& realtime = {},

@@ -81,7 +81,7 @@ class StiffnessTest {
   std::unique_ptr<Inside> inside_;
 };
 
-/// Says what the hand has to do, or why the test is over.
+/// Returns what the hand has to do, or why the test is over.
 [[nodiscard]] std::string_view in_words(StiffnessTest::Phase phase) noexcept;
 
 /// A flat virtual wall that is rendered through a guard on a simulated device that nobody holds:

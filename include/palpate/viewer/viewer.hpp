@@ -22,7 +22,7 @@ namespace palpate {
 /// the page and changes nothing. An empty callback means that the action is refused, unless its
 /// comment says otherwise.
 struct ViewerControls {
-  /// Something that a viewer's page may change. The viewer knows no setting of its own: a program
+  /// Something that a viewer's page may change. The viewer has no setting of its own: a program
   /// offers them.
   struct Setting {
     /// A number, a choice or a switch.
@@ -188,7 +188,7 @@ class Viewer {
   /// servos.
   explicit Viewer(Scene& scene, std::vector<Servo*> servos = {}, const ViewerOptions& options = {},
                   ViewerControls controls = {});
-  /// Tells pages that it ends, closes every connection and waits for both threads: 0.2 s and a
+  /// Notifies pages that it ends, closes every connection and waits for both threads: 0.2 s and a
   /// picture at most.
   ~Viewer();
   Viewer(const Viewer&) = delete;
@@ -199,19 +199,19 @@ class Viewer {
   [[nodiscard]] std::uint16_t port() const noexcept;
   [[nodiscard]] Counts counts() const;
 
-  /// At its end, pages are told that another viewer follows here, and why. Any thread but a
+  /// At its end, pages are notified that another viewer follows here, and why. Any thread but a
   /// servo's.
   void restarts(std::string why);
-  /// Tells every page something that a person should know now. Any thread but a servo's.
+  /// Sends every page a notice for the person at it. Any thread but a servo's.
   void notice(NoticeLevel level, std::string text);
-  /// Tells every page how far work is that takes a while, 0 to 1; 0: nobody knows. One such notice
-  /// stays on pages until it is 1. Any thread but a servo's.
+  /// Sends every page the progress of long work, 0 to 1; 0: not known. One such notice stays on
+  /// pages until it is 1. Any thread but a servo's.
   void progress(std::string what, double share);
-  /// The program itself changed a setting: tells every page. Any thread but a servo's.
+  /// The program itself changed a setting: notifies every page. Any thread but a servo's.
   void settings_changed();
-  /// There is another envelope or another past: tells every page. Any thread but a servo's.
+  /// There is another envelope or another past: notifies every page. Any thread but a servo's.
   void time_line_changed();
-  /// Tells every page that the recording ended by itself. Any thread but a servo's.
+  /// Notifies every page that the recording ended by itself. Any thread but a servo's.
   void record_ended();
 
  private:

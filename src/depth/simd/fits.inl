@@ -45,7 +45,7 @@ inline void widen_slopes(const FitInput& in, int row, Chunk& c) {
 }
 
 // Grows windows around four blocks for as long as one surface explains them. A torn window that no
-// plane explains tells nothing: growing goes on over it, but does not take it.
+// plane explains shows nothing: growing goes on over it, but does not take it.
 inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk& c) {
   Mask growing = ~Mask{};
   Mask good{};    // is the last size taken?

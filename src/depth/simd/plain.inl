@@ -1,6 +1,6 @@
 #pragma once
 
-// Block means and what their neighbours say, eight blocks side by side. Everything stands in an
+// Block means and those of their neighbours, eight blocks side by side. Everything stands in an
 // anonymous namespace: code for a newer processor must never stand in for an older one's.
 
 #include <cmath>

@@ -146,7 +146,7 @@ struct Fits {
   Doubles variance;  // of one block
   double shared;     // FitInput's
   Mask full;         // no hole
-  Mask torn;         // the three rows or columns need not be one surface: a parabola tells nothing
+  Mask torn;         // the three rows or columns need not be one surface: a parabola shows nothing
   Mask affine;       // full, and the noise explains what the affine fit leaves
   Mask quadratic;    // or the quadratic one
 };

@@ -77,7 +77,7 @@ inline constexpr float kMostOpaque = 0.99F;  ///< renderers clamp opacities to i
 /// Axes of a splat, the shortest first.
 [[nodiscard]] std::array<int, 3> sorted_axes(const Splat& splat);
 
-/// Samples that a splat takes in cells of this edge, m. Infinite where no number tells.
+/// Samples that a splat takes in cells of this edge, m. Infinite where it cannot be computed.
 [[nodiscard]] double samples_of(const Splat& splat, float edge);
 
 /// Every splat's shares, sorted by cell.

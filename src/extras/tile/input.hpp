@@ -26,7 +26,7 @@ struct TileInput {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; places are whole steps away
   double length = 0;                                 ///< m, of what is no survey
   /// The points of a piece but those that are marked as not to be used, or beyond 10^12 m. Several
-  /// threads may read at once. @throws Error that says what is wrong with the file.
+  /// threads may read at once. @throws Error that names what is wrong with the file.
   std::function<std::vector<InputPoint>(std::size_t piece)> read{};
 };
 

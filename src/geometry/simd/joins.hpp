@@ -7,11 +7,11 @@ namespace palpate::simd {
 
 /// Sums over neighbourhoods, for eight points at a time.
 ///
-/// Lanes are the eight points asked about; candidates come one by one, in rising order, so that a
-/// sum's rounding depends neither on the number of lanes nor on the instruction set. Plain pointers
-/// alone cross this border: code for newer processors must not leak into what older ones run.
+/// Lanes are the eight query points; candidates come one by one, in rising order, so that a sum's
+/// rounding depends neither on the number of lanes nor on the instruction set. Plain pointers alone
+/// cross this border: code for newer processors must not leak into what older ones run.
 
-/// Points asked about at a time (judgement).
+/// Query points at a time (judgement).
 inline constexpr std::size_t kQueries = 8;
 
 /// Points [begin, end).
@@ -24,12 +24,12 @@ struct Run {
 struct Join {
   const float* points;  ///< x, y, z of all points, m
   std::size_t query;
-  std::size_t count;  ///< points asked about, 1 ... kQueries
+  std::size_t count;  ///< query points, 1 ... kQueries
   const Run* runs;
   std::size_t run_count;
 };
 
-/// A result for each of the points asked about.
+/// A result for each of the query points.
 using Row = float[kQueries];
 
 /// Rows of moments(): number of neighbours, then the sums of d and of dd' (upper triangle, row by
@@ -47,7 +47,7 @@ struct Planes {
   double largest[kQueries];
 };
 
-/// Leaves' tight boxes side by side, how far from each its points are asked for, and their points.
+/// Leaves' tight boxes side by side, how far from each its points are visited, and their points.
 /// `count` is a multiple of kQueries; entries that fill it up have a lower bound of infinity.
 struct Leaves {
   const float* lower[3];  ///< x, y, z, m
@@ -63,7 +63,7 @@ struct Hit {
   std::uint32_t queries;
 };
 
-/// What each point that is asked about looks for: points beside its segment.
+/// What each query point looks for: points beside its segment.
 struct Eyes {
   Row normal[3];        ///< x, y, z, unit
   Row squared_reach;    ///< of all that is looked for, m^2

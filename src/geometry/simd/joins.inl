@@ -34,7 +34,7 @@ struct Joins {
     Floats squared() const { return x * x + y * y + z * z; }
   };
 
-  // The points [first, + kLanes); behind the last one that is asked about it stands again.
+  // The points [first, + kLanes); behind the last query point it stands again.
   struct Queries {
     Floats x, y, z;
     Queries(const Join& join, std::size_t first) {
