@@ -16,58 +16,58 @@ constexpr float kWithin2 = 0.98f;
 }  // namespace
 
 void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) const {
-  to.going_on.clear();
+  to.advancing.clear();
   to.shown.clear();
   to.unseen.clear();
   for (std::size_t place = begin; place < end; place += kLanes) {
     const std::uint32_t first = place + kLanes <= end && !blocks_.hide(place)
                                     ? matches_.four_at(place)
                                     : BlockEntries::kNone;
-    FourWays& ways = to.going_on.emplace_back();
-    ways.place = static_cast<std::uint32_t>(place);
-    const bool live = first != BlockEntries::kNone && are_live(first, ways);
-    if (live && blocks_.keeps(place) && keep_going(first, ways)) continue;
+    PointMotion4& motions = to.advancing.emplace_back();
+    motions.place = static_cast<std::uint32_t>(place);
+    const bool live = first != BlockEntries::kNone && are_live(first, motions);
+    if (live && blocks_.keeps(place) && advance(first, motions)) continue;
     const SeenFour four = blocks_.four_at(place);
-    if (live && go_on(four, ways)) continue;
-    to.going_on.pop_back();
+    if (live && update(four, motions)) continue;
+    to.advancing.pop_back();
     for (int l = 0; l < kLanes && place + l < end; ++l) settle(four.lane(l), to);
   }
 }
 
 /// Are four points live, beside no edge? Returns where they are.
-bool BlockFates::are_live(std::uint32_t first, FourWays& ways) const {
+bool BlockFates::are_live(std::uint32_t first, PointMotion4& motions) const {
   bool live = true;
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     const Entry& entry = shown_.entries()[first + k];
     live = live & (entry.kind == EntryKind::live);
-    ways.variance[k] = entry.variance;
+    motions.variance[k] = entry.variance;
   }
   if (!live || any(~load<Ints>(&shown_.edges()[first]))) return false;
-  ways.from = shown_.four_at(first);
+  motions.from = shown_.four_at(first);
   return true;
 }
 
 /// Four points that the last frame showed, and of which this one shows the same, go on to where
 /// they were going.
-bool BlockFates::keep_going(std::uint32_t first, FourWays& ways) const {
+bool BlockFates::advance(std::uint32_t first, PointMotion4& motions) const {
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     if (shown_.entries()[first + k].confirmed != shown_.stamp()) return false;
   }
-  ways.to = shown_.end_of_four(first);
-  return all(ways.to.presence >= 1);
+  motions.to = shown_.end_of_four(first);
+  return all(motions.to.presence >= 1);
 }
 
 /// Are four live points seen again within R, as they face, beside no edge? Else there is more to
 /// decide. Worth 16 to 29 % of a frame (bench/notes/2026-11-25-points-in-fours.md).
-bool BlockFates::go_on(const SeenFour& seen, FourWays& ways) const {
+bool BlockFates::update(const SeenFour& seen, PointMotion4& motions) const {
   if (any(~seen.edges)) return false;
-  const Vectors way = ways.from.position - seen.position;
-  const Vectors& normal = ways.from.normal;
+  const Vectors way = motions.from.position - seen.position;
+  const Vectors& normal = motions.from.normal;
   const Ints near = (seen.radius > 0) & (dot(way, way) <= kWithin2 * (seen.radius * seen.radius));
   const Ints turns = ~normal.zero() &
                      (dot(seen.normal, normal) < SeenPoint::kTurns * dot(seen.normal, seen.normal));
   if (!all(near & ~turns)) return false;
-  moves_.follow(seen, ways);
+  moves_.update(seen, motions);
   return true;
 }
 
@@ -83,8 +83,9 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
     const auto& [i, before] = *partner;
     const bool vouched = !is_doubtful(seen, before);
     const Fate next = fate({.shown = true, .same = true, .vouched = vouched});
-    if (next == Fate::stay) at = blocks_.depth_of(before.position);
-    add(next == Fate::follow ? moves_.follow(seen, i, before) : moves_.stay(i, before), seen, to);
+    if (next == Fate::confirm) at = blocks_.depth_of(before.position);
+    add(next == Fate::update ? moves_.update(seen, i, before) : moves_.confirm(i, before), seen,
+        to);
   }
   const std::span<const std::uint32_t> old = matches_.at(seen.place);
   const std::optional<std::uint32_t> own = partner ? std::optional(partner->i) : std::nullopt;
@@ -120,9 +121,9 @@ std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t place,
     if (kind == EntryKind::hidden || (kind == EntryKind::live && same)) return {};
     if (kind == EntryKind::supposed && same && i != shown) old = i;
   }
-  Way way = old ? moves_.follow(behind, *old, shown_.at(*old)) : moves_.appear(behind);
-  way.entry.kind = EntryKind::supposed;
-  add(way, behind, to);
+  PointMotion motion = old ? moves_.update(behind, *old, shown_.at(*old)) : moves_.appear(behind);
+  motion.entry.kind = EntryKind::supposed;
+  add(motion, behind, to);
   return old;
 }
 
@@ -153,11 +154,11 @@ bool BlockFates::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) c
   });
 }
 
-void BlockFates::add(Way way, const SeenPoint& at, SettledPlaces& to) const {
-  if (PointMoves::is_gone(way)) return;
-  way.entry.place = at.place;
-  way.code = blocks_.order().codes[at.place];
-  (way.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(way);
+void BlockFates::add(PointMotion motion, const SeenPoint& at, SettledPlaces& to) const {
+  if (PointMoves::is_gone(motion)) return;
+  motion.entry.place = at.place;
+  motion.code = blocks_.order().codes[at.place];
+  (motion.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(motion);
 }
 
 }  // namespace palpate

@@ -18,12 +18,12 @@ namespace palpate {
 
 /// What becomes of the points at some places of the curve.
 struct SettledPlaces {
-  std::vector<FourWays> going_on;
-  std::vector<Way> shown;   ///< of places where there is more to decide, in their order
-  std::vector<Way> unseen;  ///< points that no block shows
+  std::vector<PointMotion4> advancing;
+  std::vector<PointMotion> shown;   ///< of places where there is more to decide, in their order
+  std::vector<PointMotion> unseen;  ///< points that no block shows
 
   /// How many points blocks show.
-  [[nodiscard]] std::size_t count() const { return kLanes * going_on.size() + shown.size(); }
+  [[nodiscard]] std::size_t count() const { return kLanes * advancing.size() + shown.size(); }
 };
 
 /// Gathers the facts on which the fate of each point depends, and has it moved accordingly.
@@ -38,9 +38,9 @@ class BlockFates {
   void settle(std::size_t begin, std::size_t end, SettledPlaces& to) const;
 
  private:
-  [[nodiscard]] bool are_live(std::uint32_t first, FourWays& ways) const;
-  [[nodiscard]] bool keep_going(std::uint32_t first, FourWays& ways) const;
-  [[nodiscard]] bool go_on(const SeenFour& seen, FourWays& ways) const;
+  [[nodiscard]] bool are_live(std::uint32_t first, PointMotion4& motions) const;
+  [[nodiscard]] bool advance(std::uint32_t first, PointMotion4& motions) const;
+  [[nodiscard]] bool update(const SeenFour& seen, PointMotion4& motions) const;
   void settle(const SeenPoint& seen, SettledPlaces& to) const;
   [[nodiscard]] std::optional<std::uint32_t> settle_behind(std::uint32_t place,
                                                            std::optional<std::uint32_t> shown,
@@ -49,7 +49,7 @@ class BlockFates {
                              const std::optional<BlockMatches::Partner>& partner) const;
   [[nodiscard]] bool is_doubtful(const SeenPoint& seen, const PointState& before) const;
   [[nodiscard]] bool may_hide(std::span<const std::uint32_t> old, std::uint32_t i) const;
-  void add(Way way, const SeenPoint& at, SettledPlaces& to) const;
+  void add(PointMotion motion, const SeenPoint& at, SettledPlaces& to) const;
 
   const ShownPoints& shown_;
   const FrameBlocks& blocks_;

@@ -50,10 +50,10 @@ void BlockMatches::follow_camera(const Pinhole& pinhole) {
     const std::uint32_t place = blocks_.place_of(shown_.at(i++).position, pinhole);
     if (place != FrameBlocks::kNone) {
       entry.place = place;
-      if (entry.kind == EntryKind::outside) entry.kind = EntryKind::live;
+      if (entry.kind == EntryKind::out_of_range) entry.kind = EntryKind::live;
     } else {
       const bool stays = entry.kind == EntryKind::live || entry.kind == EntryKind::hidden;
-      if (stays) entry.kind = EntryKind::outside;
+      if (stays) entry.kind = EntryKind::out_of_range;
       if (entry.kind == EntryKind::supposed) entry.kind = EntryKind::going;
       entry.place = std::min<std::uint32_t>(entry.place, last);
     }
@@ -68,7 +68,7 @@ std::optional<BlockMatches::Partner> BlockMatches::partner_of(const SeenPoint& s
   float nearest = std::numeric_limits<float>::infinity();
   for (const std::uint32_t i : at(seen.place)) {
     const EntryKind kind = shown_.entries()[i].kind;
-    if (kind == EntryKind::leaving || kind == EntryKind::outside) continue;
+    if (kind == EntryKind::removed || kind == EntryKind::out_of_range) continue;
     const PointState state = shown_.at(i);
     const float squared = (state.position - seen.state.position).squaredNorm();
     if (squared >= nearest) continue;

@@ -9,12 +9,12 @@ namespace palpate {
 
 /// The fate of an old point of a morphing surface.
 enum class Fate : std::uint8_t {
-  follow,  ///< goes to where its block shows the surface now
-  stay,    ///< is confirmed where it was
-  hold,    ///< stays for a while, as nothing is known of it
-  hide,    ///< stays behind what hides it, and fades slowly
-  go,      ///< has been seen through, and fades quickly
-  leave,   ///< loses its weight in this frame
+  update,   ///< goes to where its block shows the surface now
+  confirm,  ///< is seen where it was
+  retain,   ///< stays for a while, as nothing is known of it
+  hide,     ///< stays behind what hides it, and fades slowly
+  go,       ///< has been seen through, and fades quickly
+  remove,   ///< loses its weight in this frame
 };
 
 /// All that a point's fate depends on.
@@ -38,14 +38,15 @@ inline constexpr float kSurelyBehind = 0.5f;
   const EntryKind kind = facts.kind;
   if (!facts.shown) {
     if (kind == EntryKind::going) return Fate::go;
-    return kind == EntryKind::leaving || facts.second ? Fate::leave : Fate::hold;
+    return kind == EntryKind::removed || facts.second ? Fate::remove : Fate::retain;
   }
-  if (facts.same) return facts.vouched ? Fate::follow : Fate::stay;
-  if (kind == EntryKind::outside) return Fate::hold;
+  if (facts.same) return facts.vouched ? Fate::update : Fate::confirm;
+  if (kind == EntryKind::out_of_range) return Fate::retain;
   // A plane that is hidden by about R goes on in some frames and not in others.
-  if (kind == EntryKind::supposed && facts.beyond > kSurelyBehind * facts.radius) return Fate::hold;
+  if (kind == EntryKind::supposed && facts.beyond > kSurelyBehind * facts.radius)
+    return Fate::retain;
   const bool within = -facts.radius <= facts.beyond && facts.beyond <= facts.radius;
-  if (kind == EntryKind::leaving || within) return Fate::leave;
+  if (kind == EntryKind::removed || within) return Fate::remove;
   const bool hidden = kind != EntryKind::going && facts.beyond > 0 && facts.may_hide;
   return hidden ? Fate::hide : Fate::go;
 }

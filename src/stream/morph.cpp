@@ -103,30 +103,32 @@ void Morph::write(Piece& piece) {
   piece.extremes = {};
   piece.edges.clear();
   std::size_t at = piece.first;
-  auto four = piece.settled.going_on.begin();
+  auto four = piece.settled.advancing.begin();
   const auto write_fours_before = [&](std::size_t place) {
-    for (; four != piece.settled.going_on.end() && four->place < place; ++four, at += kLanes) {
+    for (; four != piece.settled.advancing.end() && four->place < place; ++four, at += kLanes) {
       write(at, *four, piece);
     }
   };
-  for (const Way& way : piece.settled.shown) {
-    write_fours_before(way.entry.place);
-    write(at++, way, piece);
+  for (const PointMotion& motion : piece.settled.shown) {
+    write_fours_before(motion.entry.place);
+    write(at++, motion, piece);
   }
   write_fours_before(blocks_.order().size());
 }
 
-void Morph::write(std::size_t at, const Way& way, Piece& piece) {
-  writer_.write(at, way, piece.extremes);
-  if (way.edge.start.share != 0 || way.edge.end.share != 0) piece.edges.push_back({at, way.edge});
-  entries_[at] = way.entry;
+void Morph::write(std::size_t at, const PointMotion& motion, Piece& piece) {
+  writer_.write(at, motion, piece.extremes);
+  if (motion.edge.start.share != 0 || motion.edge.end.share != 0)
+    piece.edges.push_back({at, motion.edge});
+  entries_[at] = motion.entry;
 }
 
-void Morph::write(std::size_t at, const FourWays& ways, Piece& piece) {
-  writer_.write(at, &blocks_.order().codes[ways.place], ways.from, ways.to, piece.extremes);
+void Morph::write(std::size_t at, const PointMotion4& motions, Piece& piece) {
+  writer_.write(at, &blocks_.order().codes[motions.place], motions.from, motions.to,
+                piece.extremes);
   for (std::uint32_t k = 0; k < kLanes; ++k) {
-    entries_[at + k] = moves_.seen_entry(ways.variance[k]);
-    entries_[at + k].place = ways.place + k;
+    entries_[at + k] = moves_.seen_entry(motions.variance[k]);
+    entries_[at + k].place = motions.place + k;
   }
 }
 

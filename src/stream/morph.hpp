@@ -72,8 +72,8 @@ class Morph {
   /// Some places of the curve, one thread's at a time.
   struct Piece {
     SettledPlaces settled;
-    std::vector<std::pair<std::size_t, EdgeWay>> edges;  // of points
-    std::size_t first = 0;                               // of the points that blocks show
+    std::vector<std::pair<std::size_t, EdgeMotion>> edges;  // of points
+    std::size_t first = 0;                                  // of the points that blocks show
     PointWriter::Extremes extremes;
   };
 
@@ -82,8 +82,8 @@ class Morph {
   void start(const MorphInput& input, const FrameTiming& moment, SurfacePoints& points);
   void settle(std::size_t begin, std::size_t end, std::span<Piece> pieces);
   void write(Piece& piece);
-  void write(std::size_t at, const Way& way, Piece& piece);
-  void write(std::size_t at, const FourWays& ways, Piece& piece);
+  void write(std::size_t at, const PointMotion& motion, Piece& piece);
+  void write(std::size_t at, const PointMotion4& motions, Piece& piece);
 
   MorphOptions options_;
   FrameBlocks blocks_;

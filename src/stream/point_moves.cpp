@@ -53,7 +53,7 @@ bool PointMoves::is_fresh(std::uint32_t i) const {
   return moment_.stamp - shown_.entries()[i].confirmed < options_.silence;
 }
 
-Way PointMoves::appear(const SeenPoint& seen) const {
+PointMotion PointMoves::appear(const SeenPoint& seen) const {
   PointState from = seen.state;
   PointState to = seen.state;
   if (!still_) from.weight = 0;
@@ -62,10 +62,11 @@ Way PointMoves::appear(const SeenPoint& seen) const {
     to.presence = std::min(1.0f, comes_);
   }
   const SurfacePoints::EdgePlane edge = blocks_.edge_of(seen);
-  return {from, to, EdgeWay{edge, edge}, seen_entry(seen.variance)};
+  return {from, to, EdgeMotion{edge, edge}, seen_entry(seen.variance)};
 }
 
-Way PointMoves::follow(const SeenPoint& seen, std::uint32_t i, const PointState& from) const {
+PointMotion PointMoves::update(const SeenPoint& seen, std::uint32_t i,
+                               const PointState& from) const {
   PointState to = seen.state;
   const float known = shown_.entries()[i].variance * doubt_;
   const float apart = (to.position - from.position).dot(to.normal);
@@ -86,26 +87,27 @@ Way PointMoves::follow(const SeenPoint& seen, std::uint32_t i, const PointState&
   return {from, to, edge_of(seen, i), seen_entry(gain < 1 ? known : seen.variance)};
 }
 
-void PointMoves::follow(const SeenFour& seen, FourWays& ways) const {
+void PointMoves::update(const SeenFour& seen, PointMotion4& motions) const {
   const Floats whole = Floats{} + 1.0f;
-  const PointStates& from = ways.from;
-  const Floats known = ways.variance * doubt_;
+  const PointStates& from = motions.from;
+  const Floats known = motions.variance * doubt_;
   const Floats both = known + seen.variance;
   const Floats apart = dot(seen.position - from.position, seen.normal);
   const Ints uncertain =
       (seen.variance > kUncertain * known) & (apart * apart < kAgree * kAgree * both);
   const Floats gain = uncertain ? known / both : whole;
-  ways.variance = gain < 1 ? known : seen.variance;
-  ways.to.position = seen.position - ((1 - gain) * apart) * seen.normal;
-  ways.to.normal = choose(seen.normal.zero(), from.normal, seen.normal);
-  ways.to.radius = from.radius + kShare * (seen.radius - from.radius);
-  ways.to.confidence = from.confidence + kShare * (seen.confidence - from.confidence);
-  ways.to.weight = seen.trust * least(whole, seen.area / (ways.to.radius * ways.to.radius));
-  ways.to.presence = least(whole, from.presence + comes_);
+  motions.variance = gain < 1 ? known : seen.variance;
+  motions.to.position = seen.position - ((1 - gain) * apart) * seen.normal;
+  motions.to.normal = choose(seen.normal.zero(), from.normal, seen.normal);
+  motions.to.radius = from.radius + kShare * (seen.radius - from.radius);
+  motions.to.confidence = from.confidence + kShare * (seen.confidence - from.confidence);
+  motions.to.weight =
+      seen.trust * least(whole, seen.area / (motions.to.radius * motions.to.radius));
+  motions.to.presence = least(whole, from.presence + comes_);
 }
 
 /// The edge of an old point that is seen again. Most have none.
-EdgeWay PointMoves::edge_of(const SeenPoint& seen, std::uint32_t i) const {
+EdgeMotion PointMoves::edge_of(const SeenPoint& seen, std::uint32_t i) const {
   const bool was_beside = shown_.edges()[i] != SurfacePoints::Edges::kNone;
   if (seen.edge == EdgeFinder::kNone && !was_beside) return {};
   const SurfacePoints::EdgePlane was = shown_.edge_of(i);
@@ -116,28 +118,28 @@ EdgeWay PointMoves::edge_of(const SeenPoint& seen, std::uint32_t i) const {
   return {was, edge};
 }
 
-Way PointMoves::stay(std::uint32_t i, const PointState& from) const {
-  return keep(i, from, from.presence + comes_, EntryKind::live, moment_.stamp);
+PointMotion PointMoves::confirm(std::uint32_t i, const PointState& from) const {
+  return retained(i, from, from.presence + comes_, EntryKind::live, moment_.stamp);
 }
 
-Way PointMoves::unseen(Fate fate, std::uint32_t i) const {
+PointMotion PointMoves::unseen(Fate fate, std::uint32_t i) const {
   switch (fate) {
     case Fate::go:
-      return go(i);
+      return fade(i);
     case Fate::hide:
       return hide(i);
-    case Fate::hold:
-      return hold(i);
-    case Fate::follow:
-    case Fate::stay:  // of points that a block shows
-    case Fate::leave:
+    case Fate::retain:
+      return retain(i);
+    case Fate::update:
+    case Fate::confirm:  // of points that a block shows
+    case Fate::remove:
       break;
   }
-  return leave(i);
+  return remove(i);
 }
 
 /// Keeps a point of which nothing shows whether it is gone or there.
-Way PointMoves::hold(std::uint32_t i) const {
+PointMotion PointMoves::retain(std::uint32_t i) const {
   const Entry& entry = shown_.entries()[i];
   // Stamps may go back.
   const double confirmed = std::min(entry.confirmed, moment_.stamp);
@@ -146,28 +148,28 @@ Way PointMoves::hold(std::uint32_t i) const {
   const PointState from = shown_.at(i);
   const float most = std::min(from.presence, sure);
   const float presence = std::max(most, from.presence - share_of(options_.fade));
-  return keep(i, from, presence, entry.kind, confirmed);
+  return retained(i, from, presence, entry.kind, confirmed);
 }
 
 /// Keeps a point that something nearer hides.
-Way PointMoves::hide(std::uint32_t i) const {
+PointMotion PointMoves::hide(std::uint32_t i) const {
   const PointState from = shown_.at(i);
-  return keep(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
+  return retained(i, from, from.presence - share_of(kHidden), EntryKind::hidden, moment_.stamp);
 }
 
 /// Lets a point fade that was seen through.
-Way PointMoves::go(std::uint32_t i) const {
-  if (ends_) return leave(i);
+PointMotion PointMoves::fade(std::uint32_t i) const {
+  if (ends_) return remove(i);
   const PointState from = shown_.at(i);
   const float presence = from.presence - share_of(kGoes);
-  return keep(i, from, presence, EntryKind::going, shown_.entries()[i].confirmed);
+  return retained(i, from, presence, EntryKind::going, shown_.entries()[i].confirmed);
 }
 
 /// Keeps a point where it is and takes its presence to `presence` while the snapshot lasts; one
 /// that has none leaves.
-Way PointMoves::keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
-                     double confirmed) const {
-  if (from.presence <= 0) return leave(i);
+PointMotion PointMoves::retained(std::uint32_t i, const PointState& from, float presence,
+                                 EntryKind kind, double confirmed) const {
+  if (from.presence <= 0) return remove(i);
   PointState to = from;
   to.presence = std::clamp(presence, 0.0f, 1.0f);
   to.weight = shown_.end_weight(i);
@@ -177,28 +179,28 @@ Way PointMoves::keep(std::uint32_t i, const PointState& from, float presence, En
   if (kind != EntryKind::live && edge.share < 0) edge.share = 0;
   return {from,
           to,
-          EdgeWay{was, edge},
+          EdgeMotion{was, edge},
           Entry{confirmed, shown_.entries()[i].variance, 0, kind},
           0,
           shown_.to_eye(i)};
 }
 
-Way PointMoves::leave(std::uint32_t i) const {
+PointMotion PointMoves::remove(std::uint32_t i) const {
   const PointState from = shown_.at(i);
-  Way way{from, from, {shown_.edge_of(i), {}}, shown_.entries()[i], 0, shown_.to_eye(i)};
-  leave(way);
-  return way;
+  PointMotion motion{from, from, {shown_.edge_of(i), {}}, shown_.entries()[i], 0, shown_.to_eye(i)};
+  remove(motion);
+  return motion;
 }
 
-void PointMoves::leave(Way& way) {
-  way.to = way.from;
-  way.to.weight = 0;
-  way.edge.end = way.edge.start;
-  way.entry.kind = EntryKind::leaving;
+void PointMoves::remove(PointMotion& motion) {
+  motion.to = motion.from;
+  motion.to.weight = 0;
+  motion.edge.end = motion.edge.start;
+  motion.entry.kind = EntryKind::removed;
 }
 
-bool PointMoves::is_gone(const Way& way) {
-  return way.entry.kind == EntryKind::leaving && way.from.weight <= kGone;
+bool PointMoves::is_gone(const PointMotion& motion) {
+  return motion.entry.kind == EntryKind::removed && motion.from.weight <= kGone;
 }
 
 }  // namespace palpate

@@ -33,38 +33,39 @@ class PointMoves {
   [[nodiscard]] bool is_fresh(std::uint32_t i) const;
 
   /// A point that was not there before.
-  [[nodiscard]] Way appear(const SeenPoint& seen) const;
+  [[nodiscard]] PointMotion appear(const SeenPoint& seen) const;
 
-  /// Lets the old point, which was at `from`, go to the new one.
-  [[nodiscard]] Way follow(const SeenPoint& seen, std::uint32_t i, const PointState& from) const;
+  /// Moves the old point, which was at `from`, to the new one.
+  [[nodiscard]] PointMotion update(const SeenPoint& seen, std::uint32_t i,
+                                   const PointState& from) const;
 
-  /// Does the same for points within R, in four lanes, from `ways.from` and their old variances.
-  void follow(const SeenFour& seen, FourWays& ways) const;
+  /// Does the same for points within R, in four lanes, from `motions.from` and their old variances.
+  void update(const SeenFour& seen, PointMotion4& motions) const;
 
   /// Confirms the old point where it was.
-  [[nodiscard]] Way stay(std::uint32_t i, const PointState& from) const;
+  [[nodiscard]] PointMotion confirm(std::uint32_t i, const PointState& from) const;
 
   /// `fate`: of a point that is not seen again.
-  [[nodiscard]] Way unseen(Fate fate, std::uint32_t i) const;
+  [[nodiscard]] PointMotion unseen(Fate fate, std::uint32_t i) const;
 
-  /// Takes its weight from a point.
-  static void leave(Way& way);
+  /// Removes a point: takes its weight from it.
+  static void remove(PointMotion& motion);
 
-  /// Has a point that leaves no weight that anybody feels?
-  [[nodiscard]] static bool is_gone(const Way& way);
+  /// Has a removed point no weight left that can be felt?
+  [[nodiscard]] static bool is_gone(const PointMotion& motion);
 
   /// What is remembered of a point that a frame shows.
   [[nodiscard]] Entry seen_entry(float variance) const { return Entry{moment_.stamp, variance}; }
 
  private:
   [[nodiscard]] float share_of(double time) const;
-  [[nodiscard]] EdgeWay edge_of(const SeenPoint& seen, std::uint32_t i) const;
-  [[nodiscard]] Way hold(std::uint32_t i) const;
-  [[nodiscard]] Way hide(std::uint32_t i) const;
-  [[nodiscard]] Way go(std::uint32_t i) const;
-  [[nodiscard]] Way leave(std::uint32_t i) const;
-  [[nodiscard]] Way keep(std::uint32_t i, const PointState& from, float presence, EntryKind kind,
-                         double confirmed) const;
+  [[nodiscard]] EdgeMotion edge_of(const SeenPoint& seen, std::uint32_t i) const;
+  [[nodiscard]] PointMotion retain(std::uint32_t i) const;
+  [[nodiscard]] PointMotion hide(std::uint32_t i) const;
+  [[nodiscard]] PointMotion fade(std::uint32_t i) const;
+  [[nodiscard]] PointMotion remove(std::uint32_t i) const;
+  [[nodiscard]] PointMotion retained(std::uint32_t i, const PointState& from, float presence,
+                                     EntryKind kind, double confirmed) const;
 
   const MorphOptions& options_;
   const ShownPoints& shown_;

@@ -51,32 +51,32 @@ void PointWriter::make_room(std::size_t room) {
   room_ = room;
 }
 
-void PointWriter::add_eye(const Way& way) {
+void PointWriter::add_eye(const PointMotion& motion) {
   SurfaceEye& eye = *points_->eye;
-  const Eigen::Vector3d place = points_->origin + way.from.position.cast<double>();
-  const bool is_new = way.to_eye.isZero(0);
+  const Eigen::Vector3d place = points_->origin + motion.from.position.cast<double>();
+  const bool is_new = motion.to_eye.isZero(0);
   eye.remembered.push_back(is_new ? (eye.place - place).normalized().cast<float>().eval()
-                                  : way.to_eye);
+                                  : motion.to_eye);
 }
 
-void PointWriter::write(std::size_t at, const Way& way, Extremes& extremes) {
+void PointWriter::write(std::size_t at, const PointMotion& motion, Extremes& extremes) {
   SurfacePoints& p = *points_;
-  codes_[at] = way.code;
-  starts_[at] = way.from.position;
-  p.normals[at] = way.from.normal;
-  p.density_weights[at] = way.from.weight;
-  p.radii[at] = way.from.radius;
-  p.confidences[at] = way.from.confidence;
-  p.presences[at] = way.from.presence;
-  p.end_positions[at] = way.to.position;
-  p.end_normals[at] = way.to.normal;
-  p.end_density_weights[at] = way.to.weight;
-  p.end_radii[at] = way.to.radius;
-  p.end_confidences[at] = way.to.confidence;
-  p.end_presences[at] = way.to.presence;
+  codes_[at] = motion.code;
+  starts_[at] = motion.from.position;
+  p.normals[at] = motion.from.normal;
+  p.density_weights[at] = motion.from.weight;
+  p.radii[at] = motion.from.radius;
+  p.confidences[at] = motion.from.confidence;
+  p.presences[at] = motion.from.presence;
+  p.end_positions[at] = motion.to.position;
+  p.end_normals[at] = motion.to.normal;
+  p.end_density_weights[at] = motion.to.weight;
+  p.end_radii[at] = motion.to.radius;
+  p.end_confidences[at] = motion.to.confidence;
+  p.end_presences[at] = motion.to.presence;
   p.edges.of_point[at] = SurfacePoints::Edges::kNone;
-  extremes.add({Floats{} + std::min(way.from.radius, way.to.radius),
-                Floats{} + std::min(way.from.presence, way.to.presence)});
+  extremes.add({Floats{} + std::min(motion.from.radius, motion.to.radius),
+                Floats{} + std::min(motion.from.presence, motion.to.presence)});
 }
 
 void PointWriter::write(std::size_t at, const std::uint32_t* codes, const PointStates& from,
@@ -100,7 +100,7 @@ void PointWriter::write(std::size_t at, const std::uint32_t* codes, const PointS
 }
 
 /// An end without an edge gets the other end's plane.
-void PointWriter::add_edge(std::size_t at, const EdgeWay& edge) {
+void PointWriter::add_edge(std::size_t at, const EdgeMotion& edge) {
   if (edge.start.share == 0 && edge.end.share == 0) return;
   SurfacePoints::Edges& edges = points_->edges;
   edges.of_point[at] = static_cast<std::uint32_t>(edges.start.size());

@@ -37,18 +37,18 @@ class PointWriter {
   [[nodiscard]] std::size_t count() const { return count_; }
 
   /// Writes a point into the room for it. Codes of points never fall.
-  void write(std::size_t at, const Way& way, Extremes& extremes);
+  void write(std::size_t at, const PointMotion& motion, Extremes& extremes);
 
   /// Writes points side by side that lie beside no edge.
   void write(std::size_t at, const std::uint32_t* codes, const PointStates& from,
              const PointStates& to, Extremes& extremes);
 
   /// Puts a written point beside an edge. One thread, in rising order of points.
-  void add_edge(std::size_t at, const EdgeWay& edge);
+  void add_edge(std::size_t at, const EdgeMotion& edge);
 
   /// Writes where the next of the last points was seen from: a point that is new, from the eye of
   /// all others.
-  void add_eye(const Way& way);
+  void add_eye(const PointMotion& motion);
 
   /// Indexes the points and finishes them as palpate::finish() does.
   void end(const Extremes& extremes);

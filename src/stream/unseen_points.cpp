@@ -21,16 +21,16 @@ constexpr float kUnseenSteps = 1023;  // of that curve along an axis
 void UnseenPoints::begin(std::size_t blocks) {
   most_ = blocks;
   held_ = 0;
-  ways_.clear();
-  ways_.reserve(blocks);
+  motions_.clear();
+  motions_.reserve(blocks);
   order_.reserve(blocks);
   sorting_.reserve(blocks);
 }
 
-void UnseenPoints::add(std::span<const Way> ways) {
-  for (Way way : ways) {
-    if (way.entry.kind != EntryKind::leaving && ++held_ > most_) PointMoves::leave(way);
-    if (!PointMoves::is_gone(way)) ways_.push_back(way);
+void UnseenPoints::add(std::span<const PointMotion> motions) {
+  for (PointMotion motion : motions) {
+    if (motion.entry.kind != EntryKind::removed && ++held_ > most_) PointMoves::remove(motion);
+    if (!PointMoves::is_gone(motion)) motions_.push_back(motion);
   }
 }
 
@@ -39,29 +39,29 @@ void UnseenPoints::write(PointWriter& writer, PointWriter::Extremes& extremes,
   using Eigen::Array3f;
   Array3f lower = Array3f::Constant(std::numeric_limits<float>::max());
   Array3f upper = -lower;
-  for (const Way& way : ways_) {
-    lower = lower.min(way.from.position.array());
-    upper = upper.max(way.from.position.array());
+  for (const PointMotion& motion : motions_) {
+    lower = lower.min(motion.from.position.array());
+    upper = upper.max(motion.from.position.array());
   }
   const float extent = std::max((upper - lower).maxCoeff(), std::numeric_limits<float>::min());
   order_.clear();
-  for (std::size_t i = 0; i < ways_.size(); ++i) {
-    const Array3f share = (ways_[i].from.position.array() - lower) / extent;
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const Array3f share = (motions_[i].from.position.array() - lower) / extent;
     const Eigen::Array<std::uint32_t, 3, 1> cell = (kUnseenSteps * share).cast<std::uint32_t>();
     const std::uint64_t code = detail::morton_key(cell.x(), cell.y(), cell.z());
     order_.push_back(code << detail::kPlaceBits | i);
   }
   sorting_.resize(order_.size());
   detail::sort_records(order_, sorting_, detail::kKeyBits);
-  std::size_t at = writer.append(ways_.size());
+  std::size_t at = writer.append(motions_.size());
   entries.resize(writer.count());
   for (const detail::Record record : order_) {
-    Way& way = ways_[record & detail::kPlaceMask];
-    way.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kPlaceBits);
-    writer.write(at, way, extremes);
-    writer.add_edge(at, way.edge);
-    writer.add_eye(way);
-    entries[at++] = way.entry;
+    PointMotion& motion = motions_[record & detail::kPlaceMask];
+    motion.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kPlaceBits);
+    writer.write(at, motion, extremes);
+    writer.add_edge(at, motion.edge);
+    writer.add_eye(motion);
+    entries[at++] = motion.entry;
   }
 }
 

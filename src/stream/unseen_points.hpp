@@ -18,7 +18,7 @@ class UnseenPoints {
   void begin(std::size_t blocks);
 
   /// Points beyond the most leave.
-  void add(std::span<const Way> ways);
+  void add(std::span<const PointMotion> motions);
 
   /// Writes them behind all that blocks show.
   void write(PointWriter& writer, PointWriter::Extremes& extremes, std::vector<Entry>& entries);
@@ -26,7 +26,7 @@ class UnseenPoints {
  private:
   std::size_t most_ = 0;
   std::size_t held_ = 0;
-  std::vector<Way> ways_;
+  std::vector<PointMotion> motions_;
   std::vector<std::uint64_t> order_;  // their codes, and places among them
   std::vector<std::uint64_t> sorting_;
 };

@@ -93,7 +93,7 @@ TEST_F(BlockMatchesTest, WhatIsFarNearerAfterALongGapIsAnother) {
 }
 
 TEST_F(BlockMatchesTest, WhatLeavesIsNoPartner) {
-  shown_.entries()[middle()].kind = EntryKind::leaving;
+  shown_.entries()[middle()].kind = EntryKind::removed;
   EXPECT_FALSE(matches_.partner_of(seen(middle())));
 }
 
@@ -104,7 +104,7 @@ TEST_F(BlockMatchesTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
   std::size_t outside = 0;
   for (std::uint32_t i = 0; i < shown_.entries().size(); ++i) {
     const Entry& entry = shown_.entries()[i];
-    if (entry.kind == EntryKind::outside) {
+    if (entry.kind == EntryKind::out_of_range) {
       ++outside;
       continue;
     }
@@ -154,7 +154,7 @@ TEST_F(BlockMatchesTest, NothingIsListedBeforehandForACameraThatMoves) {
 TEST_F(BlockMatchesTest, APointThatComesBackIntoTheImageIsLiveAgain) {
   T_world_sensor_.translation() += Vector3d(0.01, 0, 0);
   show(wall(0.5), true);
-  const auto is_outside = [](const Entry& entry) { return entry.kind == EntryKind::outside; };
+  const auto is_outside = [](const Entry& entry) { return entry.kind == EntryKind::out_of_range; };
   EXPECT_TRUE(std::ranges::any_of(shown_.entries(), is_outside));
   T_world_sensor_ = looking_down();
   show(wall(0.5), true);

@@ -19,12 +19,12 @@ FateFacts with_kind(EntryKind kind, FateFacts facts = {}) {
 
 TEST(Fate, WhatIsSeenAgainFollows) {
   for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::going}) {
-    EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::follow);
+    EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::update);
   }
 }
 
 TEST(Fate, WhatIsSeenElsewhereByNoNeighbourStays) {
-  EXPECT_EQ(fate({.shown = true, .same = true, .vouched = false}), Fate::stay);
+  EXPECT_EQ(fate({.shown = true, .same = true, .vouched = false}), Fate::confirm);
 }
 
 TEST(Fate, WhatIsBehindSomethingNearerIsHidden) {
@@ -50,20 +50,20 @@ TEST(Fate, WhatGoesDoesNotHide) {
 
 TEST(Fate, ASecondPointOfOneSurfaceLeaves) {
   for (const float beyond : {-kShownRadius, 0.0f, kShownRadius})
-    EXPECT_EQ(fate(facts_at(beyond)), Fate::leave);
-  EXPECT_EQ(fate({.second = true}), Fate::leave);
+    EXPECT_EQ(fate(facts_at(beyond)), Fate::remove);
+  EXPECT_EQ(fate({.second = true}), Fate::remove);
 }
 
 TEST(Fate, WhatNothingIsMeasuredOfIsHeld) {
-  for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::outside}) {
-    EXPECT_EQ(fate(with_kind(kind)), Fate::hold);
+  for (const auto kind : {EntryKind::live, EntryKind::hidden, EntryKind::out_of_range}) {
+    EXPECT_EQ(fate(with_kind(kind)), Fate::retain);
   }
   EXPECT_EQ(fate(with_kind(EntryKind::going)), Fate::go);
 }
 
 TEST(Fate, WhatLeftTheImageIsHeldWhateverTheBlockShows) {
   for (const float beyond : {-0.1f, 0.0f, 0.1f}) {
-    EXPECT_EQ(fate(with_kind(EntryKind::outside, facts_at(beyond))), Fate::hold);
+    EXPECT_EQ(fate(with_kind(EntryKind::out_of_range, facts_at(beyond))), Fate::retain);
   }
 }
 
@@ -71,18 +71,18 @@ TEST(Fate, WhatLeftTheImageIsHeldWhateverTheBlockShows) {
 TEST(Fate, WhatNobodySawIsHeldBehindWhatIsSeen) {
   const EntryKind kind = EntryKind::supposed;
   for (const float beyond : {0.6f * kShownRadius, kShownRadius, 0.1f}) {
-    EXPECT_EQ(fate(with_kind(kind, facts_at(beyond))), Fate::hold);
+    EXPECT_EQ(fate(with_kind(kind, facts_at(beyond))), Fate::retain);
   }
-  EXPECT_EQ(fate(with_kind(kind, facts_at(0.4f * kShownRadius))), Fate::leave);
+  EXPECT_EQ(fate(with_kind(kind, facts_at(0.4f * kShownRadius))), Fate::remove);
   EXPECT_EQ(fate(with_kind(kind, facts_at(-0.1f))), Fate::go);
-  EXPECT_EQ(fate(with_kind(kind)), Fate::hold);
-  EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::follow);
+  EXPECT_EQ(fate(with_kind(kind)), Fate::retain);
+  EXPECT_EQ(fate(with_kind(kind, {.shown = true, .same = true})), Fate::update);
 }
 
 TEST(Fate, WhatLeavesIsGoneForGood) {
-  EXPECT_EQ(fate(with_kind(EntryKind::leaving)), Fate::leave);
+  EXPECT_EQ(fate(with_kind(EntryKind::removed)), Fate::remove);
   for (const float beyond : {-0.1f, 0.0f, 0.1f}) {
-    EXPECT_EQ(fate(with_kind(EntryKind::leaving, facts_at(beyond))), Fate::leave);
+    EXPECT_EQ(fate(with_kind(EntryKind::removed, facts_at(beyond))), Fate::remove);
   }
 }
 

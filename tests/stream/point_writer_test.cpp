@@ -76,20 +76,20 @@ PointState state(float x) {
           .presence = std::min(1.0f, 0.2f * x)};
 }
 
-Way way(std::uint32_t k) {
+PointMotion motion(std::uint32_t k) {
   const auto x = static_cast<float>(k);
-  return {state(1 + x), state(1.5f + x), EdgeWay{}, Entry{}, k};
+  return {state(1 + x), state(1.5f + x), EdgeMotion{}, Entry{}, k};
 }
 
-SurfacePoints written(const std::vector<Way>& ways, bool edges = false) {
+SurfacePoints written(const std::vector<PointMotion>& motions, bool edges = false) {
   SurfacePoints points;
   PointWriter writer;
   PointWriter::Extremes extremes;
   writer.begin(points, 1);
-  const std::size_t first = writer.append(ways.size());
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    writer.write(first + i, ways[i], extremes);
-    if (edges) writer.add_edge(first + i, ways[i].edge);
+  const std::size_t first = writer.append(motions.size());
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    writer.write(first + i, motions[i], extremes);
+    if (edges) writer.add_edge(first + i, motions[i].edge);
   }
   writer.end(extremes);
   return points;
@@ -116,7 +116,7 @@ PointStates four(float offset) {
 }
 
 TEST(PointWriter, WritesFourAsItWritesEach) {
-  const SurfacePoints singly = written({way(0), way(1), way(2), way(3)});
+  const SurfacePoints singly = written({motion(0), motion(1), motion(2), motion(3)});
   SurfacePoints together;
   PointWriter writer;
   PointWriter::Extremes extremes;
@@ -140,22 +140,22 @@ TEST(PointWriter, WritesFourAsItWritesEach) {
 }
 
 TEST(PointWriter, KnowsTheSmallestRadiusAndHowFarACellReaches) {
-  const SurfacePoints points = written({way(0), way(1), way(2)});
+  const SurfacePoints points = written({motion(0), motion(1), motion(2)});
   EXPECT_EQ(points.smallest_radius, state(1).radius);
   EXPECT_EQ(points.cell_reach.front(), state(3.5f).radius);  // the root's
   EXPECT_EQ(points.radius, state(2.5f).radius);              // the middle one, at the end
 }
 
 TEST(PointWriter, PresencesAreLeftOutWhereAllAreOne) {
-  EXPECT_EQ(written({way(0)}).presences.size(), 1u);
-  EXPECT_TRUE(written({way(5)}).presences.empty());
-  EXPECT_TRUE(written({way(5)}).end_presences.empty());
+  EXPECT_EQ(written({motion(0)}).presences.size(), 1u);
+  EXPECT_TRUE(written({motion(5)}).presences.empty());
+  EXPECT_TRUE(written({motion(5)}).end_presences.empty());
 }
 
 TEST(PointWriter, AnEndWithoutAnEdgeGetsTheOtherEndsPlane) {
-  Way beside = way(0);
+  PointMotion beside = motion(0);
   beside.edge.end = {Vector3f::UnitX(), 0.5f, 0.25f};
-  const SurfacePoints points = written({way(0), beside}, true);
+  const SurfacePoints points = written({motion(0), beside}, true);
   EXPECT_EQ(points.edges.of_point[0], SurfacePoints::Edges::kNone);
   ASSERT_EQ(points.edges.of_point[1], 0u);
   EXPECT_EQ(points.edges.start[0].normal, Vector3f::UnitX());
