@@ -52,11 +52,11 @@ void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
 void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
                               const Eigen::Vector3d& hip, double dt, Contact& contact,
                               bool changed) noexcept {
-  if (changed) way_out_.reset();
-  if (!changed && !touch_.touching) way_out_.wander(probe, position_);
+  if (changed) escape_.reset();
+  if (!changed && !touch_.touching) escape_.wander(probe, position_);
   const bool slow = (position_ - before).norm() <= kFast * probe.radius();
   if (!changed && slow && touch_.is_held() &&
-      way_out_.is_shut_in(probe, position_, touch_.normal, hip)) {
+      escape_.is_trapped(probe, position_, touch_.normal, hip)) {
     spring_.leave(position_, spring_.stiffness());
     release(hip);
     contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};

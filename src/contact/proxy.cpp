@@ -40,7 +40,7 @@ const ProxyOptions& Proxy::options() const noexcept {
 }
 
 int Proxy::max_evaluations() const noexcept {
-  return 1100 + 20 * options().max_iterations + WayOut::kMostLooks;
+  return 1100 + 20 * options().max_iterations + EscapeSearch::kMostLooks;
 }
 
 bool Proxy::change(double stiffness, const Friction& friction, const Texture& texture) noexcept {

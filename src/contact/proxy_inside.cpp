@@ -41,7 +41,7 @@ void Proxy::Inside::reset(const Eigen::Vector3d& position) noexcept {
   started_ = !fault_;
   radius_ = 0;
   spring_.reset();
-  way_out_.reset();
+  escape_.reset();
   revision_.reset();
   release(fault_ ? Eigen::Vector3d::Zero().eval() : position);
   hand_ = position_;

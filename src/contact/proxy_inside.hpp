@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "contact/escape_search.hpp"
 #include "contact/probe.hpp"
 #include "contact/slide.hpp"
 #include "contact/spring.hpp"
-#include "contact/way_out.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate {
@@ -74,7 +74,7 @@ class Proxy::Inside {
 
   ProxyOptions options_;
   Spring spring_;
-  WayOut way_out_;  // of a static scene
+  EscapeSearch escape_;  // of a static scene
   Touch touch_;
   Eigen::Vector3d position_{0, 0, 0};
   Eigen::Vector3d hand_{0, 0, 0};  // that the proxy last caught up with

@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr double kStep = 0.25;           // of R, the longest sub-step: the surface is smooth over R
-constexpr double kReach = 0.5;           // of R, twice a sub-step: farther is another sheet
+constexpr double kReach = 0.5;           // of R, twice a sub-step: farther is another surface
 constexpr double kArmijo = 1e-3;         // share of the expected decrease (Armijo 1966)
 constexpr double kNormalGate = 0.3;      // cosine of 72 degrees: the surface may not turn over
 constexpr double kLift = 2e-3;           // of R, above the surface where a release begins

@@ -1,5 +1,5 @@
 // Looks for a way from a proxy, and from its hand, to open air.
-#include "contact/way_out.hpp"
+#include "contact/escape_search.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -21,13 +21,13 @@ constexpr double kFirstBall = 0.5;    // of R (judgement); later ones double whe
 constexpr double kLeastBall = 0.25;   // of R (judgement): with less room the field is evaluated
 constexpr double kSurfaceEnds = 0.3;  // of W: the default of FieldOptions::minimum_support
 constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
-constexpr double kStride = 0.3;   // of R (derived): single sheets are solid for over half an R
+constexpr double kStride = 0.3;   // of R (derived): single surfaces are solid for over half an R
 constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
 constexpr double kDeep = 1;       // of R (judgement), from the proxy: less is not held hard
 constexpr double kElsewhere = 1;  // of R that a proxy moves before it is checked again (judgement)
-// Times that a way turns. Measured before sheets barred ways whatever their sides: of 288 hands in
-// tilted tubes 1 to 4 R in radius, up to 20 R deep, smooth or rough by 0.1 R, 94 are let go with 2,
-// two with 6, none with 12.
+// Times that a path turns. Measured before surfaces barred paths whatever their sides: of 288 hands
+// in tilted tubes 1 to 4 R in radius, up to 20 R deep, smooth or rough by 0.1 R, 94 are let go with
+// 2, two with 6, none with 12.
 constexpr int kTurns = 12;
 constexpr double kLeastTurn = 0.2;  // sine (12 degrees) of what is left of a way (judgement)
 constexpr int kAround = 8;          // slanting directions, 45 degrees apart (judgement)
@@ -43,30 +43,30 @@ Eigen::Vector3d direction_from(const Eigen::Vector3d& normal, int k) noexcept {
 
 }  // namespace
 
-WayOut::Ray WayOut::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
-                        double radius) noexcept {
+EscapeSearch::Ray EscapeSearch::ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
+                                    double radius) noexcept {
   return {.from = from, .along = along, .radius = radius, .ball = kFirstBall * radius};
 }
 
-/// May the way go on over this place? It leaves the surface that it begins at while the field does
-/// not fall again. Once it is in air, every sheet is in its way, whatever its sides: one that let
-/// the proxy pass would let the way pass, too.
-bool WayOut::Ray::passes(const Sample& here) noexcept {
+/// May the path go on over this position? It leaves the surface that it begins at while the field
+/// does not fall again. Once it is in air, every surface is in its way, whatever its sides: one
+/// that let the proxy pass would let the way pass, too.
+bool EscapeSearch::Ray::passes(const Sample& here) noexcept {
   const double least = std::max(0.0, highest - kClear * radius);
   if (!(here.value > 0) || !(here.support < kSurfaceEnds || here.value > least)) return false;
   highest = here.support < kSurfaceEnds ? kAir : std::max(highest, here.value);
   return true;
 }
 
-void WayOut::Ray::go(double stride) noexcept {
+void EscapeSearch::Ray::go(double stride) noexcept {
   before = gone;
   gone += stride;
   if (turns == 0) room = gone;
 }
 
-/// Goes on along the surface that is in the way, from the last place before it; false where that
+/// Goes on along the surface that is in the way, from the last position before it; false where that
 /// is no way on.
-bool WayOut::Ray::turn(const Eigen::Vector3d& gradient) noexcept {
+bool EscapeSearch::Ray::turn(const Eigen::Vector3d& gradient) noexcept {
   const Eigen::Vector3d normal = gradient.normalized();
   const Eigen::Vector3d next = along - std::min(0.0, along.dot(normal)) * normal;
   const double length = next.norm();
@@ -78,7 +78,7 @@ bool WayOut::Ray::turn(const Eigen::Vector3d& gradient) noexcept {
   return true;
 }
 
-WayOut::End WayOut::walk(Probe& probe, const Effort& effort) noexcept {
+EscapeSearch::End EscapeSearch::walk(Probe& probe, const Effort& effort) noexcept {
   const double least = kLeastBall * ray_.radius;
   const int before = probe.work();
   for (int look = 0; look < effort.looks; ++look) {
@@ -105,18 +105,18 @@ WayOut::End WayOut::walk(Probe& probe, const Effort& effort) noexcept {
   return End::none;
 }
 
-void WayOut::wander(Probe& probe, const Eigen::Vector3d& place) noexcept {
-  if (state_ != State::free) ask(place);
+void EscapeSearch::wander(Probe& probe, const Eigen::Vector3d& position) noexcept {
+  if (state_ != State::free) search(position);
   state_ = State::free;
   if (was_out_) return;
   const double radius = probe.radius();
   if (direction_ == kWays) {
-    if ((place - known_).norm() < kElsewhere * radius) return;
-    ask(place);
+    if ((position - known_).norm() < kElsewhere * radius) return;
+    search(position);
   }
   if (!ray_.any()) {
     const double side = direction_ % 2 == 0 ? 1 : -1;
-    ray_ = ray(place, direction_from(side * Eigen::Vector3d::UnitZ(), direction_), radius);
+    ray_ = ray(position, direction_from(side * Eigen::Vector3d::UnitZ(), direction_), radius);
   }
   const End end = walk(probe, {kFirstLooks, 0});
   was_out_ = end == End::open;
@@ -125,48 +125,49 @@ void WayOut::wander(Probe& probe, const Eigen::Vector3d& place) noexcept {
   ++direction_;
 }
 
-/// Forgets what was found of the proxy's way out: it is looked for from `place`.
-void WayOut::ask(const Eigen::Vector3d& place) noexcept {
-  state_ = State::asked;
+/// Forgets what was found of the proxy's escape: it is searched for from `position`.
+void EscapeSearch::search(const Eigen::Vector3d& position) noexcept {
+  state_ = State::searching;
   direction_ = 0;
   has_room_ = false;
-  known_ = place;
+  known_ = position;
   ray_ = {};
 }
 
 /// Looks on for the way of a proxy that touches.
-void WayOut::look_around(Probe& probe, const Eigen::Vector3d& place,
-                         const Eigen::Vector3d& normal) noexcept {
+void EscapeSearch::look_around(Probe& probe, const Eigen::Vector3d& position,
+                               const Eigen::Vector3d& normal) noexcept {
   const double radius = probe.radius();
   if (!ray_.any()) {
-    ray_ = ray(place + kClear * radius * normal, direction_from(normal, direction_), radius);
+    ray_ = ray(position + kClear * radius * normal, direction_from(normal, direction_), radius);
   }
   const bool first = direction_ == 0 && ray_.turns == 0;
   const Effort effort = first ? Effort{kFirstLooks, kFirstWork} : Effort{kMostLooks - 1, kMostWork};
   const End end = walk(probe, effort);
   if (end == End::none) return;
   has_room_ = has_room_ || ray_.room >= kStride * radius;
-  known_ = place;
+  known_ = position;
   ray_ = {};
   if (end == End::open) {
     state_ = State::open;
   } else if (++direction_ == kWays) {
-    state_ = has_room_ ? State::shut : State::open;
+    state_ = has_room_ ? State::trapped : State::open;
   }
 }
 
-bool WayOut::is_shut_in(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-                        const Eigen::Vector3d& hip) noexcept {
+bool EscapeSearch::is_trapped(Probe& probe, const Eigen::Vector3d& position,
+                              const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept {
   const double radius = probe.radius();
-  const bool moved = state_ != State::asked && (place - known_).norm() >= kElsewhere * radius;
-  if (state_ == State::free || moved) ask(place);
-  if (!was_out_ || state_ == State::open || (place - hip).norm() < kDeep * radius) return false;
-  if (state_ != State::shut) {
-    look_around(probe, place, normal);
+  const bool moved =
+      state_ != State::searching && (position - known_).norm() >= kElsewhere * radius;
+  if (state_ == State::free || moved) search(position);
+  if (!was_out_ || state_ == State::open || (position - hip).norm() < kDeep * radius) return false;
+  if (state_ != State::trapped) {
+    look_around(probe, position, normal);
     return false;
   }
   if (!probe.is_free({hip, kLeastBall * radius})) return false;
-  ray_ = ray(hip, (hip - place).normalized(), radius);
+  ray_ = ray(hip, (hip - position).normalized(), radius);
   return walk(probe, {kMostLooks - 1, 0}) == End::open;
 }
 

@@ -140,7 +140,7 @@ Outcome go(Proxy& proxy, const Field& field, const std::vector<Vector3d>& way, d
 const Vector3d kOutside(0.02, 0.01, 0.15);
 const Vector3d kWithin(0.005, 0, 0);
 
-TEST(WayOut, WhoCameThroughALeakIsLetGoOnTheWayOut) {
+TEST(EscapeSearch, WhoCameThroughALeakIsLetGoOnTheEscapePath) {
   HollowBall ball;
   Proxy proxy;
   proxy.reset(kOutside);
@@ -154,7 +154,7 @@ TEST(WayOut, WhoCameThroughALeakIsLetGoOnTheWayOut) {
   EXPECT_EQ(proxy.position(), kOutside);
 }
 
-TEST(WayOut, AWallThatLetTheProxyPassIsNoWayOut) {
+TEST(EscapeSearch, AWallThatLetTheProxyPassIsNoEscape) {
   const BallOfWrongNormals ball;
   Proxy proxy;
   const Vector3d above(0.001, 0.002, 0.15);
@@ -166,7 +166,7 @@ TEST(WayOut, AWallThatLetTheProxyPassIsNoWayOut) {
   EXPECT_EQ(out.last.force.norm(), 0);
 }
 
-TEST(WayOut, WhoWasNeverOutsideIsHeldByTheWallsOfARoom) {
+TEST(EscapeSearch, WhoWasNeverOutsideIsHeldByTheWallsOfARoom) {
   const HollowBall ball;
   Proxy proxy;
   proxy.reset(kWithin);
@@ -176,7 +176,7 @@ TEST(WayOut, WhoWasNeverOutsideIsHeldByTheWallsOfARoom) {
               500 * (Vector3d(0.02, 0.01, 0.1).norm() - HollowBall::kOuter + kThickness), 0.1);
 }
 
-TEST(WayOut, ABodyHoldsAHandThatPressesThroughAllOfIt) {
+TEST(EscapeSearch, ABodyHoldsAHandThatPressesThroughAllOfIt) {
   const HollowBall ball;
   Proxy proxy;
   proxy.reset(kOutside);
@@ -185,7 +185,7 @@ TEST(WayOut, ABodyHoldsAHandThatPressesThroughAllOfIt) {
   EXPECT_NEAR(out.last.force.norm(), 500 * (HollowBall::kOuter - 0.03), 0.1);
 }
 
-TEST(WayOut, NarrowSlotsAndWedgesHoldAHandThatCameInFromOpenAir) {
+TEST(EscapeSearch, NarrowSlotsAndWedgesHoldAHandThatCameInFromOpenAir) {
   for (const double gap : {0.3 * kR, kR, 2 * kR, 4 * kR}) {
     const TwoPlates slot(gap + kThickness, 0);
     const double middle = 0.5 * (gap + kThickness);
@@ -211,7 +211,7 @@ TEST(WayOut, NarrowSlotsAndWedgesHoldAHandThatCameInFromOpenAir) {
   }
 }
 
-TEST(WayOut, DeepTiltedTubesHoldAHandThatCameInByTheMouth) {
+TEST(EscapeSearch, DeepTiltedTubesHoldAHandThatCameInByTheMouth) {
   int tried = 0;
   int freed = 0;
   for (const double radius : {1 * kR, 2 * kR, 4 * kR}) {
@@ -241,7 +241,7 @@ TEST(WayOut, DeepTiltedTubesHoldAHandThatCameInByTheMouth) {
   EXPECT_EQ(freed, 0) << "of " << tried;
 }
 
-TEST(WayOut, ASurfaceThatCameAroundAProxyHoldsIt) {
+TEST(EscapeSearch, ASurfaceThatCameAroundAProxyHoldsIt) {
   HollowBall ball;
   Proxy proxy;
   proxy.reset(kOutside);
