@@ -59,7 +59,7 @@ void Facing::add_references(const Segment& segment) noexcept {
     const Point& p = view_.points[view_.order[segment.begin + k]];
     if (references_.size() == references_.capacity()) return;
     if (component.is_absent() && !view_.is_above(p)) continue;
-    references_.push_back({segment.key.owner, segment.source, p.place,
+    references_.push_back({segment.key.owner, segment.source, p.position,
                            static_cast<float>(sign) * p.normal, p.confidence, p.residual,
                            segment.label});
   }
@@ -72,7 +72,7 @@ void Facing::list_references(const Eigen::Vector3d& proxy, bool vanished) noexce
   if (vanished) {
     const Vector3f shift = (remembered_from_ - proxy).cast<float>();
     for (Reference r : remembered_) {
-      r.place += shift;
+      r.position += shift;
       r.cloud = nullptr;
       references_.push_back(r);
     }

@@ -58,7 +58,7 @@ class Facing {
   struct Reference {
     const void* cloud;  // nullptr: one that is gone
     int source;
-    Eigen::Vector3f place;
+    Eigen::Vector3f position;
     Eigen::Vector3f normal;  // turned
     float confidence;
     float residual;

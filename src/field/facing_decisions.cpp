@@ -23,7 +23,7 @@ constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do
 constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one segment
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one segment
-constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the way to a segment above
+constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the offset to a segment above
 constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
 
 // They bound the pairs that are compared (judgement).
@@ -34,10 +34,10 @@ std::uint32_t stride_for(std::size_t count, std::uint32_t most) noexcept {
   return std::max<std::uint32_t>(1, (static_cast<std::uint32_t>(count) + most - 1) / most);
 }
 
-/// Is q beyond the plane of p, which is turned by `sign`? `way`: from q to p.
-bool is_beyond(const SegmentView::Point& p, const auto& q, const Vector3f& way,
+/// Is q beyond the plane of p, which is turned by `sign`? `offset`: from q to p.
+bool is_beyond(const SegmentView::Point& p, const auto& q, const Vector3f& offset,
                float sign) noexcept {
-  return -sign * p.normal.dot(way) >
+  return -sign * p.normal.dot(offset) >
          kBeyond * p.radius + kUnsharp * std::max(p.residual, q.residual);
 }
 
@@ -54,17 +54,17 @@ bool swap_faces(auto& segments, auto& references) noexcept {
 
 }  // namespace
 
-/// Calls visit(p, q, way, w) for points p of the segment and decided ones q within `reach` R of it:
-/// the way from q to p and how much it counts.
+/// Calls visit(p, q, offset, w) for points p of the segment and decided ones q within `reach` R of
+/// it: the offset from q to p and how much it counts.
 void Facing::each_meeting(const Segment& segment, float reach, const auto& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
   const std::uint32_t skip = stride_for(segment.count, kTried);
   for (std::uint32_t k = 0; k < segment.count; k += skip) {
     const Point& p = view_.points[view_.order[segment.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
-      const Vector3f way = p.place - references_[r].place;
-      const double w = weight_within(way.squaredNorm(), reach * p.radius);
-      if (w > 0) visit(p, references_[r], way, w);
+      const Vector3f offset = p.position - references_[r].position;
+      const double w = weight_within(offset.squaredNorm(), reach * p.radius);
+      if (w > 0) visit(p, references_[r], offset, w);
     }
   }
 }
@@ -76,10 +76,10 @@ double Facing::votes_on(std::uint32_t component) noexcept {
   for (const Segment& segment : view_.table.segments) {
     if (segment.component != component) continue;
     each_meeting(segment, kMeetReach,
-                 [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
+                 [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
                    const float a = q.is_of_another_time(segment)
                                        ? p.normal.dot(q.normal)
-                                       : agreement(p.normal, q.normal, way,
+                                       : agreement(p.normal, q.normal, offset,
                                                    3 * std::max(p.residual, q.residual));
                    sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
                  });
@@ -92,11 +92,11 @@ void Facing::turn_by(const Vector3f& normal) noexcept {
   std::array<double, SegmentTable::kMost> agreed{};
   std::array<double, SegmentTable::kMost> all{};
   for (const Point& p : view_.points) {
-    const float squared = p.place.squaredNorm();
+    const float squared = p.position.squaredNorm();
     if (squared >= p.radius * p.radius) continue;
     const double w = static_cast<double>(p.confidence) * weight_within(squared, p.radius);
     const std::uint32_t component = view_.table.segments[p.segment].component;
-    const float a = agreement(p.normal, normal, p.place, 3 * p.residual);
+    const float a = agreement(p.normal, normal, p.position, 3 * p.residual);
     agreed[component] +=
         w * static_cast<double>(a * std::abs(a)) * view_.table.components[component].sign;
     all[component] += w;
@@ -158,20 +158,21 @@ Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexce
   Meetings result{};
   const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
   each_meeting(segment, kMeetReach,
-               [&](const Point& p, const Reference& q, const Vector3f& way, double w) {
-                 const float length = way.norm();
+               [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
+                 const float length = offset.norm();
                  if (!(length > kSamePlace * p.radius)) return;
                  Meeting& m = result[q.label];
-                 const double off = w * static_cast<double>(q.normal.dot(way) / length);
+                 const double off = w * static_cast<double>(q.normal.dot(offset) / length);
                  m.all += w;
                  m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
-                 m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(way) / length);
+                 m.above +=
+                     w * static_cast<double>((q.normal - sign * p.normal).dot(offset) / length);
                  m.off += off;
                  if (!q.is_of_another_time(segment)) {
                    m.now += w;
                    m.off_now += off;
                  }
-                 if (q.label == kNearFace && is_beyond(p, q, way, sign)) beyond += w;
+                 if (q.label == kNearFace && is_beyond(p, q, offset, sign)) beyond += w;
                });
   return result;
 }
@@ -206,8 +207,8 @@ std::uint8_t Facing::label_of(const Segment& segment) noexcept {
     const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
     bool cuts = false;  // something of a near face off
     each_meeting(segment, kAnywhere,
-                 [&](const Point& p, const Reference& q, const Vector3f& way, double) {
-                   cuts = cuts || (q.label == kNearFace && is_beyond(p, q, way, sign));
+                 [&](const Point& p, const Reference& q, const Vector3f& offset, double) {
+                   cuts = cuts || (q.label == kNearFace && is_beyond(p, q, offset, sign));
                  });
     return cuts || pairs_ == 0 ? kNearFace : kFarFace;
   }

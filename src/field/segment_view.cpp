@@ -69,7 +69,7 @@ void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std
     view.segment_of_point.push_back(slot == SegmentView::kNone ? none : slot);
     if (slot == SegmentView::kNone) continue;
     Point point{};
-    point.place = position_now(layer, i, proxy).cast<float>();
+    point.position = position_now(layer, i, proxy).cast<float>();
     point.normal = normal_now(layer, i).cast<float>();
     point.confidence = static_cast<float>(confidence);
     point.radius = static_cast<float>(radius_now(layer, i));
@@ -77,7 +77,7 @@ void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std
     point.residual = own.empty() ? 0 : own.residual[i];
     view.points.push_back(point);
     Segment& s = view.table.segments[slot];
-    const float distance = point.place.norm();
+    const float distance = point.position.norm();
     Component& component = view.table.components[s.component];
     // A component that all points share keeps its side until free space.
     component.near |= own.empty() || component.is_one_sided() || distance <= kHolds * point.radius;
@@ -110,7 +110,7 @@ float rise_of(const SegmentView& view, const Point& point) noexcept {
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
 /// of the closest point's vote keeps these down.
 float height_over(const SegmentView& view, const Point& point) noexcept {
-  const Vector3f way = view.eye.place - point.place;
+  const Vector3f way = view.eye.position - point.position;
   const float height = point.normal.dot(way);
   const bool bent = view.is_one_sided(point) && point.normal.dot(view.eye.beside) > 0.5f;
   return bent ? 0.5f * (height + view.eye.beside.dot(way)) : height;
@@ -119,11 +119,11 @@ float height_over(const SegmentView& view, const Point& point) noexcept {
 /// The tool looks from where it is or, where it touches, from a little above.
 void choose_eye(SegmentView& view, const Stance& stance) noexcept {
   const float lift = stance.touches() ? kLift * view.radius : 0;
-  view.eye.place = lift * stance.normal.cast<float>();
+  view.eye.position = lift * stance.normal.cast<float>();
   float closest = std::numeric_limits<float>::infinity();
   float closest_seen = closest;
   for (const Point& point : view.points) {
-    const float squared = (point.place - view.eye.place).squaredNorm();
+    const float squared = (point.position - view.eye.position).squaredNorm();
     closest = std::min(closest, squared);
     if (!view.is_one_sided(point) || squared >= closest_seen) continue;
     closest_seen = squared;
@@ -221,7 +221,7 @@ std::uint8_t SegmentView::touched_label(const Vector3f& normal) const noexcept {
     const float cosine = sign * p.normal.dot(normal);
     if (segment.label == SegmentTable::kUndecided || cosine <= 0) continue;
     touched[segment.label] +=
-        static_cast<double>(cosine) * weight_within(p.place.squaredNorm(), p.radius);
+        static_cast<double>(cosine) * weight_within(p.position.squaredNorm(), p.radius);
   }
   return static_cast<std::uint8_t>(std::ranges::max_element(touched) - touched.begin());
 }
@@ -250,7 +250,7 @@ void SegmentView::look(const Stance& stance, double way, bool from_behind) noexc
   for (const Point& p : points) {
     Segment& segment = table.segments[p.segment];
     if (decided(segment)) continue;
-    const Vector3f back = eye.place - p.place;
+    const Vector3f back = eye.position - p.position;
     const float squared = back.squaredNorm();
     if (squared >= eye.view * eye.view) continue;
     const float height = height_over(*this, p);

@@ -95,7 +95,7 @@ struct SegmentTable {
   void clear() noexcept;
   void clear_segments() noexcept;
 
-  /// The place of a layer's segment, which is added if it is new, with what `before` has decided of
+  /// The index of a layer's segment, which is added if it is new, with what `before` has decided of
   /// it; kMost: there are too many.
   std::uint32_t add(const ActiveLayer& layer, std::uint32_t number,
                     const SegmentTable& before) noexcept;
@@ -127,7 +127,7 @@ struct SegmentView {
 
   /// One point with confidence, and what is read of it again and again.
   struct Point {
-    Eigen::Vector3f place;  // from the proxy, m
+    Eigen::Vector3f position;  // from the proxy, m
     Eigen::Vector3f normal;
     float confidence;
     float radius;
@@ -137,9 +137,9 @@ struct SegmentView {
 
   // Where the tool looks from.
   struct Eye {
-    Eigen::Vector3f place = Eigen::Vector3f::Zero();   // free, from the proxy, m
-    Eigen::Vector3f beside = Eigen::Vector3f::Zero();  // normal of the closest one-sided point
-    float view = 0;                                    // how far from here what is seen counts, m
+    Eigen::Vector3f position = Eigen::Vector3f::Zero();  // free, from the proxy, m
+    Eigen::Vector3f beside = Eigen::Vector3f::Zero();    // normal of the closest one-sided point
+    float view = 0;                                      // how far from here what is seen counts, m
   };
 
   /// `capacity`: points at most.

@@ -108,8 +108,8 @@ class SegmentGrowing {
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
     const std::uint32_t a = assigned_[i];
     const std::uint32_t b = assigned_[j];
-    const Vector3f way = input_.grid.points()[b] - input_.grid.points()[a];
-    const float length = way.norm();
+    const Vector3f offset = input_.grid.points()[b] - input_.grid.points()[a];
+    const float length = offset.norm();
     const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
     const float curvature =
         std::min(fitted_curvature(input_, own_, a), fitted_curvature(input_, own_, b));
@@ -117,7 +117,7 @@ class SegmentGrowing {
     const float cosine = own_.normals[i].dot(own_.normals[j]);
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
     const float off =
-        std::max(std::abs(own_.normals[a].dot(way)), std::abs(own_.normals[b].dot(way)));
+        std::max(std::abs(own_.normals[a].dot(offset)), std::abs(own_.normals[b].dot(offset)));
     // An arc's normals turn by twice as much as it leaves their planes.
     const float turned =
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
@@ -125,7 +125,7 @@ class SegmentGrowing {
     const float arc = kChord * std::max(kTurn * near, arc_turn * length);
     const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
     if (off > std::max(segment_tolerance(input_, a, b), arc)) {
-      if (a == i && b == j && lie_over(i, j, way)) later.stacked.push_back(pair);
+      if (a == i && b == j && lie_over(i, j, offset)) later.stacked.push_back(pair);
     } else if (pair.skew > 0.5f * kParallel * kParallel) {
       later.turning.push_back(pair);
     } else if (inside) {
@@ -136,10 +136,10 @@ class SegmentGrowing {
   }
 
   /// Does each lie over the other's plane rather than beside the other?
-  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j, const Vector3f& way) const {
+  [[nodiscard]] bool lie_over(std::uint32_t i, std::uint32_t j, const Vector3f& offset) const {
     const float height =
-        std::min(std::abs(own_.normals[i].dot(way)), std::abs(own_.normals[j].dot(way)));
-    const float aside = std::sqrt(std::max(0.f, way.squaredNorm() - height * height));
+        std::min(std::abs(own_.normals[i].dot(offset)), std::abs(own_.normals[j].dot(offset)));
+    const float aside = std::sqrt(std::max(0.f, offset.squaredNorm() - height * height));
     return height > segment_tolerance(input_, i, j) && height >= kGapSlope * aside;
   }
 

@@ -36,9 +36,9 @@ Neighborhood neighborhood(const CellGrid& grid, std::uint32_t i,
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   for (const CellGrid::Neighbor& place : places) {
-    const Eigen::Vector3f way = grid.points()[place.index] - grid.points()[i];
-    sum += way / static_cast<float>(kNeighbors);
-    squares += way * way.transpose() / static_cast<float>(kNeighbors);
+    const Eigen::Vector3f offset = grid.points()[place.index] - grid.points()[i];
+    sum += offset / static_cast<float>(kNeighbors);
+    squares += offset * offset.transpose() / static_cast<float>(kNeighbors);
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(squares - sum * sum.transpose());

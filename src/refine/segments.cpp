@@ -60,8 +60,8 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const KnownSigns& k
       if (cosine != 0) given[segment].add(cosine < 0 ? -1 : 1);
     }
     if (known.eye) {
-      const Vector3f way = *known.eye - input.grid.points()[i];
-      const float cosine = own.normals[i].dot(way.normalized());
+      const Vector3f offset = *known.eye - input.grid.points()[i];
+      const float cosine = own.normals[i].dot(offset.normalized());
       if (grown.hidden[i] != 0) {
         ++counts[segment].hidden;
       } else {

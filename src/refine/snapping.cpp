@@ -198,8 +198,8 @@ class Snapping {
 
   /// Gives a point the fit of its plane's owner, or at least its trust where an arc joins both.
   void take_over(std::uint32_t i, std::uint32_t owner) {
-    const float way = (input_.grid.points()[i] - input_.grid.points()[owner]).norm();
-    const float turn = kTurnMargin * fitted_curvature(input_, own_, owner) * way;
+    const float distance = (input_.grid.points()[i] - input_.grid.points()[owner]).norm();
+    const float turn = kTurnMargin * fitted_curvature(input_, own_, owner) * distance;
     if (std::abs(own_.normals[i].dot(own_.normals[owner])) < 1 - 0.5f * turn * turn) {
       own_.normals[i] = own_.normals[owner];
       own_.residuals[i] = own_.residuals[owner];
@@ -241,9 +241,9 @@ class Snapping {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
-      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
-      const float length = way.norm();
-      const float off = std::abs(own_.normals[j].dot(way));
+      const Vector3f offset = input_.grid.points()[i] - input_.grid.points()[j];
+      const float length = offset.norm();
+      const float off = std::abs(own_.normals[j].dot(offset));
       const float cost = off + kNearness * length;
       if (cost >= best) continue;
       const bool on_plane =
@@ -263,9 +263,9 @@ class Snapping {
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
       if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
-      const Vector3f way = input_.grid.points()[i] - input_.grid.points()[j];
-      const float off = std::abs(own_.normals[j].dot(way));
-      const float squared = way.squaredNorm();
+      const Vector3f offset = input_.grid.points()[i] - input_.grid.points()[j];
+      const float off = std::abs(own_.normals[j].dot(offset));
+      const float squared = offset.squaredNorm();
       if (off > kOnBoth * input_.spacings[i] || squared >= best) continue;
       best = squared;
       owner = j;
