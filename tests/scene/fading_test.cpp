@@ -34,7 +34,7 @@ double farthest_off(double rise) {
   SceneField field(scene);
   const auto old = prepared_plane(0);
   const auto next = prepared_plane(rise);
-  EXPECT_FALSE(next->sheets.empty());
+  EXPECT_FALSE(next->segments.empty());
   Proxy proxy;
   double farthest = 0;
   for (int k = 0; k < 400; ++k) {
