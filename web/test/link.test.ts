@@ -43,7 +43,7 @@ test("what begins the run anew is set first and alone, and once", () => {
   ];
   const link = readLink(`#t&${kNumber.key}=700&scene=cube&unit.cube=inch`);
   const asked: unknown[] = [];
-  const apply = (now: Setting[]) => applyLink(link, now, (key, value) => asked.push([key, value]), (text) => asked.push(text));
+  const apply = (now: Setting[]) => applyLink(link, { settings: now }, (key, value) => asked.push([key, value]), (text) => asked.push(text));
   assert.equal(apply(settings), true, "the rest waits for the next run");
   assert.deepEqual(asked.splice(0), [["unit.cube", "inch"]]);
   assert.equal(apply(settings), false, "a run that begins as the one before is not begun again");
@@ -53,12 +53,19 @@ test("what begins the run anew is set first and alone, and once", () => {
 test("while there is nothing to set, a link waits", () => {
   const link = readLink("#t&k=700");
   const asked: unknown[] = [];
-  const apply = (now: Setting[]) => applyLink(link, now, (key, value) => asked.push([key, value]), (text) => asked.push(text));
+  const apply = (now: Setting[]) => applyLink(link, { settings: now }, (key, value) => asked.push([key, value]), (text) => asked.push(text));
   assert.equal(apply([]), true, "clouds are still read");
   assert.deepEqual(asked, []);
   assert.equal(apply([kNumber]), false);
   assert.deepEqual(asked, [["k", 700]]);
-  assert.equal(applyLink(readLink("#t"), [], () => undefined, () => undefined), false, "there is nothing to wait for");
+  assert.equal(applyLink(readLink("#t"), { settings: [] }, () => undefined, () => undefined), false, "there is nothing to wait for");
+});
+
+test("a recording has no settings for good: a link that asks for one is told so, and does not wait", () => {
+  const said: string[] = [];
+  const recording = { settings: [], timeline: { length: 4 } };
+  assert.equal(applyLink(readLink("#t&k=700"), recording, () => assert.fail("nothing can be set"), (text) => said.push(text)), false);
+  assert.deepEqual(said, ["the link's k = 700 is not a setting of this run"]);
 });
 
 test("waiting doubles up to its bound, scattered, and begins anew", () => {

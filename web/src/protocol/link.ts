@@ -1,7 +1,7 @@
 // The part of the address after '#': the program's token, then settings as key=value.
 // A person with such a link may steer the program: it says so where it is copied.
 
-import type { Setting, SettingValue } from "./messages";
+import type { Setting, SettingValue, Welcome } from "./messages";
 
 export interface Link {
   token: string;
@@ -40,12 +40,13 @@ export function settingFromText(setting: Setting, text: string): SettingValue | 
 }
 
 /** Sets what a link asks for, and says what it cannot. What begins the run anew comes first and alone: true, and the rest
- * of the link is to be set in that run; so is all of it where there are no settings, as while clouds are read. */
+ * of the link is to be set in that run; so is all of it where there are no settings yet, as while clouds are read. */
 export function applyLink(
-  link: Link, settings: readonly Setting[],
+  link: Link, { settings, timeline }: Pick<Welcome, "settings" | "timeline">,
   set: (key: string, value: SettingValue) => void, warn: (text: string) => void,
 ): boolean {
-  if (settings.length === 0) return link.values.size > 0;
+  const waits = settings.length === 0 && timeline === undefined; // a recording gets none
+  if (waits) return link.values.size > 0;
   const wanted = [...link.values].map(([key, text]) => {
     const setting = settings.find((one) => one.key === key);
     return { key, text, setting, value: setting === undefined ? undefined : settingFromText(setting, text) };
