@@ -17,7 +17,7 @@ export class PointerInput {
   private pointer: number | undefined; // that drags the hand
   private touches = new Set<number>();
   private began: Vector2 | undefined; // where a press beside the surface did, pixels
-  missed = -Infinity; // ms, when such a press ended that was no drag
+  missed = -Infinity; // ms, when such a press ended that was no drag; until the next that touches the surface
   private readonly offset = new Vector3();
   private readonly ray = new Raycaster();
 
@@ -59,6 +59,7 @@ export class PointerInput {
     if (this.touches.size > 1) this.drag(undefined);
     this.began = plain && !mine && !this.free && this.touches.size <= 1 && this.takeable() ? new Vector2(event.clientX, event.clientY) : undefined;
     if (!mine) return;
+    this.missed = -Infinity;
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
     if (this.free) {
@@ -89,7 +90,8 @@ export class PointerInput {
 
   private end(event: PointerEvent): void {
     this.touches.delete(event.pointerId);
-    if (this.began !== undefined && Math.hypot(event.clientX - this.began.x, event.clientY - this.began.y) < kStill) this.missed = performance.now();
+    const isStill = this.began !== undefined && Math.hypot(event.clientX - this.began.x, event.clientY - this.began.y) < kStill;
+    if (isStill && event.type === "pointerup") this.missed = performance.now(); // the browser takes others away, as to scroll
     this.began = undefined;
     if (event.pointerId === this.pointer) this.drag(undefined);
   }
