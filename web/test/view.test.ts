@@ -4,11 +4,29 @@ import { PerspectiveCamera, Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
 import { readTranslation } from "../src/input/space_mouse";
 import { decimals, distrust, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
+import { samplesOf } from "../src/view/backdrop";
 import { boundsOf, type Sample } from "../src/view/bounds";
 import { firstDirection } from "../src/view/first_view";
 import { rampTexture } from "../src/view/colours";
 import { lengthInWords, scaleBar } from "../src/view/scale_bar";
+import { savedSharpness } from "../src/view/stage";
 import { shareInPicture } from "../src/view/tool";
+
+test("a saved picture is twice as large as the screen up to 4096 pixels a side, and never smaller than the screen", () => {
+  assert.equal(savedSharpness(1280, 1, 1), 2);
+  assert.equal(savedSharpness(1280, 2, 2), 3.2);
+  assert.equal(savedSharpness(3000, 2, 2), 2, "6000 pixels, as the screen has");
+  assert.equal(savedSharpness(5120, 1, 1), 1);
+  assert.equal(savedSharpness(3000, 1, 2), 2, "without a graphics card");
+  assert.equal(savedSharpness(400, 2, 3), 4, "a phone");
+});
+
+test("samples of a picture take 128 MiB at most, of 8 bytes each", () => {
+  assert.equal(samplesOf(1920 * 1080, 4), 4);
+  assert.equal(samplesOf(3840 * 2160, 4), 2);
+  assert.equal(samplesOf(4096 * 2560, 4), 0, "those of one sample are no samples");
+  assert.equal(samplesOf(100, 0), 0);
+});
 
 test("a scale bar is a round length between 60 and 150 pixels", () => {
   for (let power = -6; power < 2; power += 0.07) {

@@ -14,6 +14,7 @@ import { kCloudLayer } from "./layers";
 const kStill = 120; // ms of a still eye, before its picture becomes sharp (judgement)
 const kSharp = 8; // pictures with places in a pixel that the sharp one is the mean of
 const kAtOnce = 4; // that are enough where each pixel of the screen is four
+const kSampled = 2 ** 24; // samples in memory, of 8 bytes (colour and depth): 128 MiB
 const kQuick = 20; // ms between two frames: a larger part is drawn in the next;
 const kSlow = 50; // a smaller one; but it ends where the machine is busy, too:
 const kLeastEffort = 1 / 6;
@@ -29,6 +30,13 @@ function target(samples: number): WebGLRenderTarget {
   return new WebGLRenderTarget(1, 1, {
     depthTexture: new DepthTexture(1, 1, UnsignedIntType), samples, minFilter: NearestFilter, magFilter: NearestFilter,
   });
+}
+
+/** Samples of each of so many pixels, a power of two up to `most`, as memory allows; 0: the pixel itself alone. */
+export function samplesOf(pixels: number, most: number): number {
+  let samples = most;
+  while (samples * pixels > kSampled) samples /= 2;
+  return samples > 1 ? samples : 0;
 }
 
 /** The n-th of places spread over 0 to 1 (van der Corput). */
@@ -86,8 +94,8 @@ export class Backdrop {
   /** Puts the picture, with its depths, behind all that a scene draws. */
   readonly screen: Mesh<PlaneGeometry, ShaderMaterial>;
 
-  /** samples: of a pixel, for soft edges; 0: none. most: points that are drawn while the eye moves. */
-  constructor(samples: number, private readonly most: number) {
+  /** samples: of a pixel, for soft edges, where memory allows; 0: none. most: points that are drawn while the eye moves. */
+  constructor(private readonly samples: number, private readonly most: number) {
     this.points = target(samples);
     this.quick.texture.magFilter = LinearFilter;
     this.shade = screen(kShade, {
@@ -151,7 +159,7 @@ export class Backdrop {
     return true;
   }
 
-  /** The rest of the sharp picture, at once, for twice the screen's size. */
+  /** The rest of the sharp picture, at once, for a picture larger than the screen. */
   finish(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, wanted: Wanted): void {
     const { effort } = this;
     this.effort = 1;
@@ -201,7 +209,11 @@ export class Backdrop {
   }
 
   private resize(to: WebGLRenderTarget, { width, height }: Wanted, sharpness: number): void {
-    for (const each of [this.points, to]) each.setSize(Math.floor(width * sharpness), Math.floor(height * sharpness));
+    const [wide, tall] = [Math.floor(width * sharpness), Math.floor(height * sharpness)];
+    const samples = samplesOf(wide * tall, this.samples);
+    if (samples !== this.points.samples) this.points.dispose();
+    this.points.samples = samples;
+    for (const each of [this.points, to]) each.setSize(wide, tall);
     to.scissorTest = true;
     kTall.value = to.height;
   }

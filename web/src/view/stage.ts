@@ -18,8 +18,14 @@ const kRest = 300; // ms between two pictures of clouds that change, where drawi
 const kPeriod = 100; // elsewhere: the program sends no more
 const kMost = 40_000; // points of a picture while the eye moves, where the processor draws: 0.8 us each (measured)
 const kQuickSharpness = 0.5; // pixels drawn for one of the style sheet while the eye moves, where the processor draws
-const kLargest = 4096; // pixels a side of a saved picture, as wide as screens are
+const kLargest = 4096; // pixels a side of a saved picture that is larger than the screen, as wide as screens are
 const kSamples = 4; // of a pixel, where a graphics card draws
+
+/** Pixels drawn for one of the style sheet in a saved picture of a view of that longer side (in those of the style sheet),
+ * of which the screen draws `finest`, and has `ratio`. */
+export function savedSharpness(side: number, finest: number, ratio: number): number {
+  return Math.max(finest, ratio, Math.min(2 * finest, kLargest / side));
+}
 
 export class Stage {
   readonly scene = new Scene();
@@ -95,10 +101,10 @@ export class Stage {
     return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
   }
 
-  /** What is seen, sharp and at twice the screen's size, with a caption. */
+  /** What is seen, sharp and larger than on the screen, with a caption. */
   picture(words: string, bar: ScaleBar): Promise<Blob | null> {
     const { sharpness, finest } = this;
-    this.finest = this.sharpness = Math.max(1, Math.min(2 * finest, kLargest / Math.max(this.width, this.height)));
+    this.finest = this.sharpness = savedSharpness(Math.max(this.width, this.height), finest, devicePixelRatio);
     this.resize();
     this.backdrop.finish(this.renderer, this.scene, this.camera, this.sought());
     this.paint(); // a canvas keeps its picture only until it is shown
