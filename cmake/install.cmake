@@ -34,9 +34,9 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/palpateConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/palpateConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 
-# The licences, those of what is compiled in among them, and the documents.
+# The licences, those of what is compiled in among them, and the documents with their images.
 install(FILES packaging/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN *.png)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md PATTERN images/*)
 if(NOT PALPATE_BUILD_APP)
   return()
 endif()

@@ -283,6 +283,17 @@ def links(root):
                 yield f"{path.relative_to(root)}: {target} has no heading #{anchor}"
 
 
+def images(root):
+    """Images that documents show are there, also where the documents are installed."""
+    documents = [path for part in ("*.md", "docs/**/*.md") for path in sorted(root.glob(part))]
+    if not documents:
+        yield f"{root}: there are no documents"
+    for path in documents:
+        for name in re.findall(r'(?:!\[[^\]]*\]\(|<img src=")([^)"]+)', path.read_text(encoding="utf-8")):
+            if "://" not in name and not (path.parent / name).exists():
+                yield f"{path.relative_to(root)}: there is no image {name}"
+
+
 def headings(path):
     """The anchors of a document's headings, as GitHub and the site make them."""
     for title in re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE):
@@ -352,7 +363,7 @@ def text_lines(root):
 RULES = {rule.__name__: rule
          for rule in (floors, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
-                      public_face, readme, links, documents, refinements, changelog)}
+                      public_face, readme, links, images, documents, refinements, changelog)}
 
 
 def main():

@@ -156,6 +156,12 @@ class Rules(unittest.TestCase):
         self.assertEqual(self.found(rules.links, {"docs/a.md": "# It is: `there`\n[a](a.md#it-is-there), [a](#it-is-there)\n"}), [])
         self.assertEqual(len(self.found(rules.links, {"docs/a.md": "# There\n[a](a.md#gone)\n[b](#gone)\n"})), 2)
 
+    def test_an_image_that_is_absent_is_found(self):
+        for show in ("![A (b)](images/a.svg)\n", '<img src="images/a.svg" alt="A">\n'):
+            self.assertEqual(len(self.found(rules.images, {"docs/a.md": show})), 1, show)
+            self.assertEqual(self.found(rules.images, {"docs/a.md": show, "docs/images/a.svg": ""}), [], show)
+        self.assertEqual(len(self.found(rules.images, {"docs/a.txt": ""})), 1, "no documents")
+
     def test_a_document_that_is_absent_is_found(self):
         files = {"docs/there.md": "", "docs/method.md": "## 2. Fields\n\n### 2.1 Kernels\n"}
         for line, count in (("// as gone.md says\n", 1), ('say("docs/gone.md");\n', 1),
