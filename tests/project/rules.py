@@ -316,26 +316,38 @@ def documents(root):
 
 
 def refinements(root):
-    """Rows of docs/refinements.md name sources and tests that are there."""
+    """Rows of docs/refinements.md name sources and tests that are there, in the folders that it says."""
     path = root / "docs" / "refinements.md"
     cases = set()
     for test in sources(root, ("tests",)):
         for suite, case in re.findall(r"^TEST(?:_[FP])?\((\w+),\s*(\w+)\)", test.read_text(encoding="utf-8"), re.MULTILINE):
-            cases |= {f"{suite}.{case}", f"{suite}.*"}
-    names = [source.relative_to(root).as_posix() for source in sources(root, ("src",))]
+            cases |= {(test.parent.name, f"{suite}.{case}"), (test.parent.name, f"{suite}.*")}
+    folders = {"src": [], "tests": []}
     for number, line in enumerate(lines(path) if path.exists() else [], 1):
+        if "unless said" in line:
+            folders = {top: re.findall(rf"`{top}/(\w+)`", line) for top in folders}
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if not line.startswith("|") or cells[0] == "refinement" or set(line) <= set("|-"):
             continue
         if len(cells) != 5 or not all(cells):
             yield f"docs/refinements.md:{number}: give name, what it mends, section and source, test, and price"
             continue
-        for name in re.findall(r"`([\w/]+\.(?:cpp|hpp|inl))`", cells[2]):
-            if not any(source.endswith("/" + name) for source in names):
-                yield f"docs/refinements.md:{number}: there is no source {name}"
-        for name in re.findall(r"`(\w+\.(?:\w+|\*))`", cells[3]):
-            if name not in cases:
-                yield f"docs/refinements.md:{number}: there is no test {name}"
+        for said, name in in_folders(cells[2], r"[\w/]+\.(?:cpp|hpp|inl)"):
+            wanted = said or folders["src"]
+            if not any((root / "src" / folder / name).exists() for folder in wanted):
+                yield f"docs/refinements.md:{number}: there is no source {name} in {' or '.join(wanted)}"
+        for said, name in in_folders(cells[3], r"\w+\.(?:\w+|\*)"):
+            wanted = said or folders["tests"]
+            if not any((folder, name) in cases for folder in wanted):
+                yield f"docs/refinements.md:{number}: there is no test {name} in {' or '.join(wanted)}"
+
+
+def in_folders(cell, name):
+    """The names between backticks in a cell, and the folder, if any, that stands before them or before an earlier one."""
+    said = []
+    for folder, found in re.findall(rf"(\w+ )?`({name})`", cell):
+        said = [folder.strip()] if folder else said
+        yield said, found
 
 
 def changelog(root):

@@ -174,10 +174,14 @@ class Rules(unittest.TestCase):
                              count, line)
 
     def test_a_refinement_without_source_or_test_is_found(self):
-        head = "| refinement | mends | section; source | test | price |\n|---|---|---|---|---|\n"
-        files = {"src/field/a.cpp": "", "tests/field/a_test.cpp": "TEST(Edges, AreSharp) {\n}\nTEST_P(Of, Them) {\n}\n"}
+        head = ("Sources in `src/field`, tests in `tests/field` unless said.\n\n"
+                "| refinement | mends | section; source | test | price |\n|---|---|---|---|---|\n")
+        files = {"src/field/a.cpp": "", "tests/field/a_test.cpp": "TEST(Edges, AreSharp) {\n}\nTEST_P(Of, Them) {\n}\n",
+                 "src/scene/c.cpp": "", "tests/scene/c_test.cpp": "TEST(Scene, Holds) {\n}\n"}
         for row, count in (("| a | b | 2.8; `a.cpp` | `Edges.AreSharp`, `Of.*` | +3 |", 0), ("| a | b | 2.8; `b.cpp` | `Edges.*` | +3 |", 1),
-                           ("| a | b | 2.8; `a.cpp` | `Edges.AreRound` | +3 |", 1), ("| a | b | 2.8; `a.cpp` | `Edges.*` | |", 1)):
+                           ("| a | b | 2.8; `a.cpp` | `Edges.AreRound` | +3 |", 1), ("| a | b | 2.8; `a.cpp`, scene `c.cpp` | `Of.*`, scene `Scene.*` | +3 |", 0),
+                           ("| a | b | 2.8; `c.cpp` | `Scene.*` | +3 |", 2), ("| a | b | 2.8; scene `a.cpp` | scene `Scene.*`, `Of.*` | +3 |", 2),
+                           ("| a | b | 2.8; `a.cpp` | `Edges.*` | |", 1)):
             self.assertEqual(len(self.found(rules.refinements, {**files, "docs/refinements.md": head + row + "\n"})), count, row)
 
     def test_a_long_entry_and_another_version_are_found(self):
