@@ -107,6 +107,19 @@ def floors(root):
                 yield f"{name}:{number}: {here} must not include {found[1]} of {there}"
 
 
+def drawn(root):
+    """docs/architecture.md draws every floor, above all that it may include."""
+    drawing = (root / "docs" / "architecture.md").read_text(encoding="utf-8").partition("\n## Floors\n")[2].split("```")[1]
+    row = {name: number for number, line in enumerate(drawing.splitlines())
+           for name in re.findall(r"(?:^|\s)(?:extras/)?(\w+)/\s", line)}
+    for floor, below in FLOORS.items():
+        if floor not in row:
+            yield f"docs/architecture.md: {floor} is not drawn"
+        for other in sorted(below & row.keys() if floor in row else ()):
+            if row[other] <= row[floor]:
+                yield f"docs/architecture.md: {other} is not below {floor}, which may include it"
+
+
 def steps(root):
     """Includes between the steps of preparation point to earlier ones; no file is without a step."""
     for floor, rows in STEPS.items():
@@ -373,7 +386,7 @@ def text_lines(root):
 
 
 RULES = {rule.__name__: rule
-         for rule in (floors, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
+         for rule in (floors, drawn, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
                       public_face, readme, links, images, documents, refinements, changelog)}
 

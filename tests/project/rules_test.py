@@ -49,6 +49,15 @@ class Rules(unittest.TestCase):
             self.found(rules.floors,
                        {"src/extras/splats/a.cpp": '#include "extras/splats/splat_shell.hpp"\n'}), [])
 
+    def test_a_floor_that_is_not_drawn_above_what_it_sees_is_found(self):
+        name = "docs/architecture.md"
+        text = (pathlib.Path(rules.__file__).resolve().parents[2] / name).read_text(encoding="utf-8")
+        self.assertEqual(self.found(rules.drawn, {name: text}), [])
+        line = "sight/  " + text.partition("\nsight/  ")[2].partition("\n")[0] + "\n"
+        self.assertEqual(len(self.found(rules.drawn, {name: text.replace(line, "")})), 1, "it is gone")
+        up = text.replace(line, "").replace("\nstream/  ", "\n" + line + "stream/  ")
+        self.assertEqual(len(self.found(rules.drawn, {name: up})), 1, "stream sees it")
+
     def test_a_step_of_preparation_sees_earlier_ones_alone(self):
         for step, count in (("radii", 0), ("weights", 1), ("assemble", 1)):
             files = {"src/prepare/plane_fits.hpp": f'#include "prepare/{step}.hpp"\n'}
