@@ -182,10 +182,10 @@ TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {
   Playing playing(path());
   Playback& player = playing.player;
   const Playback::TimeLine& line = playing.line;
-  // Hangs until the test's time is over if it never is.
+  // Hangs until the test's time is over if it never is; the file may be read after the seek.
   const auto wait_for = [&](double time, FieldOptions::Kind kind) {
+    line.seek(time);
     Playing::wait([&] {
-      line.seek(time);
       return std::abs(playing.shown(0) - time) < 1e-3 && player.servos()[0]->field().kind == kind;
     });
   };
@@ -279,6 +279,9 @@ TEST(TimeLine, ItBeginsAtTheFirstSurfaceAndFramesGoOnAfterAPause) {
   Playing::wait([&] { return camera.points() != nullptr; });
   const double first = playing.line.moment().time;
   EXPECT_GT(first, 0) << "a camera's first frame comes later than the first step";
+  Playing::wait([&] { return !playing.line.past(0).empty(); });
+  const double until = playing.line.past(0).back().time;
+  EXPECT_EQ(until, playing.player.servos()[0]->state().time) << "what was felt before it is told";
   playing.line.seek(first / 2);
   Playing::wait([&] { return camera.points() == nullptr; });
   playing.line.seek(0.3);

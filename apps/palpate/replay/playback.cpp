@@ -24,7 +24,7 @@ constexpr double kNews = 0.5;  // s between two envelopes while the file is read
 
 Playback::Playback(const std::string& path)
     : run_(path), envelope_(kEnvelope, 0.0F), pasts_(run_.hands.size()) {
-  moment_.time = run_.first_surface();
+  sought_ = moment_.time = run_.first_surface();  // with its past, once the threads run
   for (ShownHand& hand : run_.hands) {
     hand.seek(run_.stretch.begin + moment_.time);
     fields_.push_back({FieldChange{run_.stretch.begin, hand.servo().field()}});
@@ -215,6 +215,9 @@ void Playback::take(const Recording::Step& step) {
     FieldOptions field;
     take_exact(Json::parse(change.value), field);
     fields_[step.hand].push_back({step.tick.time, field});
+    const bool is_shown = !sought_ && step.tick.time <= run_.stretch.begin + moment_.time;
+    if (is_shown && !moment_.playing) sought_ = moment_.time;  // with that field
+    changed_.notify_all();
   }
 }
 
