@@ -1,7 +1,7 @@
 # simd_twins(NAME [TARGET TARGET] INCLUDE FILE... TYPE TYPE VALUE EXPRESSION [OPTIONS OPTION...]): what the files hold, in an
 # anonymous namespace, is compiled twice: for the oldest processor that palpate runs on and for x86-64-v3. Makes
 # palpate::simd::kNAMEBaseline and kNAMEV3 of it, equal but for their level, and best_NAME(), the one for this
-# processor. Only code of a unit's own may be compiled for v3: what is inline elsewhere would be linked everywhere.
+# processor. On other machines than x86-64 both are one. Only code of a unit's own may be compiled for v3: what is inline elsewhere would be linked everywhere.
 include_guard()
 
 function(simd_twins name)
@@ -19,7 +19,14 @@ function(simd_twins name)
   return cpu_has_v3() ? ${constant}V3 : ${constant}Baseline;
 }
 ")
-  foreach(level Baseline V3)
+  set(levels V3)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(levels Baseline V3)
+  else()
+    string(PREPEND best "constexpr ${twin_TYPE} ${constant}Baseline = ${twin_VALUE};
+")
+  endif()
+  foreach(level ${levels})
     set(file ${CMAKE_CURRENT_BINARY_DIR}/${name}_${level}.cpp)
     file(CONFIGURE OUTPUT ${file} CONTENT "#include \"base/cpu.hpp\"
 ${includes}

@@ -1,0 +1,211 @@
+// forces CLOUD [STEPS]: every force of a hand that goes along a cloud 2 mm below its surface, as
+// the bits of its numbers; "frames" in place of a cloud: what the depth filter makes of some
+// frames. Two builds that print the same compute the same. How long a step took goes to the error
+// output. Nothing but + - * / and square roots makes the way, since C libraries differ in the
+// others.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "palpate/depth/depth_filter.hpp"
+#include "palpate/palpate.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+
+double now_us() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::micro>(now).count();
+}
+
+std::string bits(const Vector3d& v) {
+  const auto of = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return fmt::format("{:016x} {:016x} {:016x}", of(v[0]), of(v[1]), of(v[2]));
+}
+
+// xorshift64 (Marsaglia 2003): the same numbers everywhere.
+class Random {
+ public:
+  std::uint64_t next() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    return state_ ^= state_ << 17;
+  }
+  double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+
+ private:
+  std::uint64_t state_ = 88172645463325252u;
+};
+
+class Hash {
+ public:
+  void add(double value) {
+    hash_ = (hash_ ^ std::bit_cast<std::uint64_t>(value)) * 1099511628211u;
+    hash_ ^= hash_ >> 29;
+  }
+  std::uint64_t get() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037u;
+};
+
+PointCloud cloud_of(const std::string& name) {
+  if (name.find('.') == std::string::npos) return synthetic_cloud(name);
+  std::FILE* const file = std::fopen(name.c_str(), "rb");
+  if (file == nullptr) throw Error(name + ": cannot be opened");
+  std::vector<std::byte> bytes;
+  std::byte block[65536];
+  while (const std::size_t got = std::fread(block, 1, sizeof block, file)) {
+    bytes.insert(bytes.end(), block, block + got);
+  }
+  std::fclose(file);
+  return read_cloud_bytes(bytes, name).cloud;
+}
+
+// From point to near point of the cloud, 0.1 mm a step, and towards its middle.
+class Way {
+ public:
+  explicit Way(const PointCloud& cloud) : cloud_(cloud) {
+    for (const auto& p : cloud.positions) middle_ += p.cast<double>();
+    middle_ /= static_cast<double>(cloud.positions.size());
+    at_ = to_ = draw();
+  }
+
+  Vector3d next(int step) {
+    double left = (to_ - at_).norm();
+    if (left < 1e-4) {
+      choose();
+      left = (to_ - at_).norm();
+    }
+    if (left > 0) at_ += (to_ - at_) * (std::min(1e-4, left) / left);
+    const double depth = step < 500 ? -0.02 + 0.022 * step / 500 : 0.002;
+    const Vector3d inward = middle_ - at_;
+    return cloud_.origin + at_ + inward * (depth / inward.norm());
+  }
+
+ private:
+  Vector3d draw() {
+    return cloud_.positions[static_cast<std::size_t>(random_.next() % cloud_.positions.size())]
+        .cast<double>();
+  }
+  void choose() {
+    double nearest = 1e9;
+    for (int i = 0; i < 400; ++i) {
+      const Vector3d other = draw();
+      const double distance = (other - at_).norm();
+      if (distance < 5e-3 || distance > nearest) continue;
+      nearest = distance;
+      to_ = other;
+    }
+  }
+
+  const PointCloud& cloud_;
+  Random random_;
+  Vector3d middle_ = Vector3d::Zero();
+  Vector3d at_, to_;
+};
+
+void touch(const std::string& name, int steps) {
+  const PointCloud cloud = cloud_of(name);
+  Hash input;
+  for (const auto& p : cloud.positions) {
+    for (const float x : p) input.add(static_cast<double>(x));
+  }
+  fmt::print("{}: {} points, {:016x}\n", name, cloud.positions.size(), input.get());
+  const double begin = now_us();
+  Scene scene;
+  scene.add("it", cloud);
+  const double prepared = now_us();
+  SceneField field(scene);
+  Proxy proxy({.stiffness = 500, .friction = {0.3, 0.2, 0}});
+  Way way(cloud);
+  std::vector<double> took;
+  for (int i = 0; i < steps; ++i) {
+    const Vector3d hand = way.next(i);
+    const double before = now_us();
+    field.update(i * 1e-3, hand, proxy.position());
+    const Contact contact = proxy.step(field, hand, 1e-3);
+    took.push_back(now_us() - before);
+    fmt::print("{} {} {}\n", bits(contact.force), contact.touching ? 1 : 0, contact.evaluations);
+  }
+  std::ranges::sort(took);
+  fmt::print(stderr, "{}: prepared in {:.0f} ms; a step took {:.2f} us, 99 % at most {:.2f} us\n",
+             name, (prepared - begin) / 1e3, took[took.size() / 2], took[took.size() * 99 / 100]);
+}
+
+// A tilted wall and a ball before it, in whole millimetres with a noise of about 1 mm.
+std::vector<std::uint16_t> frame_of(Random& random) {
+  std::vector<std::uint16_t> depth(640 * 480);
+  for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
+    const double x = (static_cast<double>(pixel % 640) - 319.5) / 525;
+    const double y = (static_cast<double>(pixel / 640) - 239.5) / 525;
+    double z = 1.2 + 0.3 * x;
+    const double inside = 0.04 - 0.81 * (x * x + y * y);
+    if (inside > 0) z = 0.9 - 0.5 * std::sqrt(inside);
+    const double noise = random.unit() + random.unit() + random.unit() + random.unit() - 2;
+    depth[pixel] = static_cast<std::uint16_t>(1000 * (z + 1.7e-3 * noise) + 0.5);
+  }
+  return depth;
+}
+
+void filter_frames() {
+  DepthFilter filter;
+  DepthFrame frame;
+  frame.camera = {640, 480, {525, 525, 319.5, 239.5}, {}};
+  Random random;
+  std::vector<double> took;
+  for (int k = 0; k < 12; ++k) {
+    const std::vector<std::uint16_t> depth = frame_of(random);
+    frame.depth.resize(depth.size());
+    to_metres(depth, 1e-3, frame.depth);
+    frame.stamp = k / 30.;
+    const double before = now_us();
+    const FilteredDepth& filtered = filter.filter(frame, Eigen::Isometry3d::Identity());
+    took.push_back((now_us() - before) / 1e3);
+    Hash hash;
+    for (std::size_t i = 0; i < filtered.size(); ++i) {
+      if (filtered.states[i] == FilteredDepth::State::empty) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        hash.add(static_cast<double>(filtered.positions[i][axis]));
+        hash.add(static_cast<double>(filtered.normals[i][axis]));
+      }
+    }
+    fmt::print("frame {}: {:016x}\n", k, hash.get());
+  }
+  std::ranges::sort(took);
+  fmt::print(stderr, "frames: one took {:.1f} ms\n", took[took.size() / 2]);
+}
+
+int run(int count, char** arguments) {
+  if (count < 2) throw Error("forces: name a cloud, as in: forces torus 3000");
+  const std::string what = arguments[1];
+  const int steps = count > 2 ? std::atoi(arguments[2]) : 3000;
+  if (what == "frames") {
+    filter_frames();
+  } else {
+    touch(what, std::max(1, steps));
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace palpate
+
+int main(int count, char** arguments) {
+  try {
+    return palpate::run(count, arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}
