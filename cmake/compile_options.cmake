@@ -16,7 +16,7 @@ endif()
 # Eigen adds three numbers in another order where a machine has vectors of two, and forces differ in their last bits from
 # one kind of machine to another. All targets agree on it: of an inline function that several objects hold the linker
 # keeps the first. What Eigen aligns stays the same for those who include our headers.
-option(PALPATE_PORTABLE_BITS "Forces of the same bits on all kinds of machines; a step takes 3 to 7 % longer on x86-64-v3" OFF)
+option(PALPATE_PORTABLE_BITS "Forces of the same bits on all kinds of machines; a step takes 6 to 7 % longer on x86-64-v3" OFF)
 set(palpate_eigen)
 if(PALPATE_PORTABLE_BITS)
   set(palpate_eigen EIGEN_DONT_VECTORIZE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
