@@ -10,31 +10,19 @@
 #include <cstdint>
 #include <span>
 
+#include "geometry/elements_at.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
-namespace {
-
-template <class T>
-std::vector<T> select(const std::vector<T>& column, std::span<const std::uint32_t> indices) {
-  std::vector<T> selected;
-  if (column.empty()) return selected;
-  selected.reserve(indices.size());
-  for (const std::uint32_t i : indices) selected.push_back(column[i]);
-  return selected;
-}
-
-}  // namespace
-
 PointCloud select(const PointCloud& cloud, std::span<const std::uint32_t> indices) {
   PointCloud result;
   result.origin = cloud.origin;
   result.viewpoint = cloud.viewpoint;
-  result.positions = select(cloud.positions, indices);
-  result.normals = select(cloud.normals, indices);
-  result.colors = select(cloud.colors, indices);
-  result.intensities = select(cloud.intensities, indices);
+  result.positions = detail::elements_at(cloud.positions, indices);
+  result.normals = detail::elements_at(cloud.normals, indices);
+  result.colors = detail::elements_at(cloud.colors, indices);
+  result.intensities = detail::elements_at(cloud.intensities, indices);
   return result;
 }
 

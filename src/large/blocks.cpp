@@ -9,6 +9,7 @@
 
 #include "base/requirement.hpp"
 #include "geometry/cell_builder.hpp"
+#include "geometry/elements_at.hpp"
 #include "geometry/parallel.hpp"
 #include "prepare/assemble.hpp"
 #include "prepare/radii.hpp"
@@ -45,16 +46,6 @@ constexpr double kSparseHalo = 12;
 constexpr std::size_t kFreed = std::size_t{1} << 20;
 
 constexpr int kMostHalvings = 11;  // derived: levels of a CellGrid's curve
-
-/// The elements of a column at `kept`; empty of an empty one.
-template <class T>
-std::vector<T> some_of(const std::vector<T>& column, std::span<const std::uint32_t> kept) {
-  std::vector<T> some;
-  if (column.empty()) return some;
-  some.reserve(kept.size());
-  for (const std::uint32_t i : kept) some.push_back(column[i]);
-  return some;
-}
 
 /// Calls visit(column) for each that has an element for each point, of several surfaces alike.
 template <class Visit, class... Points>
@@ -181,9 +172,10 @@ Piece Blocks::prepare(std::size_t number) const {
     if (is_own(i)) kept.push_back(i);
   }
   Piece piece;
-  for (const std::uint32_t i : kept) piece.positions.push_back(points.grid.points()[i]);
+  piece.positions = detail::elements_at(points.grid.points(), kept);
   piece.columns.kernel = points.kernel;
-  each_column([&](const auto& from, auto& to) { to = some_of(from, kept); }, points, piece.columns);
+  each_column([&](const auto& from, auto& to) { to = detail::elements_at(from, kept); }, points,
+              piece.columns);
   renumber(points.segments, piece.columns.segments);
   piece.report = all.report;
   piece.report.points_in = division_.points(number);

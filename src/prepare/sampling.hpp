@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/elements_at.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/noise.hpp"
@@ -43,11 +44,7 @@ struct Sampling {
 /// A cloud's column in the order of the grid made of it; empty if it is.
 template <class T>
 [[nodiscard]] std::vector<T> in_grid_order(const CellGrid& grid, const std::vector<T>& column) {
-  std::vector<T> sorted;
-  sorted.reserve(column.size());
-  if (column.empty()) return sorted;
-  for (const std::uint32_t i : grid.order()) sorted.push_back(column[i]);
-  return sorted;
+  return detail::elements_at(column, grid.order());
 }
 
 }  // namespace palpate

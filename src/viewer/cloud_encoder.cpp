@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "field/formulas.hpp"
+#include "geometry/elements_at.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "prepare/radii.hpp"
 #include "viewer/scene_encoder.hpp"
@@ -65,12 +66,9 @@ std::vector<float> drawn_radii(const SurfacePoints& points) {
 
 /// The same of points that nothing is known of, by their own spacings.
 std::vector<float> drawn_radii(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
-  std::vector<Eigen::Vector3f> places;
-  places.reserve(kept.size());
-  for (const std::uint32_t i : kept) places.push_back(cloud.positions[i]);
-  const CellGrid grid(places);
+  const CellGrid grid(detail::elements_at(cloud.positions, kept));
   const std::vector<float> spacings = local_spacings(grid);
-  std::vector<float> radii(places.size());
+  std::vector<float> radii(kept.size());
   for (std::size_t i = 0; i < radii.size(); ++i) {
     radii[grid.order()[i]] = kUsualMultiple * spacings[i];
   }
