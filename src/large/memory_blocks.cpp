@@ -20,11 +20,10 @@ namespace {
 constexpr std::size_t kMostWaitedFor = std::size_t{1} << 16;
 
 // Blocks that serve until all is prepared together are cubes of 24 R in place of 96: the survey's
-// first block held half of its points, 270 000, and took 7.5 s.
+// first block held half of its points, 270 000, and took 7.5 s on a busy machine.
 constexpr int kHalvings = 2;
 
-// Points of an overview. A page without a graphics card draws 40 000 of a cloud while it moves, and
-// to look whether they are in a few hundred boxes takes some 20 ms.
+// Points of an overview: more than a page without a graphics card draws of what moves, 40 000.
 constexpr std::size_t kMostInOverview = std::size_t{1} << 16;
 
 class MemoryBlocks final : public BlockSupply {

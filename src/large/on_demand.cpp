@@ -33,8 +33,8 @@ constexpr double kLead = 0.002;  // s from publishing to being felt: a servo's s
 constexpr double kAppear = 0.1;  // s in which a block's presence rises; judgement
 // s until what could not be read is tried again: a disk or a network may be back; judgement.
 constexpr double kRetry = 10;
-// Share of the work that is done with the blocks where all is prepared together after them; on the
-// Stanford dragon both take about as long.
+// Share of the work that is done with the blocks where all is prepared together after them: of the
+// Stanford dragon a run without them takes 2.3 s of processor time, with them 4.6.
 constexpr double kOfBlocks = 0.5;
 
 }  // namespace
@@ -115,14 +115,14 @@ CloudBlock* OnDemand::Inside::nearest_missing(double within) {
   return found;
 }
 
-/// Is there more to show than the source shows? All blocks are, before all is prepared together:
-/// nothing new is shown meanwhile.
+/// Is there more to show than the source shows? Nothing new is shown while all is prepared
+/// together, so before that blocks that are not near count, too.
 bool OnDemand::Inside::has_news(const Source& at) {
-  const auto is_hidden = [](const CloudBlock& block) { return block.state == State::prepared; };
+  const bool is_last = all_ready && supply->comes_together();
   return share > 0 &&
-         (source != &at || shows_more(blocks, near) ||
-          has_filled(told_missing, blocks, unlisted, tools, near) ||
-          (all_ready && supply->comes_together() && std::ranges::any_of(blocks, is_hidden)));
+         (source != &at ||
+          shows_more(blocks, is_last ? std::numeric_limits<double>::infinity() : near) ||
+          has_filled(told_missing, blocks, unlisted, tools, near));
 }
 
 template <class Work>
@@ -148,12 +148,10 @@ void OnDemand::Inside::prepare(CloudBlock& block, double now) {
 
 void OnDemand::Inside::show_near(Source& to, double now) {
   const bool first = source != &to && tools.empty();  // nobody can be pushed
-  Snapshot snapshot;
-  if (!first) snapshot.start = now + kLead;
-  snapshot.end = snapshot.start + (first ? 0 : kAppear);
+  const double start = first ? 0 : now + kLead;
   // A block whose presence still rises goes on from where that is at the new start.
-  const double past = std::clamp((snapshot.start - last_start) / kAppear, 0., 1.);
-  last_start = snapshot.start;
+  const double past = std::clamp((start - last_start) / kAppear, 0., 1.);
+  last_start = start;
   const std::vector<CloudBlock*> chosen = choose_shown(blocks, near);
   std::vector<const Piece*> shown;
   for (CloudBlock* const block : chosen) {
@@ -169,11 +167,14 @@ void OnDemand::Inside::show_near(Source& to, double now) {
     if (block.state == State::shown) block.state = State::prepared;
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
-  snapshot.missing = told_missing = missing_boxes(blocks, chosen, unlisted);
+  told_missing = missing_boxes(blocks, chosen, unlisted);
   Prepared joined;
   beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
   joined.points.eye = eye;
-  snapshot.layers = still(std::move(joined.points)).layers;
+  Snapshot snapshot = still(std::move(joined.points));
+  snapshot.start = start;
+  snapshot.end = start + (first ? 0 : kAppear);
+  snapshot.missing = told_missing;
   publish(to, joined.report, std::move(snapshot));
 }
 
