@@ -1,10 +1,11 @@
-// Prepares sources anew, as a page wants them, on a thread of its own.
+// Prepares sources again, as a page wants them, on a thread of its own.
+#include "apps/palpate/run/preparer.hpp"
+
 #include <fmt/format.h>
 
 #include <exception>
 #include <utility>
 
-#include "apps/palpate/run/view_settings.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::app {

@@ -16,6 +16,7 @@
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/opening.hpp"
+#include "apps/palpate/run/preparer.hpp"
 #include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
 #include "apps/palpate/view/next_run.hpp"
