@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Takes pictures of README and documents anew, with the program as it is: scripts/picture.sh [contact] [page]
+# Takes the pictures of README and documents, with the program as it is: scripts/picture.sh [contact] [page]
 # Both, if none is named; page: in Chromium, also ten seconds of moving picture. Look at them: a busy machine shows.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"

@@ -8,7 +8,7 @@ import { openPage, until } from "./browser.mjs";
 import { picture } from "./picture.mjs";
 import { dark, vivid } from "./pixels.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
-import "./anew.mjs";
+import "./next_run.mjs";
 import "./finer.mjs";
 import "./first_hour.mjs";
 import "./moving.mjs";
