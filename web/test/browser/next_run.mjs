@@ -43,17 +43,27 @@ function countBuffers() {
   };
 }
 
+/** Runs in a page: the fewest buffers that it had within one and a half seconds, in which clouds come ten times a second. */
+async function leastBuffers() {
+  let least = Infinity;
+  for (const end = Date.now() + 1500; Date.now() < end; ) {
+    await new Promise((resolve) => setTimeout(resolve, 20));
+    least = Math.min(least, window.buffers.size);
+  }
+  return least;
+}
+
 test("a cloud of which a part is drawn while it changes leaves nothing on the graphics card", async () => {
   const server = await serve({ points: 50_000 }); // more than are drawn of what moves
   const page = await openPage(browser, server.address, kSmall, countBuffers);
   await ready(page);
-  const held = [];
+  const held = []; // the least of each run: a cloud that is replaced holds the buffers of both for a moment
   for (let i = 0; i < 6; i += 1) {
     server.program.beginAnew();
-    await page.waitForTimeout(1500); // clouds come ten times a second
-    held.push(await page.evaluate(() => window.buffers.size));
+    held.push(await page.evaluate(leastBuffers));
   }
-  assert.ok(held[5] < held[1] + 8, `${held.join(", ")} buffers: an index more for each of two clouds in each of four runs`);
+  const most = Math.max(...held.slice(2));
+  assert.ok(most < held[1] + 8, `${held.join(", ")} buffers: an index more for each of two clouds in each of four runs`);
   await page.context().close();
   await server.close();
 });
