@@ -12,6 +12,7 @@ import { screenColour } from "./colours";
 import { kCloudLayer } from "./layers";
 
 const kStill = 120; // ms of a still eye, before its picture becomes sharp (judgement)
+const kLive = 2000; // ms: what changes more often is a camera's, which is drawn quickly until two changes fail to come (measured: a busy page hears 1.6 a second)
 const kSharp = 8; // pictures with places in a pixel that the sharp one is the mean of
 const kAtOnce = 4; // that are enough where each pixel of the screen is four
 const kSampled = 2 ** 24; // samples in memory, of 8 bytes (colour and depth): 128 MiB
@@ -88,6 +89,8 @@ export class Backdrop {
   private eye = "";
   private clouds = "";
   private drawn = -Infinity; // ms
+  private changed = -Infinity; // ms, of the clouds
+  private gap = 0; // ms between two changes of what a camera sees, else 0
   private progress: Progress = { pictures: 0, points: 0, rows: 0 };
   private effort = 1 / 4; // of a sharp picture in one frame
   private last = 0; // ms
@@ -137,7 +140,7 @@ export class Backdrop {
     const isSame = eye === this.eye;
     if (isSame && wanted.clouds === this.clouds) {
       if (this.progress.pictures === kSharp) return false;
-      if (now - this.drawn < kStill) return true;
+      if (now - Math.max(this.drawn, this.changed + 2 * this.gap) < kStill) return true;
       if (interval < kQuick) this.effort = Math.min(1, 1.25 * this.effort);
       if (interval > kSlow) this.effort = Math.max(kLeastEffort, 0.8 * this.effort);
       this.refine(renderer, scene, camera, wanted);
@@ -145,6 +148,7 @@ export class Backdrop {
     }
     if (isSame && now - this.drawn < wanted.rest) return true;
     this.eye = eye;
+    if (wanted.clouds !== this.clouds) this.noteChange(now);
     this.clouds = wanted.clouds;
     this.drawn = now;
     this.quick.scissor.set(0, 0, Infinity, Infinity);
@@ -157,6 +161,12 @@ export class Backdrop {
     this.drawShade(renderer, camera, wanted, this.quick, 0);
     this.show(this.quick);
     return true;
+  }
+
+  private noteChange(now: number): void {
+    const gap = now - this.changed;
+    this.gap = gap < kLive ? gap : 0;
+    this.changed = now;
   }
 
   /** The rest of the sharp picture, at once, for a picture larger than the screen. */

@@ -18,12 +18,14 @@ const kTint = 0.4; // of a source's colour in clay (judgement)
 
 export const kTall = { value: 1 }; // pixels, the height of the picture that is drawn
 
-function makeMaterial(ramps: Texture): ShaderMaterial {
+/** isSoft: edges of discs are soft where a pixel has several samples. */
+function makeMaterial(ramps: Texture, isSoft: boolean): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kCloudVertex,
     fragmentShader: kCloudFragment,
-    alphaToCoverage: true, // soft edges; the canvas itself stays opaque
+    alphaToCoverage: isSoft, // the canvas itself stays opaque
+    defines: isSoft ? { SOFT: "" } : {},
     blending: CustomBlending,
     blendSrc: OneFactor,
     blendDst: ZeroFactor,
@@ -65,8 +67,9 @@ export class Cloud {
     private readonly source: number,
     readonly live: boolean, // what stands still does not age
     ramps: Texture,
+    isSoft: boolean,
   ) {
-    this.points = new Points(new BufferGeometry(), makeMaterial(ramps));
+    this.points = new Points(new BufferGeometry(), makeMaterial(ramps, isSoft));
     this.points.frustumCulled = false;
     this.points.geometry.addEventListener("dispose", ({ target }) => this.dropChoice(target));
     this.points.layers.set(kCloudLayer);

@@ -78,10 +78,15 @@ export const kCloudFragment = /* glsl */ `
     vec2 p = vec2(2.0, -2.0) * gl_PointCoord + vec2(-1.0, 1.0);
     float slope = dot(facing.xy, p) / max(facing.z, 0.35);
     float edge = dot(p, p) + slope * slope;
-    float soft = fwidth(edge);
-    if (edge > 1.0 + soft) discard;
+    #ifdef SOFT
+    float soft = fwidth(edge); // takes half of the time where the processor draws
+    float share = (1.0 + soft - edge) / (2.0 * soft);
+    #else
+    float share = edge > 1.0 ? 0.0 : 1.0;
+    #endif
+    if (share <= 0.0) discard;
     float z = deep.x - radius * slope; // a disc lies in its plane: neighbours' meet where their planes do
     gl_FragDepth = 0.5 - 0.5 * (deep.y + deep.z / z);
-    shown = vec4(colour, clamp((1.0 + soft - edge) / (2.0 * soft), 0.0, 1.0));
+    shown = vec4(colour, min(share, 1.0));
   }
 `;

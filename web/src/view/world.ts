@@ -92,7 +92,7 @@ export class World {
     this.radius = welcome.radius > 0 ? welcome.radius : kLonePoint;
     this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
     this.navigation.setUp(this.up);
-    this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps));
+    this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps, !this.stage.software));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
     this.tools = welcome.devices.map((_, i) => new Tool(i));
     this.surfaces = welcome.devices.map(() => new Surface());
