@@ -6,7 +6,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kFaded = 0.01;  // of the stiffness: a spring that is gone
 constexpr double kWaits = 2;     // of R: a hand that moves farther ends the wait (judgement)
 constexpr double kHardest = 10;  // N in free air: desktop devices sustain less (judgement)
 constexpr double kFar = 10;      // of R, from the proxy (judgement)

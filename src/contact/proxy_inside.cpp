@@ -101,7 +101,7 @@ double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eige
 void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& hip,
                               Contact& contact) noexcept {
   spring_.go_on(before, touch_.is_held() ? initial_stiffness(position_, hip) : 0,
-                touch_.waiting ? 0 : touch_.softened(options_.stiffness), position_ - hip, contact);
+                touch_.waiting ? 0 : touch_.softened(options_), position_ - hip, contact);
 }
 
 // Free space: to the hand, or to the first contact on the way.
@@ -119,8 +119,7 @@ double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
                                         const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (place - hip).norm();
   const double moved = (hip - hand_).norm() + kLeastFall * radius_;
-  return spring_.wanted(touch_.softened(options_.stiffness)) *
-         (stretch > moved ? moved / stretch : 1);
+  return spring_.wanted(touch_.softened(options_)) * (stretch > moved ? moved / stretch : 1);
 }
 
 void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
@@ -243,7 +242,7 @@ bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
 
 void Proxy::Inside::pull(const Eigen::Vector3d& hip, double dissipated, double dt,
                          Contact& contact) noexcept {
-  spring_.pull(touch_.softened(options_.stiffness), position_ - hip, dissipated,
+  spring_.pull(touch_.softened(options_), position_ - hip, dissipated,
                {dt, dt / options_.rise_time}, contact);
   contact.drift = touch_.surface.velocity;
   contact.source = touch_.surface.source;
@@ -255,8 +254,10 @@ void Proxy::Inside::Touch::carry_side(const Eigen::Vector3d& from) noexcept {
   }
 }
 
-double Proxy::Inside::Touch::softened(double stiffness) const noexcept {
-  return stiffness * factor(surface.stiffness_factor) * factor(surface.presence);
+double Proxy::Inside::Touch::softened(const ProxyOptions& options) const noexcept {
+  double presence = factor(surface.presence);
+  if (std::isfinite(options.rise_time)) presence = presence > kFaded ? 1 : 0;
+  return options.stiffness * factor(surface.stiffness_factor) * presence;
 }
 
 }  // namespace palpate

@@ -26,6 +26,8 @@ class Proxy::Inside {
   [[nodiscard]] ProxyOptions& options() noexcept { return options_; }
 
  private:
+  static constexpr double kFaded = 0.01;  // of the stiffness: a spring that is gone
+
   /// The contact. It holds the hand unless it waits for a surface that vanished.
   struct Touch {
     Surface surface;                                   // at the proxy
@@ -41,8 +43,9 @@ class Proxy::Inside {
     [[nodiscard]] bool is_held() const noexcept { return touching && !waiting; }
     // Turns the side as a slide from a place with this normal to here turned the normal.
     void carry_side(const Eigen::Vector3d& from) noexcept;
-    // What the surface leaves of a stiffness.
-    [[nodiscard]] double softened(double stiffness) const noexcept;
+    // What the surface leaves of the stiffness. A hand that no motor moves feels it whole until the
+    // surface is gone: a press of constant force would sink into what fades.
+    [[nodiscard]] double softened(const ProxyOptions& options) const noexcept;
   };
 
   /// What the budget left of the last step's search.

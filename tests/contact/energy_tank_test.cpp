@@ -101,6 +101,19 @@ TEST(EnergyTank, AHandThatNoMotorMovesIsNeverPressedDeepIntoWhatIsSoft) {
   EXPECT_NEAR(given.depth, 1.0 / 500, 5e-4);
 }
 
+TEST(EnergyTank, AHandThatNoMotorMovesFeelsAFadingSurfaceWholeUntilItIsGone) {
+  FadedSheet sheet;
+  Proxy proxy({.rise_time = 0.3});
+  const auto force = [&](double z) { return proxy.step(sheet, {0, 0, z}, 1e-3).force.z(); };
+  EXPECT_EQ(force(1e-3), 0);
+  for (int i = 0; i < 400; ++i) force(-2e-3);  // comes to its stiffness
+  for (sheet.presence = 1; sheet.presence > 0.012; sheet.presence -= 2e-3)
+    EXPECT_NEAR(force(-2e-3), 1, 1e-9) << sheet.presence;
+  sheet.presence = 0.005;
+  for (int i = 0; i < 200; ++i) force(-2e-3);  // falls with a time constant of 20 ms
+  EXPECT_LT(force(-2e-3), 0.01);
+}
+
 TEST(EnergyTank, FrictionPaysForARise) {
   EnergyTank tank;
   tank.restart(100);
