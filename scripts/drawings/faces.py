@@ -51,15 +51,26 @@ class Fit:
         heights = [dot(self.normal, d) for d in near]
         mean = sum(heights) / len(near)
         self.residual = math.sqrt(sum((h - mean) ** 2 for h in heights) / (len(near) - 3))
-        along = unit(plus(axis := [1.0, 0.0, 0.0] if abs(self.normal[0]) < 0.7 else [0.0, 1.0, 0.0], self.normal, -dot(axis, self.normal)))
-        aside = [self.normal[k - 2] * along[k - 1] - self.normal[k - 1] * along[k - 2] for k in range(3)]
+        along, aside = axes_across(self.normal)
         rows = [(1.0, x, y, x * x, x * y, y * y) for x, y in ((dot(along, d) / reach, dot(aside, d) / reach) for d in near)]
         quadric = least_squares(rows, heights)
         squares = sum((h - dot(quadric, row)) ** 2 for h, row in zip(heights, rows))
         self.curvature_residual = math.sqrt(squares / max(1, len(near) - 6))
+        self.points, self.off, self.aside = len(near), abs(quadric[0]), length([sum(d[k] for d in near) for k in range(3)]) / len(near) / reach
+
+    def is_segment(self, radius):
+        """Is the point on a smooth segment (5.4)?"""
+        return self.points >= 10 and self.confidence >= 0.5 and self.curvature_residual <= 0.03 * radius and self.off <= 0.12 * radius
 
     def is_confident(self, radius):
         return self.confidence >= 0.5 and (self.residual <= 0.05 * radius or self.curvature_residual <= 0.03 * radius)
+
+
+def axes_across(normal):
+    """Two axes of the plane with this normal, the first of them level."""
+    x, y, z = normal
+    along = unit([-y, x, 0.0] if math.hypot(x, y) > 1e-5 else [0.0, -z, y])
+    return along, [normal[k - 2] * along[k - 1] - normal[k - 1] * along[k - 2] for k in range(3)]
 
 
 def least_squares(rows, values):

@@ -131,12 +131,22 @@ class Surface:
         return most < (level if self.kind == "metaball" else min(level, WMIN))
 
 
-def density_weights(points, radii):
-    """a_i of 2.2."""
+def pairs_within(points, radii):
+    """Of each point the others within their own supports, itself among them, with their weights."""
     def weight(i, j):
         return wyvill(dot(d := minus(points[i], points[j]), d) / radii[j] ** 2)[0]
 
-    pairs = [[(j, w) for j in range(len(points)) if (w := weight(i, j)) > 0] for i in range(len(points))]
+    return [[(j, w) for j in range(len(points)) if (w := weight(i, j)) > 0] for i in range(len(points))]
+
+
+def weight_sums(points, radii):
+    """S_i of 2.2."""
+    return [sum(w for _, w in row) for row in pairs_within(points, radii)]
+
+
+def density_weights(points, radii):
+    """a_i of 2.2."""
+    pairs = pairs_within(points, radii)
     own = [sum(w for _, w in row) for row in pairs]
     return [1 / max(own[i], 0.8 * sum(w * own[j] for j, w in row) / own[i]) for i, row in enumerate(pairs)]
 
@@ -161,7 +171,8 @@ def spacings(points):
 def support_radii(points, spacing):
     """R_i of 5.3 without noise."""
     radii = [2.5 * s for s in spacing]
-    return [min(radii[j] + length(minus(p, points[j])) / 2 for j in range(len(points))) for p in points]
+    limits = [min(r + length(minus(p, q)) / 2 for q, r in zip(points, radii)) for p in points]
+    return [limit if limit < 0.8 * radius else radius for limit, radius in zip(limits, radii)]
 
 
 def eigen(matrix):

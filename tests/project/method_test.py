@@ -14,6 +14,7 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "drawings"))
 from faces import prepare_faces  # noqa: E402
+from gaps import prepare_anywhere  # noqa: E402
 from proxy import Proxy  # noqa: E402
 from sources import prepare_sources  # noqa: E402
 from surface import length, minus, prepare  # noqa: E402
@@ -41,6 +42,13 @@ def ball(count, radius, noise=0.0):
         r = radius + noise * (2 * chance.random() - 1)
         points.append([r * around * math.cos(angle), r * around * math.sin(angle), r * z])
     return points
+
+
+def ball_at_random(count, radius, seed):
+    """Points anywhere on a sphere, in m."""
+    chance = random.Random(seed)
+    points = [[chance.gauss(0, 1) for _ in range(3)] for _ in range(count)]
+    return [[radius * x / length(p) for x in p] for p in points]
 
 
 def waves(side, spacing):
@@ -103,6 +111,10 @@ class Method(unittest.TestCase):
                   for i in range(first, first + 17) for j in range(-6, 7)] for spacing, height, first in ((4e-3, 0.0, -13), (3e-3, 5e-4, -5))]
         hands = [(-0.03 + 0.06 * k / 149, 2e-3, 0.01 - 0.014 * min(1, k / 25)) for k in range(150)]
         self.assertGreater(self.compare(scans, hands, prepared=prepare_sources), 100)
+
+    def test_points_that_lie_anywhere(self):
+        for seed in range(2):
+            self.assertGreater(self.compare(ball_at_random(300, 0.05, seed), over_a_ball(150, 0.045), prepared=prepare_anywhere), 40)
 
     def test_other_fields_and_a_tool(self):
         points, hands = ball(300, 0.05), over_a_ball(60, 0.045)
