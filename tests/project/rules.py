@@ -340,7 +340,7 @@ def refinements(root):
         if "unless said" in line:
             folders = {top: re.findall(rf"`{top}/(\w+)`", line) for top in folders}
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if not line.startswith("|") or cells[0] == "refinement" or set(line) <= set("|-"):
+        if not line.startswith("|") or cells[0] == "rule" or set(line) <= set("|-"):
             continue
         if len(cells) != 5 or not all(cells):
             yield f"docs/refinements.md:{number}: give name, what it mends, section and source, test, and price"

@@ -184,7 +184,7 @@ class Rules(unittest.TestCase):
 
     def test_a_refinement_without_source_or_test_is_found(self):
         head = ("Sources in `src/field`, tests in `tests/field` unless said.\n\n"
-                "| refinement | mends | section; source | test | price |\n|---|---|---|---|---|\n")
+                "| rule | mends | section; source | test | price |\n|---|---|---|---|---|\n")
         files = {"src/field/a.cpp": "", "tests/field/a_test.cpp": "TEST(Edges, AreSharp) {\n}\nTEST_P(Of, Them) {\n}\n",
                  "src/scene/c.cpp": "", "tests/scene/c_test.cpp": "TEST(Scene, Holds) {\n}\n"}
         for row, count in (("| a | b | 2.8; `a.cpp` | `Edges.AreSharp`, `Of.*` | +3 |", 0), ("| a | b | 2.8; `b.cpp` | `Edges.*` | +3 |", 1),
