@@ -114,7 +114,8 @@ Vector3d printed_gradient(const ImplicitSurface& surface, const simd::Columns& c
   return total;
 }
 
-/// The value of a place without a surface, m: with no gradient, so that nobody looks for one.
+/// The value where no point weighs, m: that of the cap there, c R Wmin = 0.35 R (docs/method.md
+/// 2.5), with no gradient, so that nobody looks for a surface.
 double free_value(double radius) noexcept {
   return 0.35 * radius;
 }

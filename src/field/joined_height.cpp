@@ -63,6 +63,7 @@ using Eigen::Vector3d;
 // R: a convex edge between two surfaces is rounded over this width, and loses a quarter of it.
 // Measured: with 0.35 a box in a depth frame lost contact along its edges twice as often as
 // with no labels; with 0.1 hands that leave over an edge are let go as hard as by an exact one.
+// It is also the least thickness of a plate: far_side() keeps its faces so far apart.
 constexpr double kOverEdges = 0.2;
 
 /// Can the surface of these normals be located here at all?

@@ -11,10 +11,10 @@ namespace palpate {
 struct PointFits {
   std::vector<Eigen::Vector3f> normals;  ///< unit, sign arbitrary; zero: undefined
   std::vector<float> confidences;        ///< planarity, 0-1
-  std::vector<float> residuals;          ///< from the plane, m
-  std::vector<float> quadric_residuals;  ///< from the quadric where the plane does not fit, m
+  std::vector<float> residuals;          ///< rms distance from the plane, m
+  std::vector<float> quadric_residuals;  ///< the same from a quadric, where the plane leaves much
   std::vector<std::uint8_t> others;      ///< 1: points of other segments are around
-  std::vector<float> asides;             ///< of the mean of those around, of their reach
+  std::vector<float> asides;  ///< distance to the mean of the points around, over their reach
 };
 
 }  // namespace palpate

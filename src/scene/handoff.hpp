@@ -19,7 +19,8 @@ namespace palpate {
 /// that thread and never on a reader's.
 ///
 /// A reader that stands still keeps the values in its slots alive and delays nobody; so at most
-/// kReaders * kHeld + 1 values are alive at a time, however many are published. Nothing here
+/// kReaders * kHeld values and the newest are alive at a time, however many are published; during a
+/// publish() one more, and one for each reader that changes a slot just then. Nothing here
 /// allocates but join().
 template <class T>
 class Handoff {
@@ -37,8 +38,8 @@ class Handoff {
   /// Every reader has left by now.
   ~Handoff() { assert(readers() == 0); }
 
-  /// Takes a reader's place. Not real-time. Returns kReaders when all places are taken. `name`: for
-  /// those who look for a reader that stands still.
+  /// Registers a reader and returns its number, kReaders when there are as many already. Not
+  /// real-time. `name`: for those who look for a reader that stands still.
   [[nodiscard]] std::size_t join(std::string name = {}) {
     const std::lock_guard lock(mutex_);
     const auto free = std::ranges::find(taken_, false);
@@ -49,7 +50,7 @@ class Handoff {
     return place;
   }
 
-  /// Gives a place back. Not real-time; the reader must no longer use what it held.
+  /// Ends a registration. Not real-time; the reader must no longer use what it held.
   void leave(std::size_t reader) {
     Values unused;  // outlives the lock: what it holds is let go after the unlocking
     const std::lock_guard lock(mutex_);
@@ -109,7 +110,7 @@ class Handoff {
     return count_;
   }
 
-  /// How many readers' places are taken. Not real-time.
+  /// How many readers are registered. Not real-time.
   [[nodiscard]] std::size_t readers() const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::ranges::count(taken_, true));

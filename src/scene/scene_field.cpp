@@ -212,10 +212,10 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
-  if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free; of no length
+  if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free, how far unknown
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
-  return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid: unknown
+  return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid where unknown
 }
 
 bool SceneField::is_free(const Ball& ball) const noexcept {

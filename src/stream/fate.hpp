@@ -22,11 +22,12 @@ struct FateFacts {
   EntryKind kind = EntryKind::live;
   bool shown = false;   ///< its block shows a surface that can be trusted
   bool same = false;    ///< that surface is the point's own
-  bool vouched = true;  ///< and it is near, or enough neighbours show it, too
+  bool vouched = true;  ///< and it is within R of the point, or enough neighbours show it, too
   float beyond = 0;     ///< how far the point lies behind that surface, along the camera's axis, m
   float radius = 0;     ///< R of that surface there, m
-  bool may_hide = false;  ///< the block remembers no other hidden surface
-  bool second = false;    ///< the block holds another live point already
+  /// The point lies more than R behind that surface, and the block remembers no other hidden one.
+  bool may_hide = false;
+  bool second = false;  ///< the block holds another live point already
 };
 
 /// Share of R: a supposed point that lies farther behind what its block shows is not that

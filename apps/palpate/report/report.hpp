@@ -34,11 +34,10 @@ class Report {
 
   /// A line: `pattern` with the values in it. {KEY} shows the next value, which is the datum KEY;
   /// '/' makes objects ("radius_m/median"). The key's unit ("_m", "_N_per_m", ...) says how the
-  /// value is shown. {} and a unit alone ({_m}) show a value that is no datum. Where the first
-  /// value in [brackets] is 0, false, null or empty, they are left out, or their alternative is
-  /// shown:
-  /// [{voxel_m}|none]. {?} and a bool decide so without being shown. A number that is not finite
-  /// is null. A line without text is left out, its data are not.
+  /// value is shown. {} and a unit alone ({_m}) show a value that is no datum. Text in
+  /// [brackets] is left out where its first value is 0, false, null or empty; what stands after |
+  /// is shown in its place: [{voxel_m}|none]. {?} takes a bool, which decides so and is not shown.
+  /// A number that is not finite is null. A line without text is left out, its data are not.
   template <class... Value>
   void row(const Label& label, std::string_view pattern, const Value&... values) {
     write(data, label, pattern, {Json(values)...});
