@@ -1,5 +1,5 @@
 """Clouds whose points lie anywhere: holes between points and their bridges, written from the text of docs/method.md 5.4 in plain
-Python."""
+Python, but for the last limit, which acts where surfaces come near each other."""
 
 import math
 
@@ -60,17 +60,7 @@ def close_gaps(points, radii, fits):
             if wide and wide.is_segment(reach):
                 raised[i], fits[i] = reach, wide
                 break
-    return [limited(i, points, raised, fits[i]) for i in range(len(points))]
-
-
-def limited(i, points, radii, fit):
-    """R_j + |p_i - p_j| of points off the plane of i, where it is less than 0.8 R_i."""
-    limits = [0.8 * radii[i]]
-    for p, radius in zip(points, radii):
-        way = minus(p, points[i])
-        if fit.confidence < 0.5 or abs(dot(fit.normal, way)) > max(3 * fit.residual, 0.12 * length(way)):
-            limits.append(radius + length(way))
-    return min(limits) if min(limits) < limits[0] else radii[i]
+    return raised
 
 
 def prepare_anywhere(points, eye):
