@@ -37,12 +37,12 @@ inline constexpr Range kNotNegative{.least = 0, .words = "a number of 0 or more"
   return range;
 }
 
-/// Who can set an option: those before it in this list cannot.
+/// Who can set an option. Each entry adds to those before it.
 enum class Offered {
   recordings,  ///< the library alone; recordings keep it
-  python,
-  files,  ///< set-up files, too
-  everywhere,
+  python,      ///< Python, too
+  files,       ///< set-up files, too
+  everywhere,  ///< the command line, too
 };
 
 /// What is said of one option, in this order.

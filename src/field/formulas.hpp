@@ -30,7 +30,7 @@ struct KernelValue {
   return {s * s * s * s * (4 * r + 1), -20 * s * s * s};
 }
 
-/// Eq. (1) of a squared distance, m^2; `reach`: R, m.
+/// Eq. (1), whatever kernel a field has, of a squared distance, m^2; `reach`: R, m.
 [[nodiscard]] inline double weight_within(float squared, float reach) noexcept {
   return wyvill(static_cast<double>(squared / (reach * reach))).w;
 }

@@ -110,8 +110,9 @@ class Proxy {
   /// (s); friction and fading use it. 0 is taken as 1 ns; a negative one is a fault.
   ///
   /// The first step after construction puts the proxy where the hand is. A field that is solid
-  /// there pushes the proxy to its nearest front at once. Spends at most max_evaluations()
-  /// evaluations of the field.
+  /// there pushes the proxy to its nearest front at once, with the full stiffness: Guard softens
+  /// that. The surface of a cloud, but for a metaball, is not solid there: its outside is where the
+  /// hand begins. Spends at most max_evaluations() evaluations of the field.
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
 
   /// Where the proxy is, m, world. The origin until the first step or reset().
@@ -128,7 +129,8 @@ class Proxy {
   /// changes, where a number is out of its range.
   bool change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
-  /// Puts the proxy at `position`, in free space, and forgets contact and faults.
+  /// Puts the proxy at `position` and forgets contact and faults. Where that is in a solid, the
+  /// next step does as the first one.
   void reset(const Eigen::Vector3d& position) noexcept;
 
  private:

@@ -32,8 +32,8 @@ struct SurfacePoints {
     Eigen::Vector3f normal =
         Eigen::Vector3f::Zero();  ///< outward, unit; between two planes, a mean
     float height = 0;             ///< of the point above the plane, m
-    /// Confidence, 0 to 1 for a convex edge (solid below both planes), 0 to -1 for a crease (free
-    /// above both). Crossing 0 removes the edge, so a change of kind has no jump.
+    /// How much the edge counts: 0 to 1 where it is convex (solid below both planes), 0 to -1 for
+    /// a crease (free above both). Crossing 0 removes the edge, so a change of kind has no jump.
     float share = 0;
   };
 
@@ -82,8 +82,9 @@ struct SurfacePoints {
   /// Edges and creases that stay sharp (FieldOptions::sharp_edges); of organised depth.
   Edges edges;
 
-  /// What saw all of it, from the side that its normals point to: it holds towards that eye alone.
-  /// Of segments, those of known components. None: it holds from every side.
+  /// From where all points were seen, on the side that their normals point to: the surface holds
+  /// towards that eye alone. Points of components whose side is not known hold from the side that
+  /// the hand comes from. None: all do.
   std::optional<SurfaceEye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for

@@ -18,7 +18,8 @@ namespace palpate {
 /// How a cloud becomes surface points. What is not set is chosen from the data.
 struct PrepareOptions {
   /// The source of normals' signs. They help segments to form oriented components; the free side of
-  /// each is the one that the tool comes from. Components that nothing is known of point outward.
+  /// each is the one that the tool comes from or, with a viewpoint that proves true, the one that
+  /// was seen. Components that nothing is known of point outward.
   enum class Orientation {
     automatic,  ///< what is given; else a viewpoint where one is known
     viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
@@ -33,7 +34,7 @@ struct PrepareOptions {
   double minimum_radius = 0;          ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;         ///< wanted error of normals, rad (theta: 1.15 degrees)
   /// Position of the sensor, in the cloud's frame, m. Gives the signs in place of given normals,
-  /// unless these alone are requested.
+  /// unless these alone are requested; components whose side it decides hold from there alone.
   std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
   std::optional<Box> clip = {};          ///< keep points inside only, in the cloud's frame, m

@@ -22,7 +22,9 @@ enum class Policy {
   replace,    ///< the newest cloud, at once (hard swap)
   average,    ///< the newest N clouds, 1/N each (the paper)
   crossfade,  ///< N + 1 clouds; the newest fades in while the oldest fades out
-  morph = 4,  ///< blocks of a depth image, filtered in time and by the noise-sized fit; 3 is gone
+  /// Blocks of a depth image, filtered in time and by the noise-sized fit. The number is that of
+  /// earlier recordings, whose 3 was a policy that was removed.
+  morph = 4,
 };
 
 /// What stands for a policy that is not set.
@@ -119,8 +121,8 @@ struct Seen {
   Says says = Says::outside;
   double behind =
       0;            ///< m; a solid ball that goes so far towards the camera is free, noise allowed
-  double lift = 0;  ///< m; so far it is to be moved: all of the way to what is measured, but less
-                    ///< where noise may have feigned most of it; no less than `behind`
+  double lift = 0;  ///< m; how far to move it towards the camera: up to what is measured, less
+                    ///< where most of that may be noise; no less than `behind`
   double measured = 0;  ///< m; of `lift`, what the frame shows without what is foreseen
   bool came = false;    ///< a solid one was free some frames before
   double age = 0;       ///< of the frame, s
@@ -133,8 +135,8 @@ class Source {
   /// State of a source, for display and logs.
   struct State {
     std::uint64_t frames = 0;   ///< frames and clouds that became a surface
-    std::uint64_t dropped = 0;  ///< dropped because stalled fields held all snapshots
-    std::string slowest = {};   ///< name of a stalled field at the last drop; empty: never
+    std::uint64_t dropped = 0;  ///< dropped because fields that stand still held all snapshots
+    std::string slowest = {};   ///< name of such a field at the last drop; empty: never
     double interval = 0;        ///< time between frames, smoothed, s; 0: none yet
     double latency = 0;         ///< of the last one, from its stamp to the start of its surface, s
     double stamp = 0;           ///< of the last one, s
@@ -199,8 +201,8 @@ class Source {
   /// size have come for a while, nothing is allocated, but where sources are compared, once in 32
   /// frames. Not real-time; one thread pushes.
   ///
-  /// False when the frame was dropped, because stalled fields hold all snapshots that
-  /// there may be; state() names one of them.
+  /// False when the frame was dropped, because fields that stand still (their threads call no
+  /// update()) hold all snapshots that there may be; state() names one of them.
   /// @throws Error as DepthFilter::filter does, and when a time is not finite or the pose not
   /// rigid.
   bool push(const DepthFrame& frame, const StartTime& start);
@@ -212,8 +214,8 @@ class Source {
   bool push(const PointCloud& cloud, double stamp, const StartTime& start);
 
   /// Keeps the last surface without fading. Call at the end of a recording. Of a depth frame, what
-  /// was out of every tool's reach is fitted first. Points that were fading by themselves go on to.
-  /// Not real-time; the thread that pushes calls it, after the last push.
+  /// was out of every tool's reach is fitted first. Points that were fading by themselves go on
+  /// fading. Not real-time; the thread that pushes calls it, after the last push.
   void keep();
 
   /// Makes `snapshot` the newest; nullptr: there is no surface any more. Not real-time.
