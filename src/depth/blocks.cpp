@@ -51,14 +51,14 @@ SameSurface::SameSurface(const NoiseModel& noise_model, const BlockGrid& grid)
       steep(
           static_cast<float>(kSteepest * std::max(std::abs(grid.step_x), std::abs(grid.step_y)))) {}
 
-void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch) {
+void reject_flying(const NoiseModel& noise, Blocks& blocks) {
   const simd::BlockLimits limits = limits_of(noise, blocks.grid);
   const auto stride = static_cast<std::ptrdiff_t>(blocks.stride);
-  scratch = blocks.rho;
+  blocks.measured = blocks.rho;
   for_rows(blocks.grid, [&](int row) {
     const std::size_t at = blocks.at(0, row);
-    simd::best_plain().reject(scratch.data() + at, stride, blocks.grid.columns, limits, kSupporters,
-                              blocks.rho.data() + at, blocks.counts.data() + at);
+    simd::best_plain().reject(blocks.measured.data() + at, stride, blocks.grid.columns, limits,
+                              kSupporters, blocks.rho.data() + at, blocks.counts.data() + at);
   });
 }
 

@@ -104,6 +104,7 @@ struct Blocks {
   std::size_t stride = 0;            ///< from row to row
   std::vector<float> rho;            ///< 1 / mean depth, 1/m; 0: empty
   std::vector<std::uint8_t> counts;  ///< pixels in the mean, 0-4
+  std::vector<float> measured;       ///< `rho` before reject_flying()
 
   void resize(const BlockGrid& new_grid);
   /// Place of a block in the columns; from -kMargin to columns + kMargin - 1, rows alike.
@@ -238,7 +239,7 @@ struct SameSurface {
 /// Empties blocks that stand between surfaces: those that fewer than two of their eight neighbours
 /// continue, be it by lying close or by lying on a line with the block and its opposite neighbour.
 /// `scratch` is kept for its memory.
-void reject_flying(const NoiseModel& noise, Blocks& blocks, std::vector<float>& scratch);
+void reject_flying(const NoiseModel& noise, Blocks& blocks);
 
 /// Plain fits of some blocks of a row: each block's own mean, its slopes by least squares over
 /// those of its eight neighbours that show the same surface.

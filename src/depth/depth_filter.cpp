@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -131,9 +132,7 @@ struct DepthFilter::State {
   depth::TemporalFilter temporal;
   depth::StillTiles tiles;
   FilteredDepth out;
-  DepthFrame last;
-  std::vector<float> scratch;
-  bool seen = false;  // is there a last frame?
+  std::optional<DepthFrame> last;
 
   void resize(const CameraModel& camera) {
     const depth::BlockGrid grid = depth::block_grid(camera);
@@ -141,18 +140,18 @@ struct DepthFilter::State {
     blocks.resize(grid);
     fits.resize(grid);
     depth::resize(grid, out);
-    seen = false;
+    last.reset();
   }
 
   // Is it bit for bit the last frame? Keeps it.
   bool repeats(const DepthFrame& frame) {
     const std::vector<float>& depth = frame.depth;
     const bool same =
-        seen && last.depth.size() == depth.size() &&
-        std::memcmp(last.depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
-    if (!same) last.depth = depth;
-    last.camera = frame.camera;
-    seen = true;
+        last && last->depth.size() == depth.size() &&
+        std::memcmp(last->depth.data(), depth.data(), depth.size() * sizeof(float)) == 0;
+    if (!last) last.emplace();
+    if (!same) last->depth = depth;
+    last->camera = frame.camera;
     return same;
   }
 
@@ -169,12 +168,12 @@ struct DepthFilter::State {
   void average(const DepthFrame& frame) {
     const float* image = undistorter.undistort(frame.camera, frame.depth, out.noise, options);
     depth::average_blocks(image, frame.camera.width, out.noise, options, blocks);
-    depth::reject_flying(out.noise, blocks, scratch);
+    depth::reject_flying(out.noise, blocks);
   }
 
   const FilteredDepth& filter(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor) {
     resize(frame.camera);
-    const bool same_pose = seen && T_world_sensor.matrix() == out.T_world_sensor.matrix();
+    const bool same_pose = last && T_world_sensor.matrix() == out.T_world_sensor.matrix();
     out.duplicate = repeats(frame);
     out.stamp = frame.stamp;
     out.T_world_sensor = T_world_sensor;
@@ -253,17 +252,17 @@ const FilteredDepth& DepthFilter::filter(const DepthFrame& frame,
 
 const FilteredDepth* DepthFilter::fit_all() {
   State& state = *state_;
-  if (!state.seen) return nullptr;
-  state.region.set(depth::block_grid(state.last.camera));
+  if (!state.last) return nullptr;
+  state.region.set(depth::block_grid(state.last->camera));
   if (state.last_region == state.region) return &state.out;
-  return &state.points(state.last, true);
+  return &state.points(*state.last, true);
 }
 
 void DepthFilter::reset() {
   state_->temporal.reset();
   state_->tiles.forget(state_->fits.grid);
   state_->tracker.reset();
-  state_->seen = false;
+  state_->last.reset();
 }
 
 namespace {

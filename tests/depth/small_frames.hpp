@@ -33,8 +33,7 @@ inline depth::Blocks blocks_of(const DepthFrame& frame, const NoiseModel& noise)
   depth::Blocks blocks;
   blocks.resize(depth::block_grid(frame.camera));
   depth::average_blocks(frame.depth.data(), frame.camera.width, noise, {}, blocks);
-  std::vector<float> scratch;
-  depth::reject_flying(noise, blocks, scratch);
+  depth::reject_flying(noise, blocks);
   return blocks;
 }
 
