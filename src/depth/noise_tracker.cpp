@@ -61,29 +61,38 @@ Steps steps_of(const std::vector<float>& depths, std::size_t row) {
 
 }  // namespace
 
-struct NoiseTracker::State {
-  NoiseModel prior;
-  NoiseModel model;  // handed out
+// Measures noise in windows of frames of one size, a share of the windows in each turn.
+struct WindowVisits {
   int width = 0;
   int height = 0;
-  std::size_t turn = 0;    // windows i with i % kShares == turn are looked at
-  std::size_t waited = 0;  // frames that gave no samples
-  bool told = false;
+  std::size_t turn = 0;  // windows i with i % kShares == turn are looked at
   std::vector<NoiseWindow> windows;
   std::vector<SeenNoise> single;       // what single frames show
   std::vector<SeenNoise> differences;  // what pairs differ by
   std::vector<float> before;           // the last frame's depths in this turn's windows
   std::array<NoiseFit, kNoiseSizes.size()> fits{NoiseFit(kNoiseSizes[0]), NoiseFit(kNoiseSizes[1]),
                                                 NoiseFit(kNoiseSizes[2])};
-  NoiseSurvey of_single;
-  NoiseSurvey of_differences;
   std::vector<float> values;
-  std::vector<NoiseSample> samples;
 
   void resize(const DepthView& frame);
   void look(const DepthView& frame, std::size_t window);
   void compare(const DepthView& frame);
   void keep(const DepthView& frame);
+};
+
+// Concludes a noise model from what the windows showed.
+struct NoiseTracker::State {
+  explicit State(const NoiseModel& given) : prior(given), model(given) {}
+
+  NoiseModel prior;
+  NoiseModel model;        // handed out
+  std::size_t waited = 0;  // frames that gave no samples
+  bool told = false;
+  WindowVisits visits;
+  NoiseSurvey of_single;
+  NoiseSurvey of_differences;
+  std::vector<NoiseSample> samples;
+
   [[nodiscard]] std::span<const NoiseSample> changes() const;
   void choose_samples();
   [[nodiscard]] double shared(const NoiseModel& noise) const;
@@ -91,11 +100,7 @@ struct NoiseTracker::State {
   void update(const DepthView& frame);
 };
 
-void NoiseTracker::State::resize(const DepthView& frame) {
-  if (frame.width == width && frame.height == height) return;
-  const NoiseModel start = prior;
-  *this = {};
-  prior = model = start;
+void WindowVisits::resize(const DepthView& frame) {
   width = frame.width;
   height = frame.height;
   windows = lay_noise_windows(width, height);
@@ -106,7 +111,7 @@ void NoiseTracker::State::resize(const DepthView& frame) {
 // Measures the noise of a window in inverse depths, in which planes are planes, too. Where most
 // neighbours are alike and nothing is left, noise is below the sensor's step, or nothing was
 // measured.
-void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
+void WindowVisits::look(const DepthView& frame, std::size_t window) {
   values.clear();
   append(frame, windows[window], values);
   NoiseFit& fitter = fits[windows[window].level];
@@ -127,7 +132,7 @@ void NoiseTracker::State::look(const DepthView& frame, std::size_t window) {
 }
 
 // In a static scene the difference of two frames is noise, whatever the shape.
-void NoiseTracker::State::compare(const DepthView& frame) {
+void WindowVisits::compare(const DepthView& frame) {
   std::size_t at = 0;
   for (std::size_t w = turn; w < windows.size() && at < before.size(); w += kShares) {
     values.clear();
@@ -148,7 +153,7 @@ void NoiseTracker::State::compare(const DepthView& frame) {
 }
 
 // Keeps values to compare the next frame with.
-void NoiseTracker::State::keep(const DepthView& frame) {
+void WindowVisits::keep(const DepthView& frame) {
   turn = (turn + 1) % kShares;
   before.clear();
   for (std::size_t w = turn; w < windows.size(); w += kShares) append(frame, windows[w], before);
@@ -198,8 +203,8 @@ double NoiseTracker::State::shared(const NoiseModel& noise) const {
 }
 
 void NoiseTracker::State::conclude() {
-  of_single.conclude(single);
-  of_differences.conclude(differences);
+  of_single.conclude(visits.single);
+  of_differences.conclude(visits.differences);
   choose_samples();
   if (samples.empty()) return;
   NoiseModel next = fit_noise_curve(samples, prior);
@@ -213,17 +218,21 @@ void NoiseTracker::State::conclude() {
 }
 
 void NoiseTracker::State::update(const DepthView& frame) {
-  resize(frame);
-  compare(frame);
+  if (frame.width != visits.width || frame.height != visits.height) {
+    *this = State(prior);
+    visits.resize(frame);
+  }
+  visits.compare(frame);
   const bool all = !told && waited++ % kPatience == 0;
-  for (std::size_t w = all ? 0 : turn; w < windows.size(); w += all ? 1 : kShares) look(frame, w);
-  keep(frame);
-  if (all || turn % kPatience == 0) conclude();
+  const std::size_t count = visits.windows.size();
+  for (std::size_t w = all ? 0 : visits.turn; w < count; w += all ? 1 : kShares) {
+    visits.look(frame, w);
+  }
+  visits.keep(frame);
+  if (all || visits.turn % kPatience == 0) conclude();
 }
 
-NoiseTracker::NoiseTracker(const NoiseModel& prior) : state_(std::make_unique<State>()) {
-  state_->prior = state_->model = prior;
-}
+NoiseTracker::NoiseTracker(const NoiseModel& prior) : state_(std::make_unique<State>(prior)) {}
 
 NoiseTracker::~NoiseTracker() = default;
 NoiseTracker::NoiseTracker(NoiseTracker&&) noexcept = default;
