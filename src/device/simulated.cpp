@@ -14,6 +14,8 @@
 namespace palpate {
 namespace {
 
+using Eigen::Vector3d;
+
 constexpr int kParts = 16;  // of a step; dry friction's direction is constant in each (judgement)
 constexpr int kEvents = 4;  // stops and starts followed in one part (judgement)
 constexpr int kBisections = 48;    // of a part, to find when the device stops (judgement)
@@ -80,45 +82,56 @@ Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
 
 }  // namespace
 
-struct SimulatedDevice::Inside {
-  Inside(const SimulatedDeviceOptions& the_options, Trajectory rows)
-      : options(checked(the_options)),
-        info(info_of(options)),
+// A mass on the hand's spring and damper, with dry friction. Moves exactly between stops and
+// starts.
+struct HeldMass {
+  explicit HeldMass(const SimulatedDeviceOptions& the_options)
+      : options(the_options),
         generator(generator_of(options)),
         whole_step(exponential(generator / options.rate)),
         part_step(exponential(generator / (options.rate * kParts))),
         position(options.position),
-        velocity(options.velocity) {
+        velocity(options.velocity) {}
+
+  void advance(const Vector3d& push, const Vector3d& push_rate) noexcept;
+  void slide(double duration, Vector3d push, const Vector3d& push_rate) noexcept;
+  void flow(const Eigen::Matrix4d& transition, const Vector3d& push,
+            const Vector3d& push_rate) noexcept;
+
+  const SimulatedDeviceOptions& options;
+  Eigen::Matrix4d generator;
+  Eigen::Matrix4d whole_step;  // its exponential over one step
+  Eigen::Matrix4d part_step;   // ... and over 1/16 of one
+  Vector3d position;
+  Vector3d velocity;
+};
+
+struct SimulatedDevice::Inside {
+  Inside(const SimulatedDeviceOptions& the_options, Trajectory rows)
+      : options(checked(the_options)), info(info_of(options)), mass(options) {
     if (!rows.empty()) check(rows);
     trajectory = Playback(std::move(rows));
     if (!options.duration && !trajectory.empty()) options.duration = trajectory.end();
-    if (!trajectory.empty()) position = trajectory.front().position;
-    forces.fill(Eigen::Vector3d::Zero());
+    if (!trajectory.empty()) mass.position = trajectory.front().position;
+    forces.fill(Vector3d::Zero());
   }
 
   [[nodiscard]] TargetSource::Target target_at(double time) noexcept;
-  [[nodiscard]] Eigen::Vector3d quantised() const noexcept;
-  void begin() noexcept;
+  [[nodiscard]] Vector3d quantised() const noexcept {
+    if (options.resolution == 0) return mass.position;
+    return (mass.position / options.resolution).array().round().matrix() * options.resolution;
+  }
   [[nodiscard]] bool ask(double time) noexcept;
   void advance() noexcept;
   void fail(const char* what) noexcept;
-  void advance_with_friction(const Eigen::Vector3d& push,
-                             const Eigen::Vector3d& push_rate) noexcept;
-  void slide(double duration, Eigen::Vector3d push, const Eigen::Vector3d& push_rate) noexcept;
-  void flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
-            const Eigen::Vector3d& push_rate) noexcept;
 
   SimulatedDeviceOptions options;
   Playback trajectory;
   TargetSource* source = nullptr;
   TargetSource::Target target;  // at the current time
   DeviceInfo info;
-  Eigen::Matrix4d generator;
-  Eigen::Matrix4d whole_step;  // its exponential over one step
-  Eigen::Matrix4d part_step;   // ... and over 1/16 of one
-  Eigen::Vector3d position;
-  Eigen::Vector3d velocity;
-  std::array<Eigen::Vector3d, kMostDelay + 1> forces;  // ring of written forces
+  HeldMass mass;
+  std::array<Vector3d, kMostDelay + 1> forces;  // ring of written forces
   double work = 0;
   std::uint64_t steps = 0;
   DeviceState state;
@@ -140,12 +153,12 @@ const DeviceInfo& SimulatedDevice::info() const noexcept {
   return inside_->info;
 }
 
-const Eigen::Vector3d& SimulatedDevice::true_position() const noexcept {
-  return inside_->position;
+const Vector3d& SimulatedDevice::true_position() const noexcept {
+  return inside_->mass.position;
 }
 
-const Eigen::Vector3d& SimulatedDevice::true_velocity() const noexcept {
-  return inside_->velocity;
+const Vector3d& SimulatedDevice::true_velocity() const noexcept {
+  return inside_->mass.velocity;
 }
 
 double SimulatedDevice::work() const noexcept {
@@ -157,11 +170,11 @@ DeviceState SimulatedDevice::read() noexcept {
   if (in.wrong != nullptr || in.state.status == DeviceState::Status::finished) return in.state;
   if (in.started) {
     in.advance();
-  } else {
-    in.begin();
+  } else if (in.ask(0) && in.source != nullptr) {
+    in.mass.position = in.target.position;
   }
   if (in.wrong != nullptr) return in.state;
-  const Eigen::Vector3d shown = in.quantised();
+  const Vector3d shown = in.quantised();
   if (in.started) in.state.velocity = (shown - in.state.position) * in.options.rate;
   in.state.position = shown;
   in.state.buttons = in.target.buttons;
@@ -174,7 +187,7 @@ DeviceState SimulatedDevice::read() noexcept {
   return in.state;
 }
 
-void SimulatedDevice::write(const Eigen::Vector3d& force) noexcept {
+void SimulatedDevice::write(const Vector3d& force) noexcept {
   Inside& in = *inside_;
   if (in.wrong != nullptr) return;
   if (!force.allFinite()) {
@@ -198,18 +211,9 @@ void SimulatedDevice::Inside::fail(const char* what) noexcept {
 }
 
 TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
-  if (source != nullptr) return source->target(time, position);
+  if (source != nullptr) return source->target(time, mass.position);
   if (trajectory.empty()) return {options.position};
   return {trajectory.at(time)};
-}
-
-Eigen::Vector3d SimulatedDevice::Inside::quantised() const noexcept {
-  if (options.resolution == 0) return position;
-  return (position / options.resolution).array().round().matrix() * options.resolution;
-}
-
-void SimulatedDevice::Inside::begin() noexcept {
-  if (ask(0) && source != nullptr) position = target.position;
 }
 
 // Fetches the target at `time`; false if it is not valid.
@@ -224,52 +228,48 @@ void SimulatedDevice::Inside::advance() noexcept {
   const TargetSource::Target from = target;
   if (!ask(static_cast<double>(steps + 1) / options.rate)) return;
   const auto delay = static_cast<std::size_t>(options.delay);
-  const Eigen::Vector3d held = forces[(steps + forces.size() - delay) % forces.size()];
-  const Eigen::Vector3d goal_rate = (target.position - from.position) * options.rate;
-  const Eigen::Vector3d drive = options.hand.damping * goal_rate;
-  Eigen::Vector3d push = held + options.hand.stiffness * from.position + drive;
-  Eigen::Vector3d push_rate = options.hand.stiffness * goal_rate;
+  const Vector3d held = forces[(steps + forces.size() - delay) % forces.size()];
+  const Vector3d goal_rate = (target.position - from.position) * options.rate;
+  const Vector3d drive = options.hand.damping * goal_rate;
+  Vector3d push = held + options.hand.stiffness * from.position + drive;
+  Vector3d push_rate = options.hand.stiffness * goal_rate;
   // The hand's own damper only brakes; the limit applies to the rest, its pull.
   const double most =
       std::min({options.hand.maximum_force, from.maximum_force, target.maximum_force});
-  const Eigen::Vector3d pull = options.hand.stiffness * (from.position - position) + drive;
+  const Vector3d pull = options.hand.stiffness * (from.position - mass.position) + drive;
   if (pull.norm() > most) {
-    push = held + options.hand.stiffness * position + most * pull.normalized();
+    push = held + options.hand.stiffness * mass.position + most * pull.normalized();
     push_rate.setZero();
   }
-  const Eigen::Vector3d before = position;
-  if (options.coulomb > 0) {
-    advance_with_friction(push, push_rate);
-  } else {
-    flow(whole_step, push, push_rate);
-  }
-  work += held.dot(position - before);
+  const Vector3d before = mass.position;
+  mass.advance(push, push_rate);
+  work += held.dot(mass.position - before);
   // A step without a write() repeats the force before it.
   forces[(steps + 1) % forces.size()] = forces[steps % forces.size()];
   ++steps;
 }
 
-void SimulatedDevice::Inside::advance_with_friction(const Eigen::Vector3d& push,
-                                                    const Eigen::Vector3d& push_rate) noexcept {
+// Advances one step; `push` is at its beginning.
+void HeldMass::advance(const Vector3d& push, const Vector3d& push_rate) noexcept {
+  if (options.coulomb == 0) return flow(whole_step, push, push_rate);
   const double part = 1 / (options.rate * kParts);
   for (int i = 0; i < kParts; ++i) slide(part, push + i * part * push_rate, push_rate);
 }
 
 // Advances one part of a step. The device may stop in it, and start again.
-void SimulatedDevice::Inside::slide(double duration, Eigen::Vector3d push,
-                                    const Eigen::Vector3d& push_rate) noexcept {
+void HeldMass::slide(double duration, Vector3d push, const Vector3d& push_rate) noexcept {
   const double whole = duration;
   for (int event = 0; event < kEvents && duration > 0; ++event) {
-    Eigen::Vector3d direction = velocity;
+    Vector3d direction = velocity;
     if (velocity.norm() <= kAtRest) {
       velocity.setZero();
       direction = push - options.hand.stiffness * position;
       if (direction.norm() <= options.coulomb) return;  // held by dry friction
     }
     direction.normalize();
-    const Eigen::Vector3d sliding_push = push - options.coulomb * direction;
-    const Eigen::Vector3d x = position;
-    const Eigen::Vector3d v = velocity;
+    const Vector3d sliding_push = push - options.coulomb * direction;
+    const Vector3d x = position;
+    const Vector3d v = velocity;
     flow(duration == whole ? part_step : exponential(generator * duration), sliding_push,
          push_rate);
     if (velocity.dot(direction) > 0) return;
@@ -288,10 +288,10 @@ void SimulatedDevice::Inside::slide(double duration, Eigen::Vector3d push,
   }
 }
 
-void SimulatedDevice::Inside::flow(const Eigen::Matrix4d& transition, const Eigen::Vector3d& push,
-                                   const Eigen::Vector3d& push_rate) noexcept {
-  const Eigen::Vector3d x = transition(0, 0) * position + transition(0, 1) * velocity +
-                            transition(0, 2) * push + transition(0, 3) * push_rate;
+void HeldMass::flow(const Eigen::Matrix4d& transition, const Vector3d& push,
+                    const Vector3d& push_rate) noexcept {
+  const Vector3d x = transition(0, 0) * position + transition(0, 1) * velocity +
+                     transition(0, 2) * push + transition(0, 3) * push_rate;
   velocity = transition(1, 0) * position + transition(1, 1) * velocity + transition(1, 2) * push +
              transition(1, 3) * push_rate;
   position = x;
