@@ -74,13 +74,26 @@ std::uint64_t RemoteTarget::generation() const noexcept {
   return inside_->shared.generation();
 }
 
+// The trajectory that is played, without those presses that the hand does not hold.
+struct PlayedTrajectory {
+  Playback rows;
+  std::vector<Press> presses;
+  double time = 0;             // on the trajectory
+  double held_at = 0;          // on the trajectory, when a press was held back last
+  std::size_t next_press = 0;  // that is not over
+
+  [[nodiscard]] Vector3d position() noexcept { return rows.at(time); }
+  [[nodiscard]] bool ends() noexcept;
+  [[nodiscard]] bool skips(double pull) noexcept;
+};
+
 struct TeleoperatedHand::Inside {
   enum class Mode { returning, playing, following, released };
 
   Inside(const RemoteTarget& from, Trajectory rows, const TeleoperatedHandOptions& the_options)
-      : remote(from), options(checked(the_options)) {
+      : remote(from), options(checked(the_options)), played{Playback(), options.presses} {
     if (!rows.empty()) check(rows);
-    trajectory = Playback(std::move(rows));
+    played.rows = Playback(std::move(rows));
   }
 
   void begin(double now, const Vector3d& position) noexcept;
@@ -88,23 +101,19 @@ struct TeleoperatedHand::Inside {
   void choose_mode(double now) noexcept;
   void advance(double now, const Vector3d& position) noexcept;
   void play(double dt, const Vector3d& position) noexcept;
-  void skip_lost(const Vector3d& position) noexcept;
   void approach(const Vector3d& goal, double dt) noexcept;
   void go(const Vector3d& goal, double speed, double dt) noexcept;
 
   const RemoteTarget& remote;
-  Playback trajectory;
   TeleoperatedHandOptions options;
+  PlayedTrajectory played;
   TargetInterpolator interpolator;
   RemoteTarget::Command command;
   TargetSource::Target target;
   Mode mode = Mode::released;
-  double time = 0;             // of the last call
-  double trajectory_time = 0;  // on the trajectory
-  double received = 0;         // when the last command came
-  double released = 0;         // when the tool was released
-  double held_at = 0;          // on the trajectory, when a press was held back last
-  std::size_t next_press = 0;  // that is not over
+  double time = 0;      // of the last call
+  double received = 0;  // when the last command came
+  double released = 0;  // when the tool was released
   std::uint64_t generation = 0;
   bool started = false;
 };
@@ -130,9 +139,9 @@ void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexc
   time = now;
   received = now;
   target.position = position;
-  if (trajectory.empty()) return;
-  target.position = trajectory.front().position;
-  trajectory_time = trajectory.front().time;
+  if (played.rows.empty()) return;
+  target.position = played.rows.front().position;
+  played.time = played.rows.front().time;
   mode = Mode::playing;
 }
 
@@ -163,7 +172,7 @@ void TeleoperatedHand::Inside::choose_mode(double now) noexcept {
   } else if (mode == Mode::following) {
     mode = Mode::released;
     released = now;
-  } else if (mode == Mode::released && !trajectory.empty() &&
+  } else if (mode == Mode::released && !played.rows.empty() &&
              now - released >= options.return_after) {
     mode = Mode::returning;
   }
@@ -184,8 +193,8 @@ void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noe
          options.speed, dt);
       return;
     case Mode::returning:
-      approach(trajectory.at(trajectory_time), dt);
-      if (target.position == trajectory.at(trajectory_time)) mode = Mode::playing;
+      approach(played.position(), dt);
+      if (target.position == played.position()) mode = Mode::playing;
       return;
     case Mode::playing:
       play(dt, position);
@@ -194,26 +203,30 @@ void TeleoperatedHand::Inside::advance(double now, const Vector3d& position) noe
 }
 
 void TeleoperatedHand::Inside::play(double dt, const Vector3d& position) noexcept {
-  trajectory_time += dt;
-  target.position = trajectory.at(trajectory_time);
-  skip_lost(position);
-  if (trajectory_time < trajectory.end()) return;
-  trajectory.rewind();
-  next_press = 0;
-  trajectory_time = trajectory.front().time;
-  mode = Mode::returning;
+  played.time += dt;
+  target.position = played.position();
+  const bool skips = played.skips((target.position - position).norm());
+  if (played.ends() || skips) mode = Mode::returning;
 }
 
-void TeleoperatedHand::Inside::skip_lost(const Vector3d& position) noexcept {
-  const std::vector<Press>& presses = options.presses;
-  while (next_press < presses.size() && presses[next_press].end < trajectory_time) ++next_press;
-  if (next_press == presses.size()) return;
+// Is it over? Then it begins again.
+bool PlayedTrajectory::ends() noexcept {
+  if (time < rows.end()) return false;
+  rows.rewind();
+  next_press = 0;
+  time = rows.front().time;
+  return true;
+}
+
+// Is a press under way that the hand, `pull` m from its target, does not hold? Goes on behind it.
+bool PlayedTrajectory::skips(double pull) noexcept {
+  while (next_press < presses.size() && presses[next_press].end < time) ++next_press;
+  if (next_press == presses.size()) return false;
   const Press& press = presses[next_press];
-  const bool held = (target.position - position).norm() > press.pull;
-  if (held || trajectory_time < press.begin) held_at = trajectory_time;
-  if (trajectory_time - held_at < kSettled) return;
-  trajectory_time = press.resume;
-  mode = Mode::returning;
+  if (pull > press.pull || time < press.begin) held_at = time;
+  if (time - held_at < kSettled) return false;
+  time = press.resume;
+  return true;
 }
 
 // Goes to the goal so fast that it can come to rest there.
