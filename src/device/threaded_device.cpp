@@ -82,21 +82,23 @@ constexpr Connection kNone = 0;
 
 }  // namespace
 
-struct ThreadedDevice::Inside {
-  struct Reading {
-    DeviceState state;  // without status and time
-    double begin = 0;   // s, of its exchange
-    double end = 0;
-    Connection connection = kNone;
-  };
+struct Reading {
+  DeviceState state;  // without status and time
+  double begin = 0;   // s, of its exchange
+  double end = 0;
+  Connection connection = kNone;
+};
 
-  struct Command {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    double time = 0;                // s, when it was written
-    Connection connection = kNone;  // whose position it answers
-  };
+struct Command {
+  Vector3d force = Vector3d::Zero();
+  double time = 0;                // s, when it was written
+  Connection connection = kNone;  // whose position it answers
+};
 
-  Inside(Open the_open, WaitingClock& the_clock, ThreadedDeviceOptions the_options)
+// Exchanges forces for readings with a driver and reopens it. One thread calls service() or run().
+struct Hardware {
+  Hardware(ThreadedDevice::Open the_open, WaitingClock& the_clock,
+           ThreadedDeviceOptions the_options)
       : open(std::move(the_open)),
         clock(the_clock),
         options(checked(std::move(the_options))),
@@ -105,7 +107,6 @@ struct ThreadedDevice::Inside {
     options.state_timeout = std::max(options.state_timeout, kStaleExchanges / info.rate);
   }
 
-  void start();
   void run(const std::stop_token& stop) noexcept;
   void service() noexcept;
   void exchange() noexcept;
@@ -114,61 +115,59 @@ struct ThreadedDevice::Inside {
   void lose(const char* why) noexcept;
   [[nodiscard]] Vector3d applicable(double now) const noexcept;
 
-  Open open;
+  ThreadedDevice::Open open;
   WaitingClock& clock;
   ThreadedDeviceOptions options;
-
-  // Used by the thread that calls service().
   std::unique_ptr<DeviceDriver> driver;  // null: lost
-  DeviceInfo info;                       // does not change; both read it
+  DeviceInfo info;                       // does not change; the servo's thread reads it, too
   Reading newest;
   Connection connection = 1;
   double retry_at = 0;  // s
 
-  // Used by the servo's thread.
-  DeviceState state{.status = DeviceState::Status::silent};
-  Reading seen;
-  Connection located = kNone;  // the connection whose position the last step reported
-
-  // Shared by both.
+  // Shared with the servo's thread.
   Latest<Reading> readings;
   Latest<Command> commands;
-  std::atomic<DeviceState::Status> status{DeviceState::Status::silent};
   mutable std::mutex loss_mutex;  // the servo's thread never takes it
   std::string loss;               // why the hardware is lost; empty: it is there
+};
 
-  std::jthread thread;  // last: it uses all of the above
+struct ThreadedDevice::Inside {
+  Inside(Open open, WaitingClock& clock, ThreadedDeviceOptions options)
+      : hardware(std::move(open), clock, std::move(options)) {}
+
+  Hardware hardware;
+  DeviceState state{.status = DeviceState::Status::silent};  // the servo's, as the next two
+  Reading seen;
+  Connection located = kNone;  // the connection whose position the last step reported
+  std::atomic<DeviceState::Status> status{DeviceState::Status::silent};  // any thread's
+  std::jthread thread;  // last: it uses the hardware
 };
 
 ThreadedDevice::ThreadedDevice(Open open, WaitingClock& clock, ThreadedDeviceOptions options)
     : inside_(std::make_unique<Inside>(std::move(open), clock, std::move(options))) {
-  if (inside_->options.threaded) inside_->start();
+  Hardware& hardware = inside_->hardware;
+  if (!hardware.options.threaded) return;
+  try {
+    inside_->thread = std::jthread([&](const std::stop_token& stop) { hardware.run(stop); });
+  } catch (const std::system_error& error) {
+    throw Error(fmt::format("{}: cannot start a thread ({}); close other programs",
+                            hardware.info.name, error.what()));
+  }
 }
 
 // The thread ends first, then the driver: zero force.
 ThreadedDevice::~ThreadedDevice() = default;
 
 const DeviceInfo& ThreadedDevice::info() const noexcept {
-  return inside_->info;
+  return inside_->hardware.info;
 }
 
 void ThreadedDevice::service() noexcept {
-  inside_->service();
+  inside_->hardware.service();
 }
 
-void ThreadedDevice::Inside::start() {
-  try {
-    thread = std::jthread([this](const std::stop_token& stop) {
-      if (options.begin) options.begin();
-      run(stop);
-    });
-  } catch (const std::system_error& error) {
-    throw Error(fmt::format("{}: cannot start a thread ({}); close other programs", info.name,
-                            error.what()));
-  }
-}
-
-void ThreadedDevice::Inside::run(const std::stop_token& stop) noexcept {
+void Hardware::run(const std::stop_token& stop) noexcept {
+  if (options.begin) options.begin();
   const double period = 1 / info.rate;
   double due = clock.now();
   while (!stop.stop_requested()) {
@@ -178,7 +177,7 @@ void ThreadedDevice::Inside::run(const std::stop_token& stop) noexcept {
   }
 }
 
-void ThreadedDevice::Inside::service() noexcept {
+void Hardware::service() noexcept {
   if (driver) {
     exchange();
   } else if (clock.now() >= retry_at) {
@@ -186,7 +185,7 @@ void ThreadedDevice::Inside::service() noexcept {
   }
 }
 
-void ThreadedDevice::Inside::exchange() noexcept {
+void Hardware::exchange() noexcept {
   try {
     const double begin = clock.now();
     const DeviceState told = driver->exchange(applicable(begin));
@@ -203,7 +202,7 @@ void ThreadedDevice::Inside::exchange() noexcept {
 // A position may be sampled at any moment of its exchange. The longer of the times between two
 // beginnings and two ends is at least half that between the samples: however late either came, a
 // hand slower than half of kFastestMove is not refused.
-void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
+void Hardware::check_move_to(const Reading& reading) const {
   if (newest.connection != reading.connection) return;
   const double time =
       std::max({reading.begin - newest.begin, reading.end - newest.end, 1 / info.rate});
@@ -214,7 +213,7 @@ void ThreadedDevice::Inside::check_move_to(const Reading& reading) const {
       info.name, 1e3 * move, 1e3 * time, kDistrust));
 }
 
-Vector3d ThreadedDevice::Inside::applicable(double now) const noexcept {
+Vector3d Hardware::applicable(double now) const noexcept {
   const Command command = commands.get();
   if (command.connection != connection || now - command.time > options.force_timeout) {
     return Vector3d::Zero();
@@ -224,7 +223,7 @@ Vector3d ThreadedDevice::Inside::applicable(double now) const noexcept {
   return length > most ? Vector3d(most / length * command.force) : command.force;
 }
 
-void ThreadedDevice::Inside::lose(const char* why) noexcept {
+void Hardware::lose(const char* why) noexcept {
   newest.connection = kNone;
   readings.set(newest);
   driver.reset();  // zero force, before anything that takes a lock or memory
@@ -235,7 +234,7 @@ void ThreadedDevice::Inside::lose(const char* why) noexcept {
 }
 
 // Keeps the reason of the loss: that the hardware is not back yet is no news.
-void ThreadedDevice::Inside::reopen() noexcept {
+void Hardware::reopen() noexcept {
   try {
     std::unique_ptr<DeviceDriver> found = open();
     const std::string objection = objection_to(info_of(*found), info);
@@ -250,9 +249,10 @@ void ThreadedDevice::Inside::reopen() noexcept {
 DeviceState ThreadedDevice::read() noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceState::Status::failed) return in.state;
-  const double now = in.clock.now();
-  if (const std::optional<Inside::Reading> reading = in.readings.look()) in.seen = *reading;
-  const bool known = in.seen.connection != kNone && now - in.seen.end <= in.options.state_timeout;
+  const double now = in.hardware.clock.now();
+  if (const std::optional<Reading> reading = in.hardware.readings.look()) in.seen = *reading;
+  const bool known =
+      in.seen.connection != kNone && now - in.seen.end <= in.hardware.options.state_timeout;
   if (known) {
     in.state = in.seen.state;
     const bool located = in.located == in.seen.connection;
@@ -274,10 +274,10 @@ void ThreadedDevice::write(const Vector3d& force) noexcept {
   if (in.state.status == DeviceState::Status::failed) return;
   if (force.allFinite()) {
     const bool felt = in.state.status == DeviceState::Status::ok;
-    in.commands.set({force, in.clock.now(), felt ? in.located : kNone});
+    in.hardware.commands.set({force, in.hardware.clock.now(), felt ? in.located : kNone});
     return;
   }
-  in.commands.set({});
+  in.hardware.commands.set({});
   in.state.status = DeviceState::Status::failed;
   in.status.store(in.state.status);
 }
@@ -289,12 +289,12 @@ std::string ThreadedDevice::reason() const {
     return "a written force was not finite; find the error in the code that computed it";
   }
   if (status == DeviceState::Status::ok) return {};
-  const std::lock_guard lock(in.loss_mutex);
-  if (!in.loss.empty()) return in.loss;
+  const std::lock_guard lock(in.hardware.loss_mutex);
+  if (!in.hardware.loss.empty()) return in.hardware.loss;
   return fmt::format(
       "{}: does not answer; if this persists, check its cable and power, and what else keeps the "
       "computer busy",
-      in.info.name);
+      in.hardware.info.name);
 }
 
 }  // namespace palpate
