@@ -16,6 +16,9 @@ constexpr std::size_t kMostShown = std::size_t{1} << 19;
 // Boxes that a servo looks through, 1.4 us a step (measured). A tool gets no others: so many are
 // the blocks of about a hundred million points of a surface.
 constexpr std::size_t kMostMissing = 1024;
+// Share of the work that is done with the blocks where all is prepared together after them: of the
+// Stanford dragon a run without them takes 2.3 s of processor time, with them 4.6.
+constexpr double kOfBlocks = 0.5;
 
 /// Ranks a block where there is no room for all: first what tools can reach, then what is near.
 /// What is shown already comes before others of its kind, or a hand's way would change what is
@@ -26,6 +29,35 @@ int rank(const CloudBlock& block, double near) {
 }
 
 }  // namespace
+
+double BlocksAround::look(BlockSupply& supply, double now) {
+  std::vector<Ball> balls(tools.begin(), tools.end());
+  if (balls.empty()) balls.push_back({supply.start(), 0});
+  unlisted = supply.list(balls, near, blocks);
+  const bool has_room = supply.has_room(blocks);
+  std::size_t ready = 0;
+  std::size_t wanted = 0;  // ready, or to be prepared while tools stay where they are
+  for (CloudBlock& block : blocks) {
+    block.distance = distance(block.box, balls);
+    if (block.state == State::failed && block.retry <= now) block.state = State::missing;
+    const bool is_ready = block.state > State::failed;
+    ready += is_ready ? 1 : 0;
+    wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
+  }
+  all_ready = wanted > 0 && ready == wanted;
+  if (wanted == 0) return 0;
+  return (supply.comes_together() ? kOfBlocks : 1) * static_cast<double>(ready) /
+         static_cast<double>(wanted);
+}
+
+CloudBlock* BlocksAround::nearest_missing(double within) {
+  CloudBlock* found = nullptr;
+  for (CloudBlock& block : blocks) {
+    if (block.state != State::missing || block.distance > within) continue;
+    if (found == nullptr || block.distance < found->distance) found = &block;
+  }
+  return found;
+}
 
 std::vector<CloudBlock*> choose_shown(std::span<CloudBlock> blocks, double near) {
   std::vector<CloudBlock*> order;

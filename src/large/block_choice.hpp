@@ -8,6 +8,22 @@
 
 namespace palpate {
 
+/// The blocks around what tools can reach, and where there are none.
+struct BlocksAround {
+  double near;  ///< how far around what tools can reach nothing is to be missing, m
+  std::vector<CloudBlock> blocks = {};
+  std::vector<Box> unlisted = {};  ///< where no block is
+  std::vector<Ball> tools = {};
+  bool all_ready = false;  ///< of the blocks that are wanted
+
+  /// Lists the blocks where tools are (at the cloud's start before there are any) and measures how
+  /// far each is; `now`: s. Returns the share of the work that is done, 0 to 1.
+  double look(BlockSupply& supply, double now);
+
+  /// The nearest block that is missing, if one is nearer than `within`, m.
+  [[nodiscard]] CloudBlock* nearest_missing(double within);
+};
+
 /// The blocks to show: all that tools can reach, and more while they are few, those within `near`
 /// (m) of what tools can reach first.
 [[nodiscard]] std::vector<CloudBlock*> choose_shown(std::span<CloudBlock> blocks, double near);

@@ -33,11 +33,15 @@ constexpr double kLead = 0.002;  // s from publishing to being felt: a servo's s
 constexpr double kAppear = 0.1;  // s in which a block's presence rises; judgement
 // s until what could not be read is tried again: a disk or a network may be back; judgement.
 constexpr double kRetry = 10;
-// Share of the work that is done with the blocks where all is prepared together after them: of the
-// Stanford dragon a run without them takes 2.3 s of processor time, with them 4.6.
-constexpr double kOfBlocks = 0.5;
 
 }  // namespace
+
+// What was shown last.
+struct ShownLast {
+  const Source* source = nullptr;  // to which
+  std::vector<Box> missing;        // where nothing is known
+  double start = 0;                // s
+};
 
 struct OnDemand::Inside {
   using State = CloudBlock::State;
@@ -46,11 +50,9 @@ struct OnDemand::Inside {
          const std::optional<SurfaceEye>& seen_from)
       : supply(std::move(from)),
         kernel(options.kernel),
-        near(kAhead * supply->facts().radius),
-        eye(seen_from) {}
+        eye(seen_from),
+        around{kAhead * supply->facts().radius} {}
 
-  void look(const Source& source, double now);
-  [[nodiscard]] CloudBlock* nearest_missing(double within);
   [[nodiscard]] bool has_news(const Source& source);
   template <class Work>
   void beside_servos(const Work& work);
@@ -65,69 +67,31 @@ struct OnDemand::Inside {
 
   std::unique_ptr<BlockSupply> supply;
   Kernel kernel;
-  double near;  // how far around what tools can reach nothing is to be missing, m
   std::optional<SurfaceEye> eye;
-  std::vector<CloudBlock> blocks;
-  std::vector<Box> unlisted;       // where no block is
-  std::vector<Box> told_missing;   // where it was last shown that nothing is known
-  double last_start = 0;           // of what was shown last, s
+  BlocksAround around;
+  ShownLast last;
   std::optional<ChangeOver> over;  // from the blocks to all of it prepared together
   std::set<std::string> errors;    // that were thrown
-  std::vector<Reach> tools;
-  const Source* source = nullptr;  // that was shown something last
   detail::Background background;
-  bool all_ready = false;  // of the blocks that are wanted
   std::atomic<double> share{0};
   std::atomic<bool> done{false};  // or cancelled
   std::mutex mutex;               // of advance()
 };
 
-/// Reads where tools are (the cloud's start before there are any), lists the blocks there and
-/// measures how far each is.
-void OnDemand::Inside::look(const Source& at, double now) {
-  at.inside_->reaches.read(tools);
-  std::vector<Ball> balls(tools.begin(), tools.end());
-  if (balls.empty()) balls.push_back({supply->start(), 0});
-  unlisted = supply->list(balls, near, blocks);
-  const bool has_room = supply->has_room(blocks);
-  std::size_t ready = 0;
-  std::size_t wanted = 0;  // ready, or to be prepared while tools stay where they are
-  for (CloudBlock& block : blocks) {
-    block.distance = distance(block.box, balls);
-    if (block.state == State::failed && block.retry <= now) block.state = State::missing;
-    const bool is_ready = block.state > State::failed;
-    ready += is_ready ? 1 : 0;
-    wanted += is_ready || has_room || block.distance <= near ? 1 : 0;
-  }
-  all_ready = wanted > 0 && ready == wanted;
-  share = wanted == 0 ? 0
-                      : (supply->comes_together() ? kOfBlocks : 1) * static_cast<double>(ready) /
-                            static_cast<double>(wanted);
-}
-
-/// The nearest block that is missing, if one is nearer than `within`, m.
-CloudBlock* OnDemand::Inside::nearest_missing(double within) {
-  CloudBlock* found = nullptr;
-  for (CloudBlock& block : blocks) {
-    if (block.state != State::missing || block.distance > within) continue;
-    if (found == nullptr || block.distance < found->distance) found = &block;
-  }
-  return found;
-}
-
 /// Is there more to show than the source shows? Nothing new is shown while all is prepared
 /// together, so before that blocks that are not near count, too.
 bool OnDemand::Inside::has_news(const Source& at) {
+  auto& [near, blocks, unlisted, tools, all_ready] = around;
   const bool is_last = all_ready && supply->comes_together();
   return share > 0 &&
-         (source != &at ||
+         (last.source != &at ||
           shows_more(blocks, is_last ? std::numeric_limits<double>::infinity() : near) ||
-          has_filled(told_missing, blocks, unlisted, tools, near));
+          has_filled(last.missing, blocks, unlisted, tools, near));
 }
 
 template <class Work>
 void OnDemand::Inside::beside_servos(const Work& work) {
-  if (tools.empty()) {
+  if (around.tools.empty()) {
     work();
   } else {
     background.run(work);
@@ -147,12 +111,13 @@ void OnDemand::Inside::prepare(CloudBlock& block, double now) {
 }
 
 void OnDemand::Inside::show_near(Source& to, double now) {
-  const bool first = source != &to && tools.empty();  // nobody can be pushed
+  auto& blocks = around.blocks;
+  const bool first = last.source != &to && around.tools.empty();  // nobody can be pushed
   const double start = first ? 0 : now + kLead;
   // A block whose presence still rises goes on from where that is at the new start.
-  const double past = std::clamp((start - last_start) / kAppear, 0., 1.);
-  last_start = start;
-  const std::vector<CloudBlock*> chosen = choose_shown(blocks, near);
+  const double past = std::clamp((start - last.start) / kAppear, 0., 1.);
+  last.start = start;
+  const std::vector<CloudBlock*> chosen = choose_shown(blocks, around.near);
   std::vector<const Piece*> shown;
   for (CloudBlock* const block : chosen) {
     auto& [positions, columns, report] = block->piece;
@@ -167,25 +132,25 @@ void OnDemand::Inside::show_near(Source& to, double now) {
     if (block.state == State::shown) block.state = State::prepared;
   }
   for (CloudBlock* const block : chosen) block->state = State::shown;
-  told_missing = missing_boxes(blocks, chosen, unlisted);
+  last.missing = missing_boxes(blocks, chosen, around.unlisted);
   Prepared joined;
   beside_servos([&] { joined = join(shown, supply->facts(), supply->origin(), kernel); });
   joined.points.eye = eye;
   Snapshot snapshot = still(std::move(joined.points));
   snapshot.start = start;
   snapshot.end = start + (first ? 0 : kAppear);
-  snapshot.missing = told_missing;
+  snapshot.missing = last.missing;
   publish(to, joined.report, std::move(snapshot));
 }
 
 Prepared OnDemand::Inside::join_all() {
   std::vector<Piece> all;
-  for (CloudBlock& block : blocks) {
+  for (CloudBlock& block : around.blocks) {
     block.piece.columns.presences.clear();
     block.piece.columns.end_presences.clear();
     all.push_back(std::move(block.piece));
   }
-  blocks.clear();
+  around.blocks.clear();
   Prepared joined;
   beside_servos([&] { joined = join(std::move(all), supply->facts(), supply->origin(), kernel); });
   joined.points.eye = eye;
@@ -237,14 +202,14 @@ void OnDemand::Inside::finish() {
 
 void OnDemand::Inside::publish(Source& to, Prepared::Report report, Snapshot snapshot) {
   report.points_in = supply->points();
-  const std::shared_ptr<const PointCloud> overview = supply->overview(blocks);
+  const std::shared_ptr<const PointCloud> overview = supply->overview(around.blocks);
   {
     const std::lock_guard lock(to.inside_->mutex);
     to.inside_->report = report;
     to.inside_->state.overview = overview;
   }
   snapshot.publication = ++to.inside_->publications;
-  source = &to;
+  last.source = &to;
   to.publish(std::make_shared<const Snapshot>(std::move(snapshot)));
 }
 
@@ -265,20 +230,21 @@ bool OnDemand::advance(Source& source, double now, bool ahead, const std::stop_t
   std::unique_lock lock(in.mutex);
   if (in.done) return false;
   if (in.over) return in.change_over(source, now);
-  in.look(source, now);
-  CloudBlock* wanted = in.nearest_missing(in.near);
+  source.inside_->reaches.read(in.around.tools);
+  in.share = in.around.look(*in.supply, now);
+  CloudBlock* wanted = in.around.nearest_missing(in.around.near);
   if (wanted == nullptr && in.has_news(source)) {
     in.show_near(source, now);
     return true;
   }
-  if (wanted == nullptr && ahead && in.supply->has_room(in.blocks)) {
-    wanted = in.nearest_missing(std::numeric_limits<double>::infinity());
+  if (wanted == nullptr && ahead && in.supply->has_room(in.around.blocks)) {
+    wanted = in.around.nearest_missing(std::numeric_limits<double>::infinity());
   }
   if (wanted != nullptr) {
     in.prepare(*wanted, now);
     return true;
   }
-  if (!ahead || !in.supply->is_whole() || !in.all_ready) return false;
+  if (!ahead || !in.supply->is_whole() || !in.around.all_ready) return false;
   in.prepare_rest(source, lock, stop);
   return true;
 }
