@@ -41,7 +41,7 @@ struct SceneField::State {
       : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
       Source::Inside& source = *scene.source(i).inside_;
-      views.emplace_back(source.handoff, source.seams->least_radius(i), name);
+      views.emplace_back(source.handoff, source.place.seams->least_radius(i), name);
       boards.push_back(&source.reaches);
       soft.push_back(scene.source(i).options().soft);
     }

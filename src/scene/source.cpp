@@ -93,10 +93,6 @@ void Source::set(const PointCloud& cloud) {
   publish(std::move(snapshot));
 }
 
-void Source::Inside::compare(const Source& source) {
-  if (seams) seams->compare(place, source);
-}
-
 void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
   if (snapshot) check(inside_->name, *snapshot);
   {
@@ -106,7 +102,7 @@ void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
   }
   forget_frames(inside_->streaming.get());
   inside_->handoff.publish(std::move(snapshot));
-  inside_->compare(*this);
+  inside_->place.compare(*this);
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {

@@ -86,10 +86,18 @@ auto named(const std::string& name, const Act& act) {
   }
 }
 
+/// Where a source stands among those of its scene, whose seams it has. By itself it has none.
+struct ScenePlace {
+  std::shared_ptr<Seams> seams;
+  std::size_t number = 0;
+
+  void compare(const Source& source) const {
+    if (seams) seams->compare(number, source);
+  }
+};
+
 /// The parts of a source. Its scene and the fields of that scene use them.
 struct Source::Inside {
-  void compare(const Source& source);
-
   /// For those who draw.
   template <class T>
   [[nodiscard]] T copy(T Inside::*member) const {
@@ -108,8 +116,7 @@ struct Source::Inside {
   std::shared_ptr<Streaming> streaming;
   std::uint64_t publications = 0;  // the preparing thread's
   ReachTable reaches;
-  std::shared_ptr<Seams> seams;  // of the scene
-  std::size_t place = 0;         // in it
+  ScenePlace place;
   Handoff<Snapshot> handoff;
 };
 
