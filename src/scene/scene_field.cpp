@@ -37,63 +37,60 @@ static_assert(Scene::kMaxSources <= simd::kMaxSources);
 static_assert(Scene::kMaxSources * Snapshot::kMaxLayers <= kMostLayers);
 
 struct SceneField::State {
+  /// A source as one field follows it.
+  struct FollowedSource {
+    FollowedSource(Source::Inside& source, const SourceOptions::SoftMaterial& its_soft,
+                   const std::string& name)
+        : view(source.handoff, source.place.seams->least_radius(source.place.number), name),
+          board(&source.reaches),
+          soft(its_soft) {}
+
+    SourceView view;
+    ReachTable* board;
+    SourceOptions::SoftMaterial soft;
+    const Snapshot* shown = nullptr;  // of the view
+  };
+
   State(Scene& scene, const FieldOptions& options, const std::string& name, double scale)
       : surface(options), fields(scene.fields_), reach(scale) {
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      Source::Inside& source = *scene.source(i).inside_;
-      views.emplace_back(source.handoff, source.place.seams->least_radius(i), name);
-      boards.push_back(&source.reaches);
-      soft.push_back(scene.source(i).options().soft);
+      const Source& source = scene.source(i);
+      sources.emplace_back(*source.inside_, source.options().soft, name);
     }
     ++*fields;
   }
   ~State() {
-    for (std::size_t i = 0; i < views.size(); ++i) boards[i]->clear(views[i].reader());
+    for (const FollowedSource& source : sources) source.board->clear(source.view.reader());
     --*fields;
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  [[nodiscard]] std::span<const ActiveLayer> active() const noexcept {
-    return {layers.data(), layer_count};
-  }
-  [[nodiscard]] int sources() const noexcept { return static_cast<int>(views.size()); }
-
   /// One source, confident of it, no materials, no motion: every surface is the same.
   [[nodiscard]] bool plain() const noexcept {
-    return plain_points && views.size() == 1 && views.front().presence() == 1;
+    return layers.plain_points && sources.size() == 1 && sources.front().view.presence() == 1;
   }
 
   [[nodiscard]] bool same_snapshots() noexcept;
   void list_layers() noexcept;
-  void list_layer(std::size_t source, std::size_t k) noexcept;
   void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
   [[nodiscard]] double radius() const noexcept {
-    return patches.near().points() > 0 ? patches.near().columns().mean_radius : typical_radius;
+    return patches.near().points() > 0 ? patches.near().columns().mean_radius
+                                       : layers.typical_radius();
   }
   /// How far a patch away from the path reaches beyond what it is gathered for, m.
   [[nodiscard]] double margin() const noexcept {
-    return (moving ? kWideMargin : kMargin) * radius();
+    return (layers.moving ? kWideMargin : kMargin) * radius();
   }
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
   std::shared_ptr<std::atomic<int>> fields;  // of the scene
-  std::deque<SourceView> views;
-  std::vector<ReachTable*> boards;  // of the views' sources
+  std::deque<FollowedSource> sources;
   ToolReach reach;
-  std::vector<SourceOptions::SoftMaterial> soft;
-  std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
-  std::size_t layer_count = 0;
-  std::array<const Snapshot*, Scene::kMaxSources> shown{};  // of the views
-  double typical_radius = 0;                                // of the layers
-  double cloud_duration = 0;  // of snapshots whose points do not move, or between them, s
-  double step = 0;            // how far surfaces may have stepped since the last tick, m
-  double frame_interval = 0;  // that reaches last, the longest of any source, s
+  ActiveLayers layers;
+  double step = 0;  // how far surfaces may have stepped since the last tick, m
   double now = 0;
-  bool other_kernel = false;
-  bool moving = false;       // do points or their weights change now?
-  bool plain_points = true;  // no materials, no motion, no fading
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
   std::uint32_t stride = 1;  // of the near patch
@@ -103,54 +100,29 @@ struct SceneField::State {
 /// Are the views' snapshots those of the last call? A new one never has the old one's address.
 bool SceneField::State::same_snapshots() noexcept {
   bool same = true;
-  for (std::size_t s = 0; s < views.size(); ++s) {
-    const Snapshot* const newest = views[s].current();
-    if (std::exchange(shown[s], newest) == newest) continue;
+  for (FollowedSource& source : sources) {
+    const Snapshot* const newest = source.view.current();
+    if (std::exchange(source.shown, newest) == newest) continue;
     same = false;
-    if (newest) step = std::max(step, kFastestCloud * time_stepped(*newest, active()));
+    if (newest) step = std::max(step, kFastestCloud * time_stepped(*newest, layers.active()));
   }
   return same;
 }
 
 void SceneField::State::list_layers() noexcept {
-  layer_count = 0;
-  frame_interval = 0;
-  cloud_duration = 0;
-  other_kernel = false;
-  moving = false;
-  plain_points = true;
-  typical_radius = std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < views.size(); ++s) {
-    const Snapshot* snapshot = views[s].current();
-    if (!snapshot) continue;
-    for (std::size_t k = 0; k < snapshot->layers.size(); ++k) list_layer(s, k);
+  layers.clear();
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    layers.add(sources[s].view, static_cast<int>(s), surface.options);
   }
-  if (layer_count == 0) typical_radius = 0;
-}
-
-void SceneField::State::list_layer(std::size_t source, std::size_t k) noexcept {
-  ActiveLayer layer = views[source].layer(k, static_cast<int>(source));
-  const bool still = layer.points->end_positions.empty();
-  const Snapshot& newest = *shown[source];
-  frame_interval = std::max(frame_interval, still ? time_to_next(newest) : time_shown(newest));
-  if (layer.points->size() == 0) return;  // a sensor that sees nothing
-  if (surface.options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
-  if (still) cloud_duration = std::max(cloud_duration, time_shown(newest));
-  layer.last_weight = newest.layers[k].weight_end;
-  other_kernel = other_kernel || layer.points->kernel != surface.options.kernel;
-  typical_radius = std::min(typical_radius, std::max(layer.points->radius, layer.least_radius));
-  moving = moving || layer.rate > 0;
-  plain_points &= !moving && layer.points->materials.empty() && !fades(*layer.points);
-  layers[layer_count++] = layer;
 }
 
 /// Notes that hold whatever is sampled.
 FieldNote SceneField::State::standing_notes() const noexcept {
-  FieldNote found = layer_count > 0 ? FieldNote::none : FieldNote::no_surface;
+  FieldNote found = layers.count > 0 ? FieldNote::none : FieldNote::no_surface;
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
   if (near.points() > 0 && near.sides().is_behind()) found = found | FieldNote::behind;
-  if (other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
+  if (layers.other_kernel && !surface.options.raw_weights) found = found | FieldNote::other_kernel;
   const double tool = (1 + 1e-6) * std::min(kToolShare, surface.largest_tool);
   if (near.points() > 0 && surface.options.tool_radius > tool * near.columns().smallest_radius) {
     found = found | FieldNote::tool_too_large;
@@ -166,7 +138,7 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
-  const bool wide = std::ranges::any_of(active(), moves);
+  const bool wide = std::ranges::any_of(layers.active(), moves);
   const double extra = 0.5 * stretch + (wide ? kWideMargin : kMargin) * r;
   if (!patches.near_covers(balls, extra)) patches.gather_near(0.5 * (proxy + end), extra);
 }
@@ -182,37 +154,40 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
   if (std::isfinite(now)) state.now = now;
   bool changed = false;
   state.step = 0;
-  for (SourceView& view : state.views) changed = view.advance(state.now) || changed;
+  for (State::FollowedSource& source : state.sources)
+    changed = source.view.advance(state.now) || changed;
   if (changed) {
     const bool same = state.same_snapshots();
     state.list_layers();
-    state.patches.set_layers(state.active(), state.sources(), same);
+    state.patches.set_layers(state.layers.active(), static_cast<int>(state.sources.size()), same);
     ++state.revision;
   }
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
-    if (options_.nearest_radius) state.patches.take_nearest_radius(proxy, state.typical_radius);
+    if (options_.nearest_radius)
+      state.patches.take_nearest_radius(proxy, state.layers.typical_radius());
     state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();
-    const Reach ball =
-        state.reach.update(state.now, hip, proxy, state.frame_interval, kFelt * state.radius());
-    for (std::size_t i = 0; i < state.views.size(); ++i) {
-      state.boards[i]->write(state.views[i].reader(), ball);
+    const double felt = kFelt * state.radius();
+    const Reach ball = state.reach.update(state.now, hip, proxy, state.layers.frame_interval, felt);
+    for (const State::FollowedSource& source : state.sources) {
+      source.board->write(source.view.reader(), ball);
     }
     const std::uint32_t stride = state.patches.near().selection().stride();
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
-  for (const SourceView& view : state.views) {
-    if (view.misses({proxy, state.radius()})) state.notes = state.notes | FieldNote::not_loaded;
+  for (const State::FollowedSource& source : state.sources) {
+    if (source.view.misses({proxy, state.radius()}))
+      state.notes = state.notes | FieldNote::not_loaded;
   }
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
-  if (state.layer_count == 0 || !x.allFinite()) return {.value = 1};  // free, how far unknown
+  if (state.layers.count == 0 || !x.allFinite()) return {.value = 1};  // free, how far unknown
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid where unknown
@@ -220,7 +195,7 @@ Sample SceneField::sample(const Vector3d& x) const noexcept {
 
 bool SceneField::is_free(const Ball& ball) const noexcept {
   const State& state = *state_;
-  if (state.layer_count == 0) return true;
+  if (state.layers.count == 0) return true;
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
@@ -249,16 +224,17 @@ void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const n
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
-  if (state.layer_count == 0 || !x.allFinite()) return {};
+  if (state.layers.count == 0 || !x.allFinite()) return {};
   if (state.plain()) return {.source = 0};
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (!patch) return {};
   std::array<double, Scene::kMaxSources> sure{};
-  std::ranges::transform(state.views, sure.begin(), &SourceView::presence);
-  const auto presences = std::span(sure).first(state.views.size());
+  const auto presence = [](const State::FollowedSource& source) { return source.view.presence(); };
+  std::ranges::transform(state.sources, sure.begin(), presence);
+  const auto presences = std::span(sure).first(state.sources.size());
   const PatchSurface mean = mean_surface(state.surface, *patch, x, presences);
   if (mean.source < 0) return {};
-  return felt_surface(mean, state.soft[static_cast<std::size_t>(mean.source)]);
+  return felt_surface(mean, state.sources[static_cast<std::size_t>(mean.source)].soft);
 }
 
 Field::Traits SceneField::traits() const noexcept {
@@ -267,18 +243,20 @@ Field::Traits SceneField::traits() const noexcept {
   // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
       std::max(state.patches.near().points() > 0 ? state.patches.near().columns().smallest_radius
-                                                 : state.typical_radius,
+                                                 : state.layers.typical_radius(),
                kFinest * state.radius());
   return {.resolution = metaball ? 0.002 * smallest : smallest / 16,
           .revision = state.revision,
-          .reanchor_reach = kFastestCloud * state.cloud_duration,
+          .reanchor_reach = kFastestCloud * state.layers.cloud_duration,
           .step = state.step};
 }
 
 SceneField::Found SceneField::found() const noexcept {
   Found found;
-  std::ranges::transform(state_->views, found.publications.begin(), &SourceView::taken);
-  std::ranges::transform(state_->views, found.least_radii.begin(), &SourceView::least_radius);
+  for (std::size_t i = 0; i < state_->sources.size(); ++i) {
+    found.publications[i] = state_->sources[i].view.taken();
+    found.least_radii[i] = state_->sources[i].view.least_radius();
+  }
   return found;
 }
 FieldNote SceneField::notes() const noexcept {

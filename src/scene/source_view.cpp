@@ -171,4 +171,32 @@ double presence(const Snapshot& snapshot, double time) noexcept {
   return snapshot.fade > 0 ? own * std::clamp(1 - silence / snapshot.fade, 0.0, 1.0) : 0;
 }
 
+void ActiveLayers::clear() noexcept {
+  count = 0;
+  least_typical = std::numeric_limits<double>::infinity();
+  cloud_duration = 0;
+  frame_interval = 0;
+  other_kernel = false;
+  moving = false;
+  plain_points = true;
+}
+
+void ActiveLayers::add(const SourceView& view, int source, const FieldOptions& options) noexcept {
+  const Snapshot* newest = view.current();
+  for (std::size_t k = 0; newest && k < newest->layers.size(); ++k) {
+    ActiveLayer layer = view.layer(k, source);
+    const bool still = layer.points->end_positions.empty();
+    frame_interval = std::max(frame_interval, still ? time_to_next(*newest) : time_shown(*newest));
+    if (layer.points->size() == 0) continue;  // a sensor that sees nothing
+    if (options.kind == FieldOptions::Kind::metaball) layer.least_radius = 0;
+    if (still) cloud_duration = std::max(cloud_duration, time_shown(*newest));
+    layer.last_weight = newest->layers[k].weight_end;
+    other_kernel = other_kernel || layer.points->kernel != options.kernel;
+    least_typical = std::min(least_typical, std::max(layer.points->radius, layer.least_radius));
+    moving = moving || layer.rate > 0;
+    plain_points &= !moving && layer.points->materials.empty() && !fades(*layer.points);
+    layers[count++] = layer;
+  }
+}
+
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "field/evaluate.hpp"
 #include "palpate/field/field.hpp"
+#include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
 #include "scene/handoff.hpp"
 
@@ -126,6 +128,30 @@ class SourceView {
 /// shows points at once that were not among the layers `before`. 0: it goes on from what was there.
 [[nodiscard]] double time_stepped(const Snapshot& snapshot,
                                   std::span<const ActiveLayer> before) noexcept;
+
+/// The layers that a field's sources show now, and what holds of them together.
+struct ActiveLayers {
+  std::array<ActiveLayer, Scene::kMaxSources * Snapshot::kMaxLayers> layers;
+  std::size_t count = 0;
+  double least_typical = 0;   ///< least of the layers' typical radii, m; of no layer: infinite
+  double cloud_duration = 0;  ///< of snapshots whose points do not move, or between them, s
+  double frame_interval = 0;  ///< the longest of any source, s
+  bool other_kernel = false;
+  bool moving = false;       ///< do points or their weights change now?
+  bool plain_points = true;  ///< no materials, no motion, no fading
+
+  [[nodiscard]] std::span<const ActiveLayer> active() const noexcept {
+    return {layers.data(), count};
+  }
+  /// m; 0 without a layer.
+  [[nodiscard]] double typical_radius() const noexcept { return count > 0 ? least_typical : 0; }
+
+  /// Real-time, as is add().
+  void clear() noexcept;
+
+  /// Adds what a source shows, of which `source` is the number.
+  void add(const SourceView& view, int source, const FieldOptions& options) noexcept;
+};
 
 /// The stiffness and friction factors at a position of a source's surface.
 [[nodiscard]] inline Surface felt_surface(const PatchSurface& mean,
