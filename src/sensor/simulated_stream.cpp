@@ -44,17 +44,33 @@ double frame_time_of(const CameraInfo& camera, const std::string& name) {
 
 }  // namespace
 
+// A camera that is asked for frames, and its last answer.
+struct AskedCamera {
+  DepthCamera& camera;
+  DepthFrame frame = {};
+  std::string reason = {};  // why the last answer was no frame
+  bool silent = false;      // was it none?
+  int failures = 0;         // in a row
+
+  DepthCamera::Status look(double patience) {
+    const DepthCamera::Status status = ask(camera, frame, silent ? 0 : patience, reason);
+    silent = status == DepthCamera::Status::waiting;
+    failures = status == DepthCamera::Status::failed ? failures + 1 : 0;
+    return status;
+  }
+};
+
 struct SimulatedStream::Player {
   Player(DepthCamera& from, const std::string& name, Stream::Sink to,
          const SimulatedStreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         frame_time(frame_time_of(from.info(), name)),
-        camera(from),
+        asked{from},
         sink(std::move(to)),
         ended(std::move(at_end)),
         log(name, from.info().name, options.stall, 0),
         check(options.allow_repeats.value_or(from.info().repeats)) {
-    camera.begin(0);
+    from.begin(0);
   }
 
   void advance(double time);
@@ -67,17 +83,13 @@ struct SimulatedStream::Player {
 
   const SimulatedStreamOptions options;
   const double frame_time;  // s
-  DepthCamera& camera;
+  AskedCamera asked;
   const Stream::Sink sink;
   const std::function<void()> ended;  // may be empty
   StreamStatistics log;
   FrameCheck check;
-  DepthFrame frame;
-  std::string reason;      // why the last answer was no frame
   bool waits = false;      // is there a frame that waits for its time?
-  bool silent = false;     // was the last answer none?
   bool over = false;       // none will come any more
-  int failures = 0;        // in a row
   double next = 0;         // when the frame is due, or the camera is asked again, s
   double newest = -kEver;  // when the newest frame so far was due, s
   double now = 0;          // s
@@ -95,10 +107,8 @@ void SimulatedStream::Player::advance(double time) {
 }
 
 void SimulatedStream::Player::look() {
-  if (failures > 0) log.retried();
-  const DepthCamera::Status status = ask(camera, frame, silent ? 0 : options.patience, reason);
-  silent = status == DepthCamera::Status::waiting;
-  failures = status == DepthCamera::Status::failed ? failures + 1 : 0;
+  if (asked.failures > 0) log.retried();
+  const DepthCamera::Status status = asked.look(options.patience);
   waits = status == DepthCamera::Status::frame;
   if (waits) return schedule();
   if (status == DepthCamera::Status::ended) return finish();
@@ -107,7 +117,7 @@ void SimulatedStream::Player::look() {
 
 // A stamp that is none, or not after the one before, takes a frame's time: time goes on.
 void SimulatedStream::Player::schedule() {
-  const double due = frame.stamp + options.latency - options.lead;
+  const double due = asked.frame.stamp + options.latency - options.lead;
   if (due > newest && due < kEver) {
     newest = due;
     next = std::max(next, due);
@@ -118,28 +128,28 @@ void SimulatedStream::Player::schedule() {
 
 void SimulatedStream::Player::do_without(DepthCamera::Status status) {
   if (left_out(status))
-    log.frame_received(next, objection_to(status, reason), check.size_changes());
-  if (status == DepthCamera::Status::waiting) log.waiting(next, reason);
-  if (status == DepthCamera::Status::failed) log.failed(next, reason, failures > 1);
+    log.frame_received(next, objection_to(status, asked.reason), check.size_changes());
+  if (status == DepthCamera::Status::waiting) log.waiting(next, asked.reason);
+  if (status == DepthCamera::Status::failed) log.failed(next, asked.reason, asked.failures > 1);
   next += frame_time;
 }
 
 void SimulatedStream::Player::take() {
   waits = false;
-  const auto objection = check.examine(frame, kEver);
+  const auto objection = check.examine(asked.frame, kEver);
   log.frame_received(next, objection, check.size_changes());
   if (!objection) prepare();
 }
 
 void SimulatedStream::Player::prepare() {
-  bool asked = false;
-  const double start = frame.stamp + options.latency;
+  bool shown = false;
+  const double start = asked.frame.stamp + options.latency;
   try {
-    sink(frame, [&] {
-      asked = true;
+    sink(asked.frame, [&] {
+      shown = true;
       return start;
     });
-    if (asked) log.touchable(options.latency);
+    if (shown) log.touchable(options.latency);
   } catch (const std::exception& error) {
     log.refused(next, error.what());
   }
