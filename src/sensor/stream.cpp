@@ -84,18 +84,31 @@ const StreamOptions& checked(const StreamOptions& options, const std::string& na
 
 }  // namespace
 
+// What the preparing thread does: passes frames on, and predicts how long that takes.
+struct Preparation {
+  const Stream::Sink sink;
+  const std::function<void()> ended;  // may be empty
+  const double lead;                  // s
+  const Clock& clock;
+  StreamStatistics& log;
+  double tail = 0;  // s from asking for a start to the end, recent
+
+  void run(FrameExchange& exchange);
+  void prepare(const DepthFrame& frame);
+  void finish();
+};
+
 struct Stream::Threads {
   Threads(DepthCamera& from, const std::string& name, Stream::Sink to, const Clock& time,
           const StreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         camera(from),
-        sink(std::move(to)),
-        ended(std::move(at_end)),
         clock(time),
         log(name, camera.info().name, options.stall, clock.now()),
         check(options.allow_repeats.value_or(camera.info().repeats)),
         retry(options.first_retry, options.longest_retry),
-        exchange(!camera.info().paces) {
+        exchange(!camera.info().paces),
+        preparation{std::move(to), std::move(at_end), options.lead, clock, log} {
     camera.begin(options.start.value_or(clock.now()));
     start(name);
   }
@@ -111,29 +124,24 @@ struct Stream::Threads {
   void leave_out(DepthCamera::Status status);
   void compare_clocks(double stamp, double now);
   [[nodiscard]] bool wait_to_retry();
-  void prepare();
-  void prepare(const DepthFrame& frame);
-  void finish();
 
   const StreamOptions options;
-  DepthCamera& camera;                // the reading thread's
-  const Stream::Sink sink;            // the preparing thread's
-  const std::function<void()> ended;  // may be empty
+  DepthCamera& camera;  // the reading thread's
   const Clock& clock;
   StreamStatistics log;
   FrameCheck check;  // the reading thread's
   Retry retry;       // the reading thread's
   FrameExchange exchange;
-  bool compared = false;  // the first frame's stamp with the clock; the reading thread's
-  std::string reason;     // why the last answer was no frame; the reading thread's
-  double tail = 0;        // s from asking for a start to the end, recent; the preparing thread's
+  bool compared = false;    // the first frame's stamp with the clock; the reading thread's
+  std::string reason;       // why the last answer was no frame; the reading thread's
+  Preparation preparation;  // the preparing thread's
   std::thread preparing;
   std::thread reading;
 };
 
 void Stream::Threads::start(const std::string& name) {
   try {
-    preparing = std::thread([this] { prepare(); });
+    preparing = std::thread([this] { preparation.run(exchange); });
     reading = std::thread([this] { read(); });
   } catch (const std::system_error& error) {
     stop();
@@ -201,13 +209,13 @@ bool Stream::Threads::wait_to_retry() {
   return true;
 }
 
-void Stream::Threads::prepare() {
+void Preparation::run(FrameExchange& exchange) {
   DepthFrame frame;
   while (exchange.take(frame)) prepare(frame);
   if (exchange.ended()) finish();
 }
 
-void Stream::Threads::finish() {
+void Preparation::finish() {
   try {
     if (ended) ended();
   } catch (const std::exception& error) {
@@ -216,18 +224,18 @@ void Stream::Threads::finish() {
   log.ended();
 }
 
-void Stream::Threads::prepare(const DepthFrame& frame) {
+void Preparation::prepare(const DepthFrame& frame) {
   std::optional<double> asked;
   const Source::StartTime ask_start = [&] {
     asked = clock.now();
-    return *asked + tail + options.lead;
+    return *asked + tail + lead;
   };
   try {
-    const double lead = tail + options.lead;
+    const double ahead = tail + lead;
     sink(frame, ask_start);
     if (!asked) return;
     const double now = clock.now();
-    log.touchable(std::max(*asked + lead, now) - frame.stamp);
+    log.touchable(std::max(*asked + ahead, now) - frame.stamp);
     tail = std::min(std::max(kForget * tail, now - *asked), kLongestTail);
   } catch (const std::exception& error) {
     log.refused(clock.now(), error.what());
