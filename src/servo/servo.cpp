@@ -60,17 +60,29 @@ Guard::Fault known_fault(const ServoState& state) noexcept {
 
 }  // namespace
 
+// A proxy on surfaces that are no stiffer than the hand's device bears.
+struct LimitedProxy {
+  LimitedProxy(const ProxyOptions& options, double its_limit)
+      : limit(its_limit), is_softened(options.stiffness > limit), proxy(softened(options, limit)) {}
+
+  void change(const ContactSettings& wanted) noexcept {
+    is_softened = wanted.stiffness > limit;
+    proxy.change(std::min(wanted.stiffness, limit), wanted.friction, wanted.texture);
+  }
+
+  double limit;      // of the stiffness, N/m
+  bool is_softened;  // a stiffer surface is requested
+  Proxy proxy;
+};
+
 struct Servo::Inside {
   Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
       : device(its_device),
         options(options_for(device.info(), its_options)),
-        stiffness_limit(stiffness_limit_of(device.info(), options)),
-        is_softened(options.proxy.stiffness > stiffness_limit),
         field(scene, options.field, "a field", options.workspace.scale),
-        proxy(softened(options.proxy, stiffness_limit)),
+        limited(options.proxy, stiffness_limit_of(device.info(), options)),
         guard(in_world(options.guard, options.workspace.scale)),
-        wanted_contact({options.proxy.stiffness, options.proxy.friction, options.proxy.texture}),
-        wanted_field(options.field) {}
+        requests(options) {}
 
   void step(const DeviceState& read, double now) noexcept;
   void apply_pending() noexcept;
@@ -80,30 +92,16 @@ struct Servo::Inside {
 
   Device& device;
   ServoOptions options;
-  double stiffness_limit;
-  bool is_softened;  // a stiffer surface is requested
   SceneField field;
-  Proxy proxy;
+  LimitedProxy limited;
   Guard guard;
   Clutch clutch;
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state;                  // of the stepping thread; the others see what was shown
   StepInput basis;                   // of its last step
-  bool started = false;
-  bool heard = false;  // the device has had the hand's position
-  std::uint64_t contact_seen = 0;
-  std::uint64_t field_seen = 0;
-
-  Latest<ServoState> shown;
-  RecentForces recent_forces;
-  Histogram lateness;
-  Histogram computing;
-  std::mutex pending_mutex;  // between those who change what is felt; the step never takes it
-  Latest<ContactSettings> wanted_contact;
-  Latest<FieldOptions> wanted_field;
-  AddedForce added;
-  std::atomic<bool> paused{false};
-  std::atomic<bool> reset{false};
+  bool heard = false;                // the device has had the hand's position
+  ShownSteps shown;
+  Requests requests;
 };
 
 Servo::Servo(Device& device, Scene& scene, const ServoOptions& options)
@@ -132,7 +130,7 @@ const ServoState& Servo::step(const DeviceState& device, double now) noexcept {
 }
 
 void Servo::Inside::step(const DeviceState& read, double now) noexcept {
-  const bool goes_on = started && std::isfinite(state.time);
+  const bool goes_on = state.step > 0 && std::isfinite(state.time);
   state.dt = goes_on || !std::isfinite(now) ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
@@ -141,9 +139,8 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   if (options.traces != nullptr && options.traces->accepts()) options.traces->prefetch();
   apply_pending();
   place_tool(read);
-  field.update(now, state.hip, started ? proxy.position() : state.hip);
-  started = true;
-  state.contact = proxy.step(field, state.hip, state.dt);
+  field.update(now, state.hip, state.step > 0 ? limited.proxy.position() : state.hip);
+  state.contact = limited.proxy.step(field, state.hip, state.dt);
   state.force = guarded();
   state.guard = guard.state();
   state.field_notes = field.notes();
@@ -156,7 +153,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
 void Servo::Inside::place_tool(const DeviceState& read) noexcept {
   const Workspace& workspace = options.workspace;
   state.clutched = is_clutched(read.buttons);
-  state.hip = clutch.tool(hand, state.clutched, proxy.position());
+  state.hip = clutch.tool(hand, state.clutched, limited.proxy.position());
   state.shift = clutch.shift();
   state.velocity = workspace.velocity_to_world(read.velocity);
   state.orientation = workspace.orientation_to_world(read.orientation);
@@ -167,45 +164,39 @@ void Servo::Inside::place_tool(const DeviceState& read) noexcept {
 
 // Before the first hand there is no place where the tool could rest.
 bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
-  return started && heard && options.clutch_button &&
+  return state.step > 0 && heard && options.clutch_button &&
          ((buttons >> *options.clutch_button) & 1u) != 0;
 }
 
 void Servo::Inside::apply_pending() noexcept {
-  state.paused = paused.load();
-  basis.reset = reset.exchange(false);
+  requests.take(state, basis);
   if (basis.reset || !heard) {
     clutch = {};
-    proxy.reset(hand);
+    limited.proxy.reset(hand);
     guard.reset();
   }
-  basis.contact = news(wanted_contact, contact_seen);
-  if (const auto& wanted = basis.contact) {
-    is_softened = wanted->stiffness > stiffness_limit;
-    proxy.change(std::min(wanted->stiffness, stiffness_limit), wanted->friction, wanted->texture);
-  }
-  basis.field = news(wanted_field, field_seen);
+  if (basis.contact) limited.change(*basis.contact);
   if (basis.field) field.change(*basis.field);
 }
 
 Vector3d Servo::Inside::guarded() noexcept {
   Guard::Input input;
   input.felt = !state.paused && state.device != DeviceState::Status::silent;
-  input.softened = is_softened;
+  input.softened = limited.is_softened;
   input.hip = hand;
   input.velocity = state.velocity;
   input.dt = state.dt;
   if (state.clutched) {
     // Clutched counts as not touching: a hand that leaves while its force fades loses it as it
     // would from a spring.
-    input.stiffness = proxy.options().stiffness;
+    input.stiffness = limited.proxy.options().stiffness;
   } else {
     input.force = state.contact.force;
     input.normal = state.contact.normal;
     input.drift = state.contact.drift;
     input.stiffness = state.contact.stiffness;
   }
-  basis.added = added.add_to(input.force, state.time);
+  basis.added = requests.added.add_to(input.force, state.time);
   input.fault = known_fault(state);
   return guard.pass(input);
 }
@@ -213,10 +204,7 @@ Vector3d Servo::Inside::guarded() noexcept {
 void Servo::show(const ServoState::Timing& timing) noexcept {
   ServoState& state = inside_->state;
   state.timing = timing;
-  inside_->lateness.add(timing.lateness);
-  inside_->computing.add(timing.computing);
-  inside_->shown.set(state);
-  inside_->recent_forces.add(state.force.cast<float>());
+  inside_->shown.show(state);
   if (inside_->options.steps != nullptr) inside_->options.steps->push(state);
   Ring<StepTrace>* const traces = inside_->options.traces;
   if (traces != nullptr && traces->accepts()) traces->push({state, inside_->basis});
@@ -242,32 +230,32 @@ const ServoOptions& Servo::options() const noexcept {
   return inside_->options;
 }
 double Servo::stiffness_limit() const noexcept {
-  return inside_->stiffness_limit;
+  return inside_->limited.limit;
 }
 ServoState Servo::state() const noexcept {
-  return inside_->shown.get();
+  return inside_->shown.state.get();
 }
 StepDurations Servo::durations() const noexcept {
-  return {inside_->lateness.look(), inside_->computing.look()};
+  return {inside_->shown.lateness.look(), inside_->shown.computing.look()};
 }
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
-  return inside_->recent_forces.since(seen);
+  return inside_->shown.forces.since(seen);
 }
 
 ContactSettings Servo::contact() const noexcept {
-  return inside_->wanted_contact.get();
+  return inside_->requests.contact.get();
 }
 
 FieldOptions Servo::field() const noexcept {
-  return inside_->wanted_field.get();
+  return inside_->requests.field.get();
 }
 
 void Servo::pause(bool paused) noexcept {
-  inside_->paused.store(paused);
+  inside_->requests.paused.store(paused);
 }
 
 void Servo::reset() noexcept {
-  inside_->reset.store(true);
+  inside_->requests.reset.store(true);
 }
 
 void Servo::set_contact(const ContactSettings& contact) {
@@ -276,20 +264,20 @@ void Servo::set_contact(const ContactSettings& contact) {
   checked.friction = contact.friction;
   checked.texture = contact.texture;
   static_cast<void>(Proxy(checked));  // throws what is out of range
-  const std::lock_guard lock(inside_->pending_mutex);
-  inside_->wanted_contact.set(contact);
+  const std::lock_guard lock(inside_->requests.mutex);
+  inside_->requests.contact.set(contact);
 }
 
 void Servo::add_force(const Vector3d& force) {
   if (!force.allFinite()) throw Error("a force from outside is not finite; find out who sent it");
-  const std::lock_guard lock(inside_->pending_mutex);
-  inside_->added.set(force);
+  const std::lock_guard lock(inside_->requests.mutex);
+  inside_->requests.added.set(force);
 }
 
 void Servo::set_field(const FieldOptions& field) {
   check(field);
-  const std::lock_guard lock(inside_->pending_mutex);
-  inside_->wanted_field.set(field);
+  const std::lock_guard lock(inside_->requests.mutex);
+  inside_->requests.field.set(field);
 }
 
 }  // namespace palpate

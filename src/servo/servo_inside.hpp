@@ -6,11 +6,13 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "base/latest.hpp"
 #include "palpate/servo/servo.hpp"
+#include "servo/step_trace.hpp"
 
 namespace palpate {
 
@@ -102,6 +104,46 @@ class AddedForce {
   std::uint64_t seen_ = 0;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
   double time_ = 0;
+};
+
+/// What others see of a servo's steps. One thread shows, any looks.
+struct ShownSteps {
+  Latest<ServoState> state;
+  RecentForces forces;
+  Histogram lateness;
+  Histogram computing;
+
+  /// Real-time.
+  void show(const ServoState& now) noexcept {
+    lateness.add(now.timing.lateness);
+    computing.add(now.timing.computing);
+    state.set(now);
+    forces.add(now.force.cast<float>());
+  }
+};
+
+/// What other threads ask of a servo's step, which never waits for them.
+struct Requests {
+  explicit Requests(const ServoOptions& options)
+      : contact({options.proxy.stiffness, options.proxy.friction, options.proxy.texture}),
+        field(options.field) {}
+
+  /// Takes what is new, but for the added force. The stepping thread's; real-time.
+  void take(ServoState& state, StepInput& basis) noexcept {
+    state.paused = paused.load();
+    basis.reset = reset.exchange(false);
+    basis.contact = news(contact, contact_seen);
+    basis.field = news(field, field_seen);
+  }
+
+  std::mutex mutex;  // between those who change what is felt; the step never takes it
+  Latest<ContactSettings> contact;
+  Latest<FieldOptions> field;
+  std::uint64_t contact_seen = 0;
+  std::uint64_t field_seen = 0;
+  AddedForce added;
+  std::atomic<bool> paused{false};
+  std::atomic<bool> reset{false};
 };
 
 }  // namespace palpate
