@@ -111,21 +111,36 @@ def constants(path):
         yield found[1], i + 1, told
 
 
+TYPE = re.compile(r"( *)(class|struct) (?:\w+::)*(\w+)[^;(]*\{$")
+NO_MEMBER = re.compile(r"(using|friend|static|static_assert|enum|struct|class|template|public|private|protected)\b")
+UNCHANGING = r"(explicit |constexpr )*{}\(|static |.*\boperator([=!<>]=|[<>])\(|.*\) const\b"
+
+
+def heads_of(body, indent):
+    """The beginnings of what a class declares, each in one line, without what stands between < and >."""
+    for i, line in enumerate(body):
+        if re.match(indent + r"  [\w\[~]", line):
+            end = next((j for j in range(i, len(body)) if re.search(r"[;:{}]$", body[j])), i)
+            head = re.sub(r"\[\[\w+\]\] ", "", " ".join(part.strip() for part in body[i:end + 1]))
+            yield re.sub(r"<[^<>;]*>", "", re.sub(r"<[^<>;]*>", "", head))
+
+
 def classes(path):
-    """(name, line, methods, members) of the classes that a file defines at namespace level."""
+    """(name, line, methods, members) of a file's classes, and of its structs but plain ones: a plain struct has no
+    methods but constructors, comparisons, const and static ones."""
     lines = lines_of(path)
     for i, line in enumerate(lines):
-        found = re.match(r"class (\w+)[^;]*\{$", line)
+        found = TYPE.match(line)
         if not found:
             continue
-        end = next(j for j in range(i, len(lines)) if lines[j].startswith("};"))
-        body = [line.split("//")[0].rstrip() for line in lines[i + 1:end]]
-        heads = [line for line in body if re.match(r"  [\w\[~]", line)]
-        members = sum(re.match(r"  (?!using|friend|static|return)[^(]*\b\w+_( =.*|\{.*)?;$", line) is not None
-                      for line in heads)
-        methods = sum(re.search(r"\w\(", line) is not None and "= default" not in line and "= delete" not in line
-                      and not re.match(r"  (using|friend|static_assert)\b", line) for line in heads)
-        yield found[1], i + 1, methods, members
+        indent, kind, name = found.groups()
+        end = next(j for j in range(i, len(lines)) if lines[j].startswith(indent + "};"))
+        heads = [head for head in heads_of([line.split("//")[0].rstrip() for line in lines[i + 1:end]], indent)
+                 if not re.search(r"= (default|delete);$|^(using|friend|static_assert|template)\b", head)]
+        methods = [head for head in heads if re.search(r"[\w=\]]\(", re.split(r" = |\{", head)[0])]
+        if kind == "class" or not all(re.match(UNCHANGING.format(name), head) for head in methods):
+            yield name, i + 1, len(methods), sum(
+                head not in methods and not NO_MEMBER.match(head) for head in heads)
 
 
 ASSERTS = re.compile(r"(EXPECT|ASSERT)_|RC_ASSERT|ADD_FAILURE|FAIL$")

@@ -228,7 +228,7 @@ def reasons(root):
 
 
 def classes(root):
-    """Classes that fit into one head."""
+    """Classes, and structs but plain ones (counts.classes), that fit into one head."""
     for path in counts.code_of(root):
         for name, number, methods, members in counts.classes(path):
             if methods > counts.MOST_METHODS or members > counts.MOST_MEMBERS:

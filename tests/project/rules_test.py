@@ -123,6 +123,19 @@ class Rules(unittest.TestCase):
         for methods, members, count in ((20, 12, 0), (21, 0, 1), (0, 13, 1)):
             self.assertEqual(len(self.found(rules.classes, {"src/io/a.hpp": of(methods, members)})), count)
 
+    def test_a_struct_that_its_methods_change_is_a_class(self):
+        plain = ("  A(int a,\n    int b);\n  bool operator==(const A&) const = default;\n"
+                 "  static A made();\n  [[nodiscard]] int sum(std::function<void()> act,\n"
+                 "                        int b) const noexcept {\n    return b;\n  }\n")
+        for methods, members, count in ((plain, 13, 0), (plain + "  void act();\n", 12, 0),
+                                        (plain + "  void act();\n", 13, 1), ("  ~A() { act(); }\n", 13, 1),
+                                        ("  A& operator=(int a);\n", 13, 1), ("  void act() const;\n" * 21, 1, 0),
+                                        ("  template <class T>\n  void act(T t);\n" * 21, 1, 1)):
+            body = methods + "".join(f"  std::array<int, 3> a{i}{{f(1)}};\n" for i in range(members))
+            for head, indent, tail in (("struct B::A {\n", "", "};\n"), ("class C {\n  struct A {\n", "  ", "  };\n};\n")):
+                text = head + "".join(indent + line + "\n" for line in body.splitlines()) + tail
+                self.assertEqual(len(self.found(rules.classes, {"src/io/a.hpp": text})), count, text)
+
     def test_a_header_that_one_file_reads_is_found(self):
         files = {"src/io/a.hpp": "int a;\n", "src/io/a.cpp": '#include "io/a.hpp"\n',
                  "src/io/b.cpp": '#include "io/a.hpp"\n'}
