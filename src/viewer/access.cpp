@@ -3,7 +3,7 @@
 
 #include <arpa/inet.h>
 #include <fmt/core.h>
-#include <sys/random.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -86,7 +86,7 @@ bool origin_is_ours(std::string_view origin, std::string_view host) {
 
 std::string make_token() {
   std::array<unsigned char, 16> bits{};
-  if (getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size())) {
+  if (getentropy(bits.data(), bits.size()) != 0) {
     throw Error("viewer: no random bits for a token from the system; give a token");
   }
   std::string token;

@@ -1,8 +1,7 @@
-// The thread that encodes clouds, surfaces around tools and reports for the pages.
+// Encodes clouds, surfaces around tools and reports for the pages.
 #include "viewer/scene_encoder.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -98,63 +97,35 @@ class SurfaceEncoder {
 };
 
 SceneEncoder::SceneEncoder(Scene& scene, SceneEncoderOptions options)
-    : scene_(scene),
-      options_(std::move(options)),
-      clouds_(scene, options_.origin),
-      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+    : scene_(scene), options_(std::move(options)), clouds_(scene, options_.origin) {}
 
 SceneEncoder::~SceneEncoder() = default;
 
-void SceneEncoder::set_budgets(std::set<std::size_t> budgets) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (budgets == budgets_) return;
-    budgets_ = std::move(budgets);
-  }
-  changed_.notify_one();
+void SceneEncoder::rest() {
+  surfaces_.clear();
 }
 
-void SceneEncoder::run(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    std::set<std::size_t> budgets;
-    {
-      std::unique_lock lock(mutex_);
-      if (budgets_.empty()) {
-        lock.unlock();
-        surfaces_.clear();
-        lock.lock();
-        changed_.wait(lock, stop, [this] { return !budgets_.empty(); });
-      }
-      budgets = budgets_;
-    }
-    if (!budgets.empty()) work(stop, budgets);
-  }
-}
-
-void SceneEncoder::work(const std::stop_token& stop, const std::set<std::size_t>& budgets) {
-  const double begin = host_time();
-  try {
-    options_.show(encode(budgets));
-  } catch (const std::exception& error) {
-    EncodedScene encoded;
-    encoded.complaint = news(error.what());
-    options_.show(std::move(encoded));
-  }
-  const double took = host_time() - begin;
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, stop,
-                    std::chrono::duration<double>(std::max(kPeriod - took, kRest * took)),
-                    [&] { return budgets_ != budgets; });
+double SceneEncoder::pause_after(double took) noexcept {
+  return std::max(kPeriod - took, kRest * took);
 }
 
 EncodedScene SceneEncoder::encode(const std::set<std::size_t>& budgets) {
   EncodedScene encoded;
+  try {
+    encode(budgets, encoded);
+  } catch (const std::exception& error) {
+    encoded = {};
+    encoded.complaint = news(error.what());
+  }
+  return encoded;
+}
+
+void SceneEncoder::encode(const std::set<std::size_t>& budgets, EncodedScene& encoded) {
   std::set<std::size_t> drawn = budgets;
   drawn.erase(0);
   encoded.clouds = clouds_.encode(drawn, now());
   drawn.empty() ? surfaces_.clear() : encode_surfaces(encoded);
   if (host_time() - reported_ >= kSourcesPeriod) report(encoded);
-  return encoded;
 }
 
 // A scene that has no place for one more field is seen all the same.

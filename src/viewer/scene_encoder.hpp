@@ -2,16 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "palpate/field/field.hpp"
@@ -124,27 +121,29 @@ struct SceneEncoderOptions {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::function<std::vector<ViewedStream>()> streams = {};
   std::function<std::string()> robot = {};
-  std::function<void(EncodedScene)> show;  ///< called on the encoder's thread
 };
 
-/// A thread that makes pictures while somebody looks: no more than 10 a second, and no more than a
-/// quarter of its time. Where nobody looks, it waits and holds no field.
+/// Makes pictures for those who look. One thread uses it.
 class SceneEncoder {
  public:
   SceneEncoder(Scene& scene, SceneEncoderOptions options);
-  /// Waits for the picture that is under way.
   ~SceneEncoder();
   SceneEncoder(const SceneEncoder&) = delete;
   SceneEncoder& operator=(const SceneEncoder&) = delete;
 
-  /// Sets the point budgets of the clients; 0: that one draws nothing now; empty: no client. Any
-  /// thread.
-  void set_budgets(std::set<std::size_t> budgets);
+  /// A picture for clients of these point budgets; 0: that one draws nothing now. What went wrong
+  /// is in its complaint.
+  [[nodiscard]] EncodedScene encode(const std::set<std::size_t>& budgets);
+
+  /// Nobody looks: holds no field until the next picture.
+  void rest();
+
+  /// s until the next picture, where the last one took `took` s: no more than 10 a second, and no
+  /// more than a quarter of the time.
+  [[nodiscard]] static double pause_after(double took) noexcept;
 
  private:
-  void run(const std::stop_token& stop);
-  void work(const std::stop_token& stop, const std::set<std::size_t>& budgets);
-  [[nodiscard]] EncodedScene encode(const std::set<std::size_t>& budgets);
+  void encode(const std::set<std::size_t>& budgets, EncodedScene& encoded);
   void encode_surfaces(EncodedScene& encoded);
   void join_scene();
   void report(EncodedScene& encoded);
@@ -153,17 +152,10 @@ class SceneEncoder {
 
   Scene& scene_;
   SceneEncoderOptions options_;
-  std::mutex mutex_;  // of the budgets; no servo takes it
-  std::condition_variable_any changed_;
-  std::set<std::size_t> budgets_;
-
-  // The thread's.
   CloudEncoder clouds_;
   std::vector<std::unique_ptr<SurfaceEncoder>> surfaces_;
   std::string told_;          // the last complaint
   double reported_ = -1e300;  // s, of the host
-
-  std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace palpate::viewer
