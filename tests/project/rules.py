@@ -38,10 +38,11 @@ FLOORS = CORE | {
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
+    "session": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",
-             "scene", "stream", "sensor", "device", "servo", "ros", "viewer"},
+             "scene", "stream", "sensor", "device", "servo", "ros", "viewer", "session"},
     "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
 }
 # The files of two floors from the first step on: what stands in one line sees what stands above it.

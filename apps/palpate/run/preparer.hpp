@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "apps/palpate/run/run.hpp"
-#include "apps/palpate/run/view_settings.hpp"
+#include "session/view_settings.hpp"
 
 namespace palpate::app {
 
@@ -19,7 +19,7 @@ namespace palpate::app {
 /// If requests come faster than it works, the last one counts. A failed request is undone.
 class Preparer {
  public:
-  using Preparation = ViewSettings::Preparation;
+  using Preparation = session::ViewSettings::Preparation;
   /// Called on the preparer's thread: why a preparation failed, and what sources are prepared by.
   using Failed = std::function<void(const std::string& why, const Preparation& held)>;
 

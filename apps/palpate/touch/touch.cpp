@@ -23,13 +23,13 @@
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/run.hpp"
-#include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/view.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/servo/servo_thread.hpp"
+#include "session/view_settings.hpp"
 
 namespace palpate::app {
 namespace {
@@ -92,7 +92,7 @@ std::optional<RealtimeReport::Request> leave_to_servo(const TimePlan& time) {
 
 // A texture that is carved deeper than the thinnest surface reaches no hand could meet.
 void check_texture(double amplitude, const Scene& scene) {
-  const double largest = deepest_texture(scene);
+  const double largest = session::deepest_texture(scene);
   if (amplitude <= largest) return;
   throw UsageError(
       fmt::format("--texture-amplitude {} is too deep for the surface's R; give at most {:.2g}",

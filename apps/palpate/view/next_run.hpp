@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "apps/palpate/run/run.hpp"
-#include "apps/palpate/run/view_settings.hpp"
+#include "session/view_settings.hpp"
 
 namespace palpate::app {
+
+using session::Setting;
 
 /// Settings that another run begins with, on the same page: which scene, and the unit of each file.
 class NextRun {

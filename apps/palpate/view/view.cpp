@@ -17,7 +17,6 @@
 #include "apps/palpate/report/touch_report.hpp"
 #include "apps/palpate/run/opening.hpp"
 #include "apps/palpate/run/preparer.hpp"
-#include "apps/palpate/run/view_settings.hpp"
 #include "apps/palpate/view/address.hpp"
 #include "apps/palpate/view/next_run.hpp"
 #include "apps/palpate/view/page_hold.hpp"
@@ -25,12 +24,15 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
+#include "session/view_settings.hpp"
 
 namespace palpate::app {
 
 namespace {
 
 using Eigen::Vector3d;
+using session::ViewScope;
+using session::ViewSettings;
 
 ViewSettings initial_settings(const Run& run) {
   ViewSettings settings;
@@ -52,7 +54,7 @@ ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
   }
-  const double deepest = deepest_texture(run.loaded.scene);
+  const double deepest = session::deepest_texture(run.loaded.scene);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
   for (const LoadedSource& source : run.loaded.sources) {
     scope.lives = scope.lives || source.camera;
@@ -145,7 +147,7 @@ struct View::Parts {
       set(wanted, scope_of(run, servos), key, value);
       apply(wanted);
     };
-    controls.presets = preset_names();
+    controls.presets = session::preset_names();
     controls.preset = [this](const std::string& name) {
       apply(preset(initial, name, scope_of(run, servos)));
     };

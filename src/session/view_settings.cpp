@@ -1,5 +1,5 @@
 // Settings that a page can change during a run.
-#include "apps/palpate/run/view_settings.hpp"
+#include "session/view_settings.hpp"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <limits>
 #include <utility>
 
-#include "apps/palpate/run/materials.hpp"
 #include "field/description.hpp"
 #include "palpate/base/error.hpp"
 #include "scene/description.hpp"
+#include "session/materials.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 namespace {
 
@@ -226,4 +226,4 @@ double deepest_texture(const Scene& scene) {
   return largest;
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::session

@@ -6,7 +6,7 @@
 
 #include "palpate/contact/proxy.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 /// What a surface is made of, beside a run's initial one.
 struct Material {
@@ -32,4 +32,4 @@ inline constexpr std::array<Material, 4> kMaterials = {{
     {"rubber", 0.4, 1},
 }};
 
-}  // namespace palpate::app
+}  // namespace palpate::session

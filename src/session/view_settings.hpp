@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/run/run.hpp"
 #include "palpate/field/field_options.hpp"
+#include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 using Setting = ViewerControls::Setting;
 
@@ -68,4 +68,4 @@ void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
 /// infinite where it has none.
 [[nodiscard]] double deepest_texture(const Scene& scene);
 
-}  // namespace palpate::app
+}  // namespace palpate::session

@@ -1,4 +1,4 @@
-#include "apps/palpate/run/view_settings.hpp"
+#include "session/view_settings.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "palpate/base/error.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 namespace {
 
 constexpr ViewScope kAll = {.deepest_texture = 1e-3, .lives = true, .depth = true, .clouds = true};
@@ -233,4 +233,4 @@ TEST(ViewSettings, UnknownKeysAreRefused) {
 }
 
 }  // namespace
-}  // namespace palpate::app
+}  // namespace palpate::session
