@@ -4,6 +4,9 @@ include_guard()
 
 set(PALPATE_WEB_LIBRARIES "" CACHE PATH "Where sources of zlib, spng, pugixml, zstd and brotli are unpacked")
 
+# libc++ 18 has std::stop_token for those who ask for it alone.
+add_compile_definitions($<$<COMPILE_LANGUAGE:CXX>:_LIBCPP_ENABLE_EXPERIMENTAL>)
+
 # Of /usr/include only what has no part in this machine's C library.
 set(web_headers ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${web_headers})

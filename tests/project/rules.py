@@ -39,6 +39,7 @@ FLOORS = CORE | {
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
     "session": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
+    "tab": {"base", "geometry", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer", "session"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",

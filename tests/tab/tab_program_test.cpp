@@ -1,0 +1,204 @@
+#include "tab/tab_program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "palpate/base/error.hpp"
+#include "viewer/bytes.hpp"
+
+namespace palpate::tab {
+namespace {
+
+using nlohmann::json;
+using test::f32;
+
+constexpr const char* kHello = R"({"type":"hello","token":"tab","points":2000})";
+
+// A program and the page that it speaks to. Its clock is what a test says.
+struct Page {
+  explicit Page(Touched touched = synthetic("synthetic:torus"), std::string news = {})
+      : program(std::move(touched),
+                {[this](std::string_view bytes, bool text) { take(std::string(bytes), text); },
+                 [this](int code, const std::string&) { closed = code; },
+                 [this](const std::string& name) { opened = name; }},
+                std::move(news)) {
+    program.run(now);
+    connect();
+  }
+  void connect() {
+    program.connect(now);
+    say(json::parse(kHello));
+  }
+  void say(const json& message) { program.receive(message.dump(), now); }
+  // A wake every 4 ms, as a browser does it.
+  int run(double seconds) {
+    int steps = 0;
+    for (const double end = now + seconds; now < end - 1e-9;) steps += program.run(now += 4e-3);
+    return steps;
+  }
+  void take(std::string bytes, bool text) {
+    if (text) {
+      said.push_back(json::parse(bytes));
+    } else if (test::u8(bytes, 0) == 1) {
+      state = std::move(bytes);
+    } else if (test::u8(bytes, 0) == 2) {
+      ++clouds;
+    }
+  }
+  [[nodiscard]] json last(const std::string& type) const {
+    const auto found = std::find_if(said.rbegin(), said.rend(),
+                                    [&](const json& message) { return message["type"] == type; });
+    return found == said.rend() ? json() : *found;
+  }
+  [[nodiscard]] Eigen::Vector3d vector(std::size_t offset) const {
+    return {f32(state, offset), f32(state, offset + 4), f32(state, offset + 8)};
+  }
+  [[nodiscard]] Eigen::Vector3d force() const { return vector(52); }
+  [[nodiscard]] double value(const std::string& key) const {
+    return last("settings")["values"][key];
+  }
+
+  // Lowers the hand onto the ring of the torus, `depth` under its top (world, m), and waits.
+  void press(double depth) {
+    const double top = 0.03;
+    for (int i = 0; i <= 100; ++i) {
+      const double z = top + 0.01 - (0.01 + depth) * i / 100;
+      say({{"type", "hand"}, {"device", 0}, {"position", {0.07, 0, z}}, {"buttons", 0}});
+      run(12e-3);
+    }
+    for (int i = 0; i < 20; ++i) run(0.05);  // its force rises in 0.3 s
+  }
+
+  double now = 100;
+  std::vector<json> said;
+  std::string state;
+  int clouds = 0;
+  int closed = 0;
+  std::string opened;
+  TabProgram program;  // last: it speaks to all of the above
+};
+
+TEST(TabProgram, WelcomesAPageAndShowsItsCloud) {
+  Page page;
+  page.run(0.1);
+  const json welcome = page.last("welcome");
+  EXPECT_EQ(welcome["scene"], "torus");
+  EXPECT_EQ(welcome["devices"][0]["takeable"], true);
+  EXPECT_GT(welcome["opens"], 1e8);
+  EXPECT_EQ(page.clouds, 1);
+  ASSERT_FALSE(page.state.empty());
+  EXPECT_EQ(page.force(), Eigen::Vector3d::Zero());
+}
+
+// Two springs in a row, the hand's 300 N/m and the surface's 500 N/m at the hand, share the depth;
+// dry friction of 0.05 N may hold a part of it.
+TEST(TabProgram, AHandThatPressesOnATorusFeelsTheForceOfTwoSprings) {
+  Page page;
+  const double scale = page.last("welcome")["devices"][0].value("scale", 1.0);
+  const double depth = 6e-3 * scale;
+  page.press(depth);
+  const double expected = 6e-3 * 300 * 500 / (300 + 500);
+  EXPECT_NEAR(page.force().z(), expected, 0.06 + 0.05 * expected);
+  EXPECT_LT(page.force().head<2>().norm(), 0.1);
+  EXPECT_EQ(test::u32(page.state, 4) & 5U, 5U) << "touching, and taken";
+  page.say({{"type", "release"}, {"device", 0}});
+  page.run(3);
+  EXPECT_LT(page.force().norm(), 0.06) << "nobody pulls it";
+}
+
+TEST(TabProgram, TheSameCallsGiveTheSameForces) {
+  Page one;
+  Page other;
+  one.press(4e-3);
+  other.press(4e-3);
+  EXPECT_GT(one.force().norm(), 0.1);
+  EXPECT_EQ(one.force(), other.force());
+}
+
+TEST(TabProgram, StepsAThousandTimesASecondAndLeavesOutWhatIsTooLate) {
+  Page page;
+  EXPECT_NEAR(page.run(1), 1000, 1);
+  EXPECT_NEAR(page.program.run(page.now += 10), 1000 * TabProgram::kMostLate, 1);
+  EXPECT_NEAR(page.run(1), 1000, 1);
+}
+
+TEST(TabProgram, SettingsAndPresetsActAndAreTold) {
+  Page page;
+  page.say({{"type", "set"}, {"key", "stiffness"}, {"value", 200}});
+  EXPECT_EQ(page.value("stiffness"), 200);
+  page.say({{"type", "preset"}, {"name", "rubber"}});
+  EXPECT_EQ(page.value("friction"), 1);
+  page.say({{"type", "set"}, {"key", "stiffness"}, {"value", 1e9}});
+  EXPECT_THAT(std::string(page.last("refused")["text"]), testing::HasSubstr("Stiffness"));
+  page.say({{"type", "record"}, {"on", true}});
+  EXPECT_THAT(std::string(page.last("refused")["text"]), testing::HasSubstr("record"));
+  EXPECT_EQ(page.opened, "");
+  page.say({{"type", "set"}, {"key", "scene"}, {"value", "room"}});
+  EXPECT_EQ(page.opened, "synthetic:room");
+}
+
+TEST(TabProgram, ACloudIsPreparedAnewAndStaysWhereThatFails) {
+  Page page;
+  page.run(0.2);
+  page.say({{"type", "set"}, {"key", "smoothing"}, {"value", 2}});
+  EXPECT_EQ(page.value("smoothing"), 2);
+  page.run(0.5);
+  EXPECT_EQ(page.clouds, 2);
+  page.press(4e-3);
+  EXPECT_GT(page.force().norm(), 0.1);
+}
+
+TEST(TabProgram, APageThatTalksNonsenseIsClosedAndMayComeAgain) {
+  Page page;
+  for (int i = 0; i < 30; ++i) page.say({{"type", "hand"}, {"device", 7}});
+  EXPECT_EQ(page.closed, 1008);
+  page.said.clear();
+  page.say({{"type", "ping"}, {"id", 1}});
+  EXPECT_TRUE(page.said.empty()) << "nobody is there";
+  page.connect();
+  EXPECT_EQ(page.last("welcome")["scene"], "torus");
+}
+
+TEST(TabProgram, AHandOfAPageThatFallsSilentIsReleased) {
+  Page page;
+  page.press(4e-3);
+  page.run(6);
+  EXPECT_EQ(page.last("lost")["device"], 0);
+  EXPECT_LT(page.force().norm(), 0.06);
+}
+
+TEST(TabProgram, NewsAreToldOnce) {
+  Page page(synthetic("torus"), "bunny.ply is cut");
+  page.run(0.1);
+  EXPECT_EQ(page.last("notice")["text"], "bunny.ply is cut");
+  page.said.clear();
+  page.connect();
+  page.run(0.1);
+  EXPECT_EQ(page.last("notice"), json());
+}
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+TEST(TabProgram, FilesAreReadByTheirBytesOrRefusedInWords) {
+  std::string rows;
+  for (int i = 0; i < 900; ++i) {
+    rows += std::to_string(1e-3 * (i % 30)) + " " + std::to_string(1e-3 * (i / 30)) + " 0\n";
+  }
+  Page page(of_file(bytes_of(rows), "floor.xyz"));
+  EXPECT_EQ(page.last("welcome")["scene"], "floor");
+  EXPECT_EQ(page.last("welcome")["sources"][0]["name"], "floor");
+  EXPECT_THROW((void)of_file({}, "nothing.ply"), Error);
+  EXPECT_THROW((void)of_file(bytes_of("1 2 3\n4 5\n"), "cut.xyz"), Error);
+  EXPECT_THROW((void)synthetic("synthetic:unicorn"), Error);
+}
+
+}  // namespace
+}  // namespace palpate::tab
