@@ -1,9 +1,10 @@
 // Builds dist/, or the folder that PALPATE_PAGE names: index.html, app.js, app.css. --watch builds again at every change; --tests compiles the
-// tests of the pure parts to .test-build/.
+// tests of the pure parts to .test-build/; --tab FOLDER builds the page of a tab there, with worker.js, which wants tab.js and
+// tab.wasm (scripts/tab.sh) beside it.
 
 import { build, context } from "esbuild";
-import { cp, mkdir, readdir, rm, stat } from "node:fs/promises";
-import { dirname, join } from "node:path";
+import { cp, mkdir, readdir, readFile, rm, stat, writeFile } from "node:fs/promises";
+import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const kBound = 900_000; // bytes of the three files together
@@ -38,6 +39,17 @@ async function buildPage(watch) {
   if (sum > kBound) throw new Error(`the page has ${sum} bytes, more than ${kBound}`);
 }
 
+const kHead = /(?=<link rel="icon")/;
+
+/** The same page, that finds its program in a worker. */
+async function buildTab(folder) {
+  await mkdir(folder, { recursive: true });
+  const html = await readFile(at("src/index.html"), "utf8");
+  if (!kHead.test(html)) throw new Error("index.html has no place for the tab's mark");
+  await writeFile(join(folder, "index.html"), html.replace(kHead, '<meta name="palpate" content="tab">\n'));
+  await build({ ...page, outdir: folder, entryPoints: { app: "src/main.ts", worker: "src/tab/worker.ts" } });
+}
+
 async function buildTests() {
   await rm(at(".test-build"), { recursive: true, force: true });
   const tests = (await readdir(at("test"))).filter((name) => name.endsWith(".test.ts"));
@@ -54,5 +66,7 @@ async function buildTests() {
   });
 }
 
+const tab = process.argv.indexOf("--tab");
 if (process.argv.includes("--tests")) await buildTests();
+else if (tab > 0) await buildTab(resolve(process.argv[tab + 1]));
 else await buildPage(process.argv.includes("--watch"));

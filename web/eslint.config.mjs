@@ -23,7 +23,7 @@ export default tseslint.config(
       globals: {
         Buffer: "readonly", console: "readonly", DataTransfer: "readonly", File: "readonly", document: "readonly", Event: "readonly", location: "readonly", localStorage: "readonly", performance: "readonly",
         process: "readonly", setInterval: "readonly", clearInterval: "readonly", setTimeout: "readonly",
-        window: "readonly", URL: "readonly", WebSocket: "readonly", navigator: "readonly",
+        window: "readonly", URL: "readonly", WebSocket: "readonly", navigator: "readonly", DataView: "readonly", ErrorEvent: "readonly",
         requestAnimationFrame: "readonly",
       },
     },

@@ -35,6 +35,11 @@ case "$name" in
     [ -f "$PALPATE_PAGE/index.html" ] || skip "$PALPATE_PAGE is absent: the page was not built"
     npm run --silent browser
     ;;
+  tab)
+    need_browser
+    [ -f "${PALPATE_SITE:-}/tab.wasm" ] || skip "no page of a tab in ${PALPATE_SITE:-PALPATE_SITE}: scripts/tab.sh builds it"
+    npm run --silent tab
+    ;;
   program | smoke)
     need_browser
     npm run --silent "$name"

@@ -27,6 +27,7 @@ import { TimeLinePanel } from "./panel/time_line";
 import { Backoff } from "./protocol/backoff";
 import { Connection } from "./protocol/connection";
 import { Kind, type BinaryMessage } from "./protocol/decode";
+import type { End } from "./protocol/end";
 import { applyLink, writeLink, type Link } from "./protocol/link";
 import { kVersion, type FromProgram, type SettingValue, type ToProgram, type Welcome } from "./protocol/messages";
 import { Rumble } from "./sound/rumble";
@@ -71,7 +72,7 @@ export class App {
   private run: string | undefined;
   private linked = true; // what the link asks for is still to be set
 
-  constructor(private readonly link: Link, graphics: Graphics, private readonly panels: Panels) {
+  constructor(private readonly link: Link, private readonly end: End, graphics: Graphics, private readonly panels: Panels) {
     const send = (message: ToProgram) => this.connection.send(message);
     this.world = new World(byId<HTMLCanvasElement>("view"), graphics);
     this.overlay = new Overlay(this.world);
@@ -85,7 +86,7 @@ export class App {
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
     const take = () => this.hold.take();
     this.tour = new Tour(this.session, this.hand, this.stroke, take, send, (words) => say(byId("tour"), words));
-    this.bar = new Bar(this.session, this.world, this.sound, this.notices, panels, link.token, send);
+    this.bar = new Bar(this.session, this.world, this.sound, this.notices, panels, end, send);
     this.timeLine = new TimeLinePanel(send);
     const keys = (this.keys = new Keys({
       toggleTool: () => this.hold.toggle(),
@@ -108,8 +109,7 @@ export class App {
     this.hold.offer(spaceMouse, keys, this.notices, this.pointer, this.rumble);
     this.status = new Status(() => this.connection.open());
     this.connection = new Connection(
-      new URL("live", location.href.replace(/^http/, "ws").replace(/#.*/, "")).href,
-      link.token,
+      end,
       () => this.drawn(),
       new Backoff(Math.random),
       {
@@ -131,7 +131,7 @@ export class App {
   start(): void {
     this.relook();
     this.world.start((now) => this.frame(now));
-    if (this.link.token === "") this.status.withoutToken();
+    if (this.end.token === "") this.status.withoutToken();
     else this.connection.open();
   }
 

@@ -20,7 +20,8 @@ test("a link gives back what was put into it", () => {
 test("a token alone, nothing, and nonsense are borne", () => {
   assert.deepEqual(readLink("#abc"), { token: "abc", values: new Map() });
   assert.deepEqual(readLink(""), { token: "", values: new Map() });
-  assert.equal(readLink("#stiffness=3").token, "");
+  assert.deepEqual(readLink("#stiffness=3&k=4"), { token: "", values: new Map([["stiffness", "3"], ["k", "4"]]) });
+  assert.equal(writeLink("", [["k", 4]]), "#k=4");
   assert.deepEqual([...readLink("#t&&=3&x&k=%zz").values], [["k", "%zz"]]);
 });
 

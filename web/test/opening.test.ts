@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { fileName } from "../src/panel/opening";
+import { fileName } from "../src/protocol/socket_end";
 
 test("a file's name is made of what the program takes, and keeps its ending", () => {
   assert.equal(fileName("bunny.ply"), "bunny.ply");

@@ -1,6 +1,7 @@
 // The bar: pause, reset, record, open, sound, picture, link, help. Which panels are shown is panels.ts's.
 
 import type { Session } from "../model/session";
+import type { End } from "../protocol/end";
 import { writeLink } from "../protocol/link";
 import type { ToProgram, Welcome } from "../protocol/messages";
 import type { Sound } from "../sound/sound";
@@ -26,11 +27,11 @@ export class Bar {
     private readonly sound: Sound,
     private readonly notices: Notices,
     private readonly panels: Panels,
-    private readonly token: string,
+    private readonly end: End,
     private readonly send: (message: ToProgram) => void,
   ) {
     const click = (id: string, act: () => unknown) => byId(id).addEventListener("click", () => void act());
-    this.opening = new Opening(token, notices);
+    this.opening = new Opening(end, notices);
     click("pause", () => this.pause());
     click("reset", () => this.reset());
     click("record", () => this.send({ type: "record", on: !this.isRecording }));
@@ -65,7 +66,7 @@ export class Bar {
     const rate = this.session.tool?.latest?.rate;
     if (open && rate !== undefined && !this.session.recorded) this.showRate(rate);
     const delay = Number.isNaN(this.delay) ? "" : `; latency ${(1000 * this.delay).toFixed(1)} ms`;
-    const late = byId("link-state").classList.contains("late") ? "; the servo does not keep its rate: see palpate doctor" : "";
+    const late = byId("link-state").classList.contains("late") ? `; the servo does not keep its rate: ${this.end.here ? "this machine is busy" : "see palpate doctor"}` : "";
     byId("link-state").title = `connected${late}${delay}; a frame every ${this.world.stage.frameTime.toFixed(0)} ms`;
   }
 
@@ -143,13 +144,15 @@ export class Bar {
   }
 
   private async share(): Promise<void> {
-    const address = location.href.replace(/#.*/, "") + writeLink(this.token, this.session.values);
+    const token = this.end.here ? "" : this.end.token;
+    const address = location.href.replace(/#.*/, "") + writeLink(token, this.session.values);
     try {
       await navigator.clipboard.writeText(address);
-      this.notices.add("info", "copied a link with these settings; it contains the token, so share it with care");
+      this.notices.add("info", `copied a link with these settings${token === "" ? "" : "; it contains the token, so share it with care"}`);
     } catch {
       const field = byId<HTMLInputElement>("share-link");
       field.value = address;
+      byId("share-token").hidden = token === "";
       byId<HTMLDialogElement>("share-dialog").showModal();
       field.select();
     }

@@ -1,23 +1,14 @@
 // Gives the program a file to touch: dropped on the page, or chosen.
 
+import type { End } from "../protocol/end";
 import { byId } from "./dom";
 import type { Notices } from "./notices";
-
-const kLongest = 60; // characters of a name
-const kAgain = 1500; // ms: between two runs nobody listens
-
-/** What the program takes as the name of a file, as like `name` as can be; its ending stays. */
-export function fileName(name: string): string {
-  // eslint-disable-next-line no-control-regex
-  const plain = [...name.replace(/[/\u0000-\u001f\u007f]+/g, "_")].slice(-kLongest).join("");
-  return plain.replace(/^\.+/, "_") || "_";
-}
 
 export class Opening {
   private most = 0; // bytes that the program takes; 0: it takes no file
   private inside = 0; // elements of the page that a dragged file is in
 
-  constructor(private readonly token: string, private readonly notices: Notices) {
+  constructor(private readonly end: End, private readonly notices: Notices) {
     const field = byId<HTMLInputElement>("open-file");
     byId("open").addEventListener("click", () => field.click());
     field.addEventListener("change", () => {
@@ -68,18 +59,10 @@ export class Opening {
   }
 
   private async send(file: File): Promise<void> {
-    const words = `sending ${file.name}`;
+    const words = `${this.end.here ? "opening" : "sending"} ${file.name}`;
     this.notices.add("info", words);
-    const put = () => fetch(`open/${encodeURIComponent(fileName(file.name))}`,
-      { method: "PUT", body: file, headers: { Authorization: `Bearer ${this.token}` } });
-    const later = () => new Promise((resolve) => setTimeout(resolve, kAgain));
-    try {
-      const answer = await put().catch(() => later().then(put));
-      if (!answer.ok) this.notices.add("warning", `${file.name}: ${await answer.text()}`);
-    } catch {
-      this.notices.add("warning", `${file.name} could not be sent: the program does not answer, or the file cannot be read`);
-    } finally {
-      this.notices.takeBack(words);
-    }
+    const wrong = await this.end.give(file);
+    if (wrong !== undefined) this.notices.add("warning", wrong);
+    this.notices.takeBack(words);
   }
 }

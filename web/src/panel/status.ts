@@ -38,6 +38,9 @@ export class Status {
       this.ask("The program rejected this page",
         `Reason: ${link.reason}. Each start of the program has a new token: ` +
         "open the address that it printed last, or paste it here.");
+    } else if (link.phase === "ended") {
+      this.words("ended");
+      this.end(link.reason);
     } else if (link.restarts) {
       this.words("starting again"); // what was seen stays until then
     } else {
@@ -65,6 +68,12 @@ export class Status {
     tell();
     byId("cover-again").hidden = false;
     this.timer = window.setInterval(tell, 1000);
+  }
+
+  private end(reason: string): void {
+    this.cover("What computes the touch here has ended", `Reason: ${reason}. This page can start it again, with what it began with.`);
+    say(byId("cover-again"), "Start again");
+    byId("cover-again").hidden = false;
   }
 
   private ask(title: string, text: string): void {

@@ -1,14 +1,16 @@
-// The socket to the program: says hello, hands messages on, comes back by itself when it is lost.
+// The connection with the program: says hello, hands messages on, comes back by itself when it is lost.
 
 import type { Backoff } from "./backoff";
 import { decode, DecodeError, type BinaryMessage } from "./decode";
+import { kAbnormal, kPolicyViolation, kServiceRestart, type End } from "./end";
 import { parseMessage, type FromProgram, type ToProgram } from "./messages";
 
 export type Link =
   | { phase: "connecting" }
   | { phase: "open" }
   | { phase: "waiting"; seconds: number; reason: string; restarts: boolean } // in the program's words, or empty
-  | { phase: "refused"; reason: string }; // trying again would not help
+  | { phase: "refused"; reason: string } // trying again would not help
+  | { phase: "ended"; reason: string }; // it begins again where somebody says so
 
 export interface Listener {
   link(link: Link): void;
@@ -17,17 +19,13 @@ export interface Listener {
   garbled(text: string): void;
 }
 
-const kAbnormal = 1006;
-const kPolicyViolation = 1008;
-const kServiceRestart = 1012;
 const kFollows = 0.15; // s until another run listens
 const kPing = 2000; // ms
-const kSilence = 8000; // ms without a word, or until it opens, before the socket counts as dead
+const kSilence = 8000; // ms without a word, or until it opens, before a program elsewhere counts as dead
 
 export class Connection {
   roundTrip = NaN; // s, of the last ping
 
-  private socket: WebSocket | undefined;
   private retry = 0;
   private opening = 0;
   private pinging = 0;
@@ -37,8 +35,7 @@ export class Connection {
   private heard = 0;
 
   constructor(
-    private readonly address: string,
-    private readonly token: string,
+    private readonly end: End,
     private readonly points: () => number,
     private readonly backoff: Backoff,
     private readonly listener: Listener,
@@ -48,35 +45,30 @@ export class Connection {
     clearTimeout(this.retry);
     this.drop();
     this.listener.link({ phase: "connecting" });
-    this.opening = window.setTimeout(() => this.lost(kAbnormal, ""), kSilence);
-    const socket = new WebSocket(this.address);
-    socket.binaryType = "arraybuffer";
-    this.socket = socket;
-    socket.onopen = () => this.hello(socket);
-    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.take(event.data);
-    socket.onclose = (event) => {
-      if (this.socket === socket) this.lost(event.code, event.reason);
-    };
+    if (!this.end.here) this.opening = window.setTimeout(() => this.lost(kAbnormal, ""), kSilence);
+    this.end.open({
+      opened: () => this.hello(),
+      data: (data) => this.take(data),
+      closed: (code, why) => this.lost(code, why),
+    });
   }
 
   /** False where nobody is there to hear it. */
   send(message: ToProgram): boolean {
-    if (!this.welcomed || this.socket?.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(JSON.stringify(message));
-    return true;
+    return this.welcomed && this.end.send(JSON.stringify(message));
   }
 
-  private hello(socket: WebSocket): void {
+  private hello(): void {
     clearTimeout(this.opening);
-    socket.send(
-      JSON.stringify({ type: "hello", token: this.token, points: this.points() } satisfies ToProgram),
+    this.end.send(
+      JSON.stringify({ type: "hello", token: this.end.token, points: this.points() } satisfies ToProgram),
     );
     this.heard = performance.now();
     this.pinging = window.setInterval(() => this.ping(), kPing);
   }
 
   private ping(): void {
-    if (performance.now() - this.heard > kSilence) {
+    if (!this.end.here && performance.now() - this.heard > kSilence) {
       this.lost(kAbnormal, "");
       return;
     }
@@ -114,14 +106,9 @@ export class Connection {
   private drop(): void {
     clearTimeout(this.opening);
     clearInterval(this.pinging);
-    const socket = this.socket;
-    this.socket = undefined; // from here on nobody listens to it
     this.welcomed = false;
     this.roundTrip = NaN;
-    if (socket === undefined) return;
-    socket.onopen = null;
-    socket.onmessage = null;
-    socket.close();
+    this.end.close();
   }
 
   private lost(code: number, reason: string): void {
@@ -132,6 +119,10 @@ export class Connection {
       return;
     }
     const restarts = code === kServiceRestart;
+    if (this.end.here && !restarts) {
+      this.listener.link({ phase: "ended", reason });
+      return;
+    }
     const seconds = restarts ? kFollows : this.backoff.next();
     this.listener.link({ phase: "waiting", seconds, reason, restarts });
     this.retry = window.setTimeout(() => this.open(), seconds * 1000);

@@ -1,4 +1,4 @@
-// The part of the address after '#': the program's token, then settings as key=value.
+// The part of the address after '#': the program's token, where it has one, then settings as key=value.
 // A person with such a link may steer the program: it says so where it is copied.
 
 import type { Setting, SettingValue, Welcome } from "./messages";
@@ -9,18 +9,19 @@ export interface Link {
 }
 
 export function readLink(fragment: string): Link {
-  const [token = "", ...rest] = fragment.replace(/^#/, "").split("&");
+  const parts = fragment.replace(/^#/, "").split("&");
+  const token = parts[0]?.includes("=") === true ? "" : (parts.shift() ?? "");
   const values = new Map<string, string>();
-  for (const part of rest) {
+  for (const part of parts) {
     const at = part.indexOf("=");
     if (at <= 0) continue;
     values.set(unescapePart(part.slice(0, at)), unescapePart(part.slice(at + 1)));
   }
-  return { token: token.includes("=") ? "" : unescapePart(token), values };
+  return { token: unescapePart(token), values };
 }
 
 export function writeLink(token: string, values: Iterable<[string, SettingValue]>): string {
-  const parts = [encodeURIComponent(token)];
+  const parts = token === "" ? [] : [encodeURIComponent(token)];
   for (const [key, value] of values) {
     parts.push(`${encodeURIComponent(key)}=${encodeURIComponent(String(value))}`);
   }

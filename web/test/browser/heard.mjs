@@ -2,32 +2,36 @@
 
 /** Runs in the page, before its own scripts: keeps each tool's newest state, counts states and clouds. */
 export function listen() {
-  const Plain = window.WebSocket;
   window.heard = { states: 0, clouds: 0, points: 0, tools: [] };
   const three = (view, at) => [0, 4, 8].map((i) => view.getFloat32(at + i, true));
-  window.WebSocket = class extends Plain {
-    constructor(...all) {
-      super(...all);
-      this.addEventListener("message", ({ data }) => {
-        if (typeof data === "string") return;
-        const view = new DataView(data);
-        const kind = view.getUint8(0);
-        if (kind === 2) {
-          window.heard.clouds += 1;
-          window.heard.points = view.getUint32(4, true);
-          if (window.heard.clouds === 1) { // drawn in the next picture, which is over when the one after begins
-            requestAnimationFrame(() => requestAnimationFrame((now) => (window.heard.firstCloud = now)));
-          }
-        }
-        if (kind !== 1) return;
-        window.heard.states += 1;
-        window.heard.tools[view.getUint8(1)] = {
-          flags: view.getUint32(4, true), hip: three(view, 16), proxy: three(view, 28),
-          normal: three(view, 40), force: three(view, 52),
-        };
-      });
+  const hear = ({ data }) => {
+    if (!(data instanceof ArrayBuffer)) return;
+    const view = new DataView(data);
+    const kind = view.getUint8(0);
+    if (kind === 2) {
+      window.heard.clouds += 1;
+      window.heard.points = view.getUint32(4, true);
+      if (window.heard.clouds === 1) { // drawn in the next picture, which is over when the one after begins
+        requestAnimationFrame(() => requestAnimationFrame((now) => (window.heard.firstCloud = now)));
+      }
     }
+    if (kind !== 1) return;
+    window.heard.states += 1;
+    window.heard.time = view.getFloat64(8, true);
+    window.heard.tools[view.getUint8(1)] = {
+      flags: view.getUint32(4, true), hip: three(view, 16), proxy: three(view, 28),
+      normal: three(view, 40), force: three(view, 52),
+    };
   };
+  for (const end of ["WebSocket", "Worker"]) { // a program elsewhere, or in the page's own tab
+    window[end] = class extends window[end] {
+      constructor(...all) {
+        super(...all);
+        window.end = this;
+        this.addEventListener("message", hear);
+      }
+    };
+  }
   localStorage.setItem("palpate.points", "10000"); // drawn in software
 }
 

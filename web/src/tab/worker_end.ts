@@ -1,0 +1,103 @@
+// A program in a worker of this tab.
+
+import { kAbnormal, kServiceRestart, type End, type Hears } from "../protocol/end";
+import type { FromWorker, ToWorker } from "./messages";
+import type { Wanted } from "./wanted";
+
+const kUnreachable = "its scripts could not be loaded: is this machine online?";
+
+export class WorkerEnd implements End {
+  readonly token = "tab"; // nobody else can speak to a worker
+  readonly here = true;
+  private worker: Worker | undefined;
+  private hears: Hears | undefined;
+  private ready = false;
+  private answer: ((wrong: string | undefined) => void) | undefined; // of the file that was given
+
+  /** Begins at once: what is `first` touched is there the sooner. */
+  constructor(private readonly first: Wanted) {
+    this.worker = this.start();
+  }
+
+  open(hears: Hears): void {
+    this.hears = hears;
+    this.worker ??= this.start();
+    if (this.ready) this.connect();
+  }
+
+  send(text: string): boolean {
+    if (!this.ready) return false;
+    this.post(text);
+    return true;
+  }
+
+  async give(file: File): Promise<string | undefined> {
+    if (!this.ready || this.answer !== undefined) return `${file.name} is not opened: another one is being prepared`;
+    try {
+      const bytes = await file.arrayBuffer();
+      return await new Promise((resolve) => {
+        this.answer = resolve;
+        this.post({ kind: "open", wanted: { name: file.name, bytes } }, [bytes]);
+      });
+    } catch {
+      return `${file.name} cannot be read: is it still there?`;
+    }
+  }
+
+  close(): void {
+    this.hears = undefined;
+  }
+
+  private start(): Worker {
+    const worker = new Worker("worker.js");
+    worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.take(data);
+    worker.onerror = (event) => {
+      event.preventDefault(); // it is said on the page
+      this.died(event.message ?? kUnreachable);
+    };
+    worker.postMessage({ kind: "open", wanted: this.first } satisfies ToWorker);
+    return worker;
+  }
+
+  private post(message: ToWorker, give: Transferable[] = []): void {
+    this.worker?.postMessage(message, give);
+  }
+
+  private connect(): void {
+    this.post({ kind: "connect" });
+    this.hears?.opened();
+  }
+
+  private take(data: FromWorker): void {
+    if (typeof data === "string" || data instanceof ArrayBuffer) return this.hears?.data(data);
+    switch (data.kind) {
+      case "ready":
+        this.ready = true;
+        if (this.hears !== undefined) this.connect();
+        return;
+      case "another":
+        this.answered(undefined);
+        return this.hears?.closed(kServiceRestart, "");
+      case "refused":
+        if (this.answer !== undefined) return this.answered(data.words);
+        return this.hears?.data(JSON.stringify({ type: "refused", text: data.words }));
+      case "closed":
+        return this.hears?.closed(data.code, data.why);
+      case "died":
+        return this.died(data.why);
+    }
+  }
+
+  private answered(wrong: string | undefined): void {
+    this.answer?.(wrong);
+    this.answer = undefined;
+  }
+
+  private died(why: string): void {
+    this.worker?.terminate();
+    this.worker = undefined;
+    this.ready = false;
+    this.answered(undefined); // it is said once
+    this.hears?.closed(kAbnormal, why);
+  }
+}
