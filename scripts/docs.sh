@@ -40,5 +40,17 @@ END
 sed -i 's|<initializer>= {[.].*</initializer>||' build/docs/xml/*.xml  # Sphinx 5 reads no designated initializers
 PATH=/usr/bin:$PATH scripts/docs.py build/docs/pages
 note "pages and pictures: $((SECONDS - started)) s"
+
+say "the page of a tab"
+tab=
+if [ -f "${XDG_CACHE_HOME:-$HOME/.cache}/palpate/emscripten/config" ]; then
+  scripts/tab.sh --site
+  tab=build/web/site
+  # Nothing of it is loaded before somebody opens it.
+  sed -i 's|^<!-- the page of a tab -->$|<details><summary>Touch it here</summary><iframe src="tab/index.html" loading="lazy" title="palpate in this tab" style="width: 100%; height: 36rem; border: 0"></iframe></details>|' build/docs/pages/try.*
+else
+  note "skipped: its compiler is not there (scripts/tab.sh fetches it)"
+fi
 /usr/bin/python3 -m sphinx -W --keep-going -q -j auto -c docs -d build/docs/doctrees build/docs/pages build/docs/html
+if [ -n "$tab" ]; then cp -r "$tab" build/docs/html/tab; fi
 note "build/docs/html/index.html ($(find build/docs/html -name '*.html' | wc -l) pages, $((SECONDS - started)) s)"
