@@ -59,8 +59,8 @@ export class Opening {
   }
 
   private async send(file: File): Promise<void> {
-    const words = `${this.end.here ? "opening" : "sending"} ${file.name}`;
-    this.notices.add("info", words);
+    const words = `${this.end.here ? "preparing" : "sending"} ${file.name}`;
+    this.notices.add("info", words, this.end.here ? 0 : undefined); // a program elsewhere says how far it is
     const wrong = await this.end.give(file);
     if (wrong !== undefined) this.notices.add("warning", wrong);
     this.notices.takeBack(words);

@@ -1,6 +1,7 @@
 // A program in a worker of this tab.
 
 import { kAbnormal, kServiceRestart, type End, type Hears } from "../protocol/end";
+import type { FromProgram } from "../protocol/messages";
 import type { FromWorker, ToWorker } from "./messages";
 import type { Wanted } from "./wanted";
 
@@ -22,7 +23,9 @@ export class WorkerEnd implements End {
   open(hears: Hears): void {
     this.hears = hears;
     this.worker ??= this.start();
-    if (this.ready) this.connect();
+    if (this.ready) return this.connect();
+    const text = `preparing ${this.first.name.replace(/^synthetic:/, "")}`;
+    hears.data(JSON.stringify({ type: "notice", level: "info", text, share: 0 } satisfies FromProgram)); // until it welcomes
   }
 
   send(text: string): boolean {
