@@ -92,19 +92,61 @@ void refuse_paged(const LoadedScene& loaded) {
 
 }  // namespace
 
+// Tells pages how reading and preparing go, and what went wrong.
+struct PageNews {
+  // Tells what of a cloud could not be read, each thing once.
+  void tell_problems() {
+    const std::vector<std::string> problems = feed.problems();
+    for (; told < problems.size(); ++told) {
+      viewer.notice(Viewer::NoticeLevel::warning, problems[told]);
+    }
+  }
+
+  // Around a store there is always something to come.
+  void tell_prepared() {
+    const auto paged = [](const LoadedSource& source) { return source.paged; };
+    if (std::ranges::any_of(run.loaded.sources, paged)) return;
+    surface.show(viewer, "preparing the surface, first where the tools are", feed.prepared());
+  }
+
+  // Has what a page sent been prepared? Tells pages how that goes.
+  bool has_opened() {
+    if (run.opening == nullptr) return false;
+    const std::optional<Opening::News> news = run.opening->look();
+    if (!news) return false;
+    if (news->kind == Opening::News::Kind::refused) {
+      opened.show(viewer, news->name, 1);
+      viewer.notice(Viewer::NoticeLevel::warning, news->problem);
+    } else if (news->kind == Opening::News::Kind::prepares) {
+      opened.show_cloud(viewer, news->name, news->share);
+    } else {
+      viewer.record_ended();
+      viewer.restarts("the program opens " + news->name);
+    }
+    return news->kind == Opening::News::Kind::prepared;
+  }
+
+  const Run& run;
+  const LiveFeed& feed;
+  Viewer& viewer;
+  std::size_t told = 0;      // problems of the feed
+  ToldProgress opened = {};  // how far a file is that a page sent
+  ToldProgress surface = {};
+};
+
 struct View::Parts {
   Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f, const RosBridge* b)
       : run(r),
         servos(std::move(s)),
         feed(f),
-        bridge(b),
         initial(initial_settings(r)),
         settings(initial),
         next(r),
         holds(r.hands.begin(), r.hands.end()),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
-        viewer(r.loaded.scene, servos, viewer_options(), controls()) {
+        news{r, f, viewer},
+        viewer(r.loaded.scene, servos, viewer_options(b), controls()) {
     run.recorder->on_broken([this](const std::string& why) { recording_broke(why); });
     if (run.recorder->recording().empty()) viewer.record_ended();
   }
@@ -117,7 +159,7 @@ struct View::Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  ViewerOptions viewer_options() {
+  ViewerOptions viewer_options(const RosBridge* bridge) {
     ViewerOptions options;
     const PagePlan& page = run.page;
     if (!page.address.empty()) options.address = page.address;
@@ -130,7 +172,7 @@ struct View::Parts {
     if (picture && !options.up) options.up = -Vector3d::UnitY();
     options.streams = [this] { return streams_of(run, feed); };
     if (bridge != nullptr && bridge->robot())
-      options.robot = [this] { return in_words(*bridge->robot()); };
+      options.robot = [bridge] { return in_words(*bridge->robot()); };
     return options;
   }
 
@@ -197,30 +239,6 @@ struct View::Parts {
     viewer.notice(Viewer::NoticeLevel::warning, why);
   }
 
-  // Around a store there is always something to come.
-  void tell_prepared() {
-    const auto paged = [](const LoadedSource& source) { return source.paged; };
-    if (std::ranges::any_of(run.loaded.sources, paged)) return;
-    surface.show(viewer, "preparing the surface, first where the tools are", feed.prepared());
-  }
-
-  // Has what a page sent been prepared? Tells pages how that goes.
-  bool has_opened() {
-    if (run.opening == nullptr) return false;
-    const std::optional<Opening::News> news = run.opening->look();
-    if (!news) return false;
-    if (news->kind == Opening::News::Kind::refused) {
-      opened.show(viewer, news->name, 1);
-      viewer.notice(Viewer::NoticeLevel::warning, news->problem);
-    } else if (news->kind == Opening::News::Kind::prepares) {
-      opened.show_cloud(viewer, news->name, news->share);
-    } else {
-      viewer.record_ended();
-      viewer.restarts("the program opens " + news->name);
-    }
-    return news->kind == Opening::News::Kind::prepared;
-  }
-
   [[nodiscard]] PagePlan next_page() const {
     PagePlan page = run.page;
     page.wanted = true;
@@ -231,14 +249,6 @@ struct View::Parts {
     return page;
   }
 
-  // Tells what of a cloud could not be read, each thing once.
-  void tell_problems() {
-    const std::vector<std::string> problems = feed.problems();
-    for (; told < problems.size(); ++told) {
-      viewer.notice(Viewer::NoticeLevel::warning, problems[told]);
-    }
-  }
-
   void recording_broke(const std::string& why) {
     viewer.record_ended();
     viewer.notice(Viewer::NoticeLevel::warning, "the recording ended: " + why);
@@ -247,17 +257,14 @@ struct View::Parts {
   Run& run;
   std::vector<Servo*> servos;
   const LiveFeed& feed;
-  const RosBridge* bridge;  // null: nobody is told
   ViewSettings initial;
-  std::size_t told = 0;  // problems of the feed
   std::mutex settings_mutex;
   ViewSettings settings;
   NextRun next;
   std::deque<PageHold> holds;  // of each hand
   Preparer preparer;
   std::optional<Browser> browser;
-  ToldProgress opened;  // how far a file is that a page sent
-  ToldProgress surface;
+  PageNews news;
   Viewer viewer;  // last: it uses all of the above
 };
 
@@ -276,9 +283,9 @@ std::optional<PagePlan> View::look() {
   for (PageHold& hold : parts_->holds) {
     if (hold.possible()) hold.keep();
   }
-  parts_->tell_problems();
-  parts_->tell_prepared();
-  if (!parts_->has_opened()) return {};
+  parts_->news.tell_problems();
+  parts_->news.tell_prepared();
+  if (!parts_->news.has_opened()) return {};
   return parts_->next_page();
 }
 
