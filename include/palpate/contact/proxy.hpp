@@ -85,8 +85,8 @@ struct ProxyOptions {
   double tangent_tolerance =
       1e-3;  ///< closest-point iteration stops below this many R; 1e-6 to 0.1
   /// s in which a softened contact comes to its stiffness though no motion of the hand pays for it;
-  /// above 0. Infinite: it gives a hand no energy (docs/method.md 3.5). For hands that no motor
-  /// moves.
+  /// above 0. Infinite: it gives a hand no energy (docs/method.md 3.5). Finite: for hands that no
+  /// motor moves; these feel a surface that fades with all of its stiffness until it is gone.
   double rise_time = std::numeric_limits<double>::infinity();
 };
 
