@@ -238,7 +238,6 @@ struct SameSurface {
 
 /// Empties blocks that stand between surfaces: those that fewer than two of their eight neighbours
 /// continue, be it by lying close or by lying on a line with the block and its opposite neighbour.
-/// `scratch` is kept for its memory.
 void reject_flying(const NoiseModel& noise, Blocks& blocks);
 
 /// Plain fits of some blocks of a row: each block's own mean, its slopes by least squares over
