@@ -148,7 +148,7 @@ export class Backdrop {
     }
     if (isSame && now - this.drawn < wanted.rest) return true;
     this.eye = eye;
-    if (wanted.clouds !== this.clouds) this.noteChange(now);
+    if (wanted.clouds !== this.clouds) this.noteChange(now, wanted.shown.some(({ live }) => live));
     this.clouds = wanted.clouds;
     this.drawn = now;
     this.quick.scissor.set(0, 0, Infinity, Infinity);
@@ -163,9 +163,9 @@ export class Backdrop {
     return true;
   }
 
-  private noteChange(now: number): void {
+  private noteChange(now: number, isLive: boolean): void {
     const gap = now - this.changed;
-    this.gap = gap < kLive ? gap : 0;
+    this.gap = isLive && gap < kLive ? gap : 0;
     this.changed = now;
   }
 
