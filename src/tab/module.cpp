@@ -1,11 +1,10 @@
 // What a worker calls of the program, and what the program calls of it.
 #include <emscripten.h>
-#include <fmt/format.h>
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "tab/tab_program.hpp"
@@ -33,6 +32,16 @@ Outside worker() {
           [](const std::string& name) { tab_another(name.c_str()); }};
 }
 
+const char* ended_by(const std::function<void()>& act) {
+  try {
+    act();
+    return nullptr;
+  } catch (const std::exception& error) {
+    words = words_of(error, "what is touched");
+  }
+  return words.c_str();
+}
+
 }  // namespace
 
 extern "C" {
@@ -46,23 +55,21 @@ EMSCRIPTEN_KEEPALIVE const char* tab_open(const char* name, const std::byte* byt
         bytes != nullptr ? of_file({bytes, static_cast<std::size_t>(size)}, name) : synthetic(name);
     program = std::make_unique<TabProgram>(std::move(touched), worker(), news);
     return nullptr;
-  } catch (const std::bad_alloc&) {
-    words = fmt::format("{} needs more memory than a tab may use; the program palpate can open it",
-                        name);
   } catch (const std::exception& error) {
-    words = error.what();
+    words = words_of(error, name);
   }
   return words.c_str();
 }
 
-EMSCRIPTEN_KEEPALIVE void tab_connect(double now) {
-  program->connect(now);
+// These return null, or what ended the program.
+EMSCRIPTEN_KEEPALIVE const char* tab_connect(double now) {
+  return ended_by([now] { program->connect(now); });
 }
-EMSCRIPTEN_KEEPALIVE void tab_receive(const char* text, double now) {
-  program->receive(text, now);
+EMSCRIPTEN_KEEPALIVE const char* tab_receive(const char* text, double now) {
+  return ended_by([text, now] { program->receive(text, now); });
 }
-EMSCRIPTEN_KEEPALIVE int tab_run(double now) {
-  return program->run(now);
+EMSCRIPTEN_KEEPALIVE const char* tab_run(double now) {
+  return ended_by([now] { program->run(now); });
 }
 
 }  // extern "C"

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
+#include <new>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -26,6 +28,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "session/view_settings.hpp"
+#include "tab/tab_hand.hpp"
 #include "viewer/run_view.hpp"
 
 namespace palpate::tab {
@@ -39,23 +42,10 @@ constexpr std::array<const char*, 3> kExamples = {"rabbit", "torus", "room"};
 
 constexpr double kStatePeriod = 1.0 / 60;  // s, as of the viewer
 constexpr double kReportPeriod = 0.5;      // s, as of the viewer
-constexpr double kReachingSpeed = 2;       // m/s, a fast reach of an arm, as of a program's hands
-constexpr double kRiseTime = 0.3;          // s, as of a program's hands that a page may take
 
 // A quarter of the memory that a tab may have, 2 GB: a file's bytes, its cloud and what is made of
 // it are there at once.
 constexpr std::size_t kLargestFile = 512 << 20;
-
-// Nobody can be thrown by a page, and a command that is overdue counts as a release.
-ServoOptions servo_options(const Placement& placement) {
-  ServoOptions options;
-  options.proxy.stiffness = placement.stiffness;
-  options.proxy.rise_time = kRiseTime;
-  options.guard.soft_start = 0;
-  options.guard.silence = std::numeric_limits<double>::infinity();
-  options.workspace = placement.workspace;
-  return options;
-}
 
 Setting scene_setting(const std::string& present) {
   Setting setting{.key = "scene", .label = "Scene", .kind = Setting::Kind::choice};
@@ -68,6 +58,12 @@ Setting scene_setting(const std::string& present) {
 
 }  // namespace
 
+std::string words_of(const std::exception& error, const std::string& name) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) == nullptr) return error.what();
+  return fmt::format("{} needs more memory than a tab may use; the program palpate can open it",
+                     name);
+}
+
 Touched synthetic(const std::string& name) {
   const bool prefixed = name.starts_with(kSynthetic);
   std::string plain = prefixed ? name.substr(kSynthetic.size()) : name;
@@ -79,45 +75,83 @@ Touched of_file(std::span<const std::byte> bytes, const std::string& name) {
   return {std::filesystem::path(name).stem().string(), read_cloud_bytes(bytes, name).cloud};
 }
 
+// The cloud, prepared as the page wants it.
+struct TabCloud {
+  explicit TabCloud(Touched what)
+      : touched(std::move(what)),
+        source(scene.add(touched.name, touched.cloud)),
+        first(source.options()) {
+    preparation.voxel = first.prepare.voxel;
+    initial = wanted = preparation;
+  }
+
+  // What could not be prepared leaves the surface as it was. @throws Error as preparing does.
+  void prepare_what_is_wanted() {
+    if (wanted == preparation) return;
+    source.change(prepared_by(wanted, initial, first));
+    try {
+      source.set(touched.cloud);
+    } catch (...) {
+      wanted = preparation;
+      source.change(prepared_by(preparation, initial, first));
+      throw;
+    }
+    preparation = wanted;
+  }
+
+  Touched touched;
+  Scene scene;
+  Source& source;
+  SourceOptions first;                // as it was at first
+  ViewSettings::Preparation initial;  // the same, as settings
+  ViewSettings::Preparation preparation;
+  ViewSettings::Preparation wanted;
+};
+
+// When what was done last.
+struct Done {
+  double states = -1e300;
+  double reports = -1e300;
+  double next_picture = -1e300;
+};
+
 struct TabProgram::Parts {
   Parts(Touched what, Outside to, std::string say_first)
-      : touched(std::move(what)),
-        outside(std::move(to)),
+      : outside(std::move(to)),
         news(std::move(say_first)),
-        source(scene.add(touched.name, touched.cloud)),
-        prepared(source.options()),
-        placement(place_device(scene, {}, {})),
-        guide(remote, {}, {.speed = kReachingSpeed}),
-        device({}, guide),
-        servo(device, scene, servo_options(placement)),
+        cloud(std::move(what)),
+        hand(cloud.scene),
         initial(initial_settings()),
         settings(initial),
-        view(scene, {&servo}, viewer_options(), controls()),
-        encoder(scene, view.encoding()) {}
+        view(cloud.scene, {&hand.servo}, viewer_options(), controls()),
+        encoder(cloud.scene, view.encoding()) {}
 
   [[nodiscard]] ViewSettings initial_settings() const {
     ViewSettings first;
-    first.feel = servo.contact();
-    first.preparation.voxel = prepared.prepare.voxel;
+    first.feel = hand.servo.contact();
+    first.preparation = cloud.initial;
     return first;
   }
 
   [[nodiscard]] session::ViewScope scope() const {
     session::ViewScope scope;
-    scope.scale = placement.workspace.scale;
-    scope.stiffest = std::min(kSteadyStiffness / scope.scale, servo.stiffness_limit());
-    const double deepest = session::deepest_texture(scene);
+    scope.scale = hand.placement.workspace.scale;
+    scope.stiffest = std::min(kSteadyStiffness / scope.scale, hand.servo.stiffness_limit());
+    const double deepest = session::deepest_texture(cloud.scene);
     scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
     scope.clouds = true;
-    scope.spacing = source.report().spacing;
+    scope.spacing = cloud.source.report().spacing;
     return scope;
   }
 
+  // Nobody else can speak to a worker; what a page says while a cloud is prepared comes at once
+  // afterwards, so how much it says in a second is no sign of an attack.
   [[nodiscard]] ViewerOptions viewer_options() const {
     ViewerOptions options;
-    options.token = "tab";  // nobody else can speak to a worker
-    options.scene = touched.name;
+    options.token = "tab";
+    options.scene = cloud.touched.name;
     options.limits.file = kLargestFile;
+    options.limits.messages = std::numeric_limits<int>::max();
     return options;
   }
 
@@ -125,7 +159,7 @@ struct TabProgram::Parts {
     ViewerControls controls;
     controls.settings = [this] {
       std::vector<Setting> list = list_settings(settings, scope());
-      list.push_back(scene_setting(touched.name));
+      list.push_back(scene_setting(cloud.touched.name));
       return list;
     };
     controls.set = [this](const std::string& key, const Setting::Value& value) {
@@ -137,62 +171,39 @@ struct TabProgram::Parts {
     };
     controls.presets = session::preset_names();
     controls.preset = [this](const std::string& name) { apply(preset(initial, name, scope())); };
-    controls.open = [this](const std::string& name, const std::string&) { outside.open(name); };
-    controls.scale = [this](std::size_t) { return placement.workspace.scale; };
-    controls.hand = [this](std::size_t, TargetSource::Target target) {
-      target.position = placement.workspace.position_to_device(target.position);
-      remote.move(target, heard);
-    };
-    controls.release = [this](std::size_t) { remote.release(); };
+    // The worker opens files; this is there so that the page offers it.
+    controls.open = [](const std::string&, const std::string&) {};
+    controls.scale = [this](std::size_t) { return hand.placement.workspace.scale; };
+    controls.hand = [this](std::size_t, const TargetSource::Target& target) { hand.go(target); };
+    controls.release = [this](std::size_t) { hand.remote.release(); };
     return controls;
   }
 
+  // A cloud is prepared in the next run(): of a slider that moves the last value counts.
   void apply(const ViewSettings& wanted) {
-    servo.set_contact(wanted.feel);
-    servo.set_field(wanted.field);
-    if (wanted.preparation != settings.preparation) prepare(wanted.preparation);
+    hand.servo.set_contact(wanted.feel);
+    hand.servo.set_field(wanted.field);
+    cloud.wanted = wanted.preparation;
     settings = wanted;
   }
 
-  // What could not be prepared leaves the surface as it was.
-  void prepare(const ViewSettings::Preparation& wanted) {
-    source.change(prepared_by(wanted, initial.preparation, prepared));
+  void prepare() {
     try {
-      source.set(touched.cloud);
-    } catch (const std::exception&) {
-      source.change(prepared_by(settings.preparation, initial.preparation, prepared));
-      throw;
+      cloud.prepare_what_is_wanted();
+    } catch (const std::exception& error) {
+      settings.preparation = cloud.preparation;
+      view.sessions().send_settings();
+      view.sessions().send({Viewer::NoticeLevel::warning, words_of(error, cloud.touched.name)});
     }
-  }
-
-  void step(double lateness) {
-    const DeviceState read = device.read();
-    servo.step(read, read.time);
-    device.write(servo.device_force());
-    servo.show({.lateness = lateness, .computing = computing});
-    ++steps;
-  }
-
-  // Clocks of browsers are too coarse for one step: the mean of all of a call counts.
-  int step_up_to(double now) {
-    const double rate = device.info().rate;
-    const auto behind = [&] { return now - *start - static_cast<double>(steps) / rate; };
-    if (behind() > kMostLate) *start += behind() - kMostLate;
-    if (view.sessions().taken(0)) remote.keep_alive();
-    const double begin = clock.now();
-    int count = 0;
-    for (; behind() >= 0; ++count) step(behind());
-    if (count > 0) computing = (clock.now() - begin) / count;
-    return count;
   }
 
   void tell(double now) {
-    if (now - told >= kStatePeriod) {
-      told = now;
+    if (now - done.states >= kStatePeriod) {
+      done.states = now;
       view.tell_states(now);
     }
-    if (now - reported >= kReportPeriod) {
-      reported = now;
+    if (now - done.reports >= kReportPeriod) {
+      done.reports = now;
       view.tell_faults();
     }
     const std::set<std::size_t> budgets = view.budgets();
@@ -200,10 +211,10 @@ struct TabProgram::Parts {
     if (!news.empty()) {
       view.sessions().send({Viewer::NoticeLevel::warning, std::exchange(news, {})});
     }
-    if (now < next_picture) return;
-    const double begin = clock.now();
+    if (now < done.next_picture) return;
+    const double begin = hand.clock.now();
     view.show(encoder.encode(budgets));
-    next_picture = now + viewer::SceneEncoder::pause_after(clock.now() - begin);
+    done.next_picture = now + viewer::SceneEncoder::pause_after(hand.clock.now() - begin);
   }
 
   void flush() {
@@ -220,30 +231,16 @@ struct TabProgram::Parts {
     page.reset();
   }
 
-  Touched touched;
   Outside outside;
   std::string news;
-  Scene scene;
-  Source& source;
-  SourceOptions prepared;  // as it was at first
-  Placement placement;
-  RemoteTarget remote;
-  TeleoperatedHand guide;
-  SimulatedDevice device;
-  Servo servo;
+  TabCloud cloud;
+  TabHand hand;
   ViewSettings initial;
   ViewSettings settings;
   viewer::RunView view;
   viewer::SceneEncoder encoder;
   std::optional<viewer::Session> page;
-  SteadyClock clock;            // of computing times alone
-  std::optional<double> start;  // when the device's time was 0
-  std::uint64_t steps = 0;
-  double heard = 0;      // when the page said something last
-  double computing = 0;  // of a step, s, in the call before
-  double told = -1e300;
-  double reported = -1e300;
-  double next_picture = -1e300;
+  Done done;
 };
 
 TabProgram::TabProgram(Touched touched, Outside outside, std::string news)
@@ -259,17 +256,19 @@ void TabProgram::connect(double now) {
 
 void TabProgram::receive(std::string_view text, double now) {
   if (!parts_->page) return;
-  parts_->heard = now;
+  parts_->hand.heard = now;
   parts_->view.sessions().receive(*parts_->page, text, now);
   parts_->flush();
 }
 
 int TabProgram::run(double now) {
-  if (!parts_->start) parts_->start = now;
-  const int steps = parts_->step_up_to(now);
-  parts_->tell(now);
-  parts_->view.sessions().check(now);
-  parts_->flush();
+  Parts& parts = *parts_;
+  parts.prepare();
+  if (parts.view.sessions().taken(0)) parts.hand.remote.keep_alive();
+  const int steps = parts.hand.step_up_to(now);
+  parts.tell(now);
+  parts.view.sessions().check(now);
+  parts.flush();
   return steps;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,9 @@ struct Touched {
 
 /// The cloud in the bytes of a file of that name, by read_cloud_bytes(). @throws Error as it does.
 [[nodiscard]] Touched of_file(std::span<const std::byte> bytes, const std::string& name);
+
+/// What is wrong, for people; of memory that did not suffice for what has that name, too.
+[[nodiscard]] std::string words_of(const std::exception& error, const std::string& name);
 
 /// Whom the program calls.
 struct Outside {
@@ -57,8 +61,6 @@ class TabProgram {
   /// Steps up to `now`, and tells the page. What is later than kMostLate is left out. The number of
   /// steps.
   int run(double now);
-
-  static constexpr double kMostLate = 0.1;  ///< s; a hand's command is as old at most (judgement)
 
  private:
   struct Parts;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "palpate/base/error.hpp"
+#include "tab/tab_hand.hpp"
 #include "viewer/bytes.hpp"
 
 namespace palpate::tab {
@@ -124,7 +125,7 @@ TEST(TabProgram, TheSameCallsGiveTheSameForces) {
 TEST(TabProgram, StepsAThousandTimesASecondAndLeavesOutWhatIsTooLate) {
   Page page;
   EXPECT_NEAR(page.run(1), 1000, 1);
-  EXPECT_NEAR(page.program.run(page.now += 10), 1000 * TabProgram::kMostLate, 1);
+  EXPECT_NEAR(page.program.run(page.now += 10), 1000 * kMostLate, 1);
   EXPECT_NEAR(page.run(1), 1000, 1);
 }
 
@@ -152,6 +153,28 @@ TEST(TabProgram, ACloudIsPreparedAnewAndStaysWhereThatFails) {
   EXPECT_EQ(page.clouds, 2);
   page.press(4e-3);
   EXPECT_GT(page.force().norm(), 0.1);
+}
+
+// What waits while a cloud is prepared comes at once.
+TEST(TabProgram, APageMaySayAnyNumberOfThingsInASecond) {
+  Page page;
+  for (int i = 0; i < 1000; ++i) {
+    page.say({{"type", "hand"}, {"device", 0}, {"position", {0.07, 0, 0.05}}, {"buttons", 0}});
+  }
+  page.run(0.1);
+  EXPECT_EQ(page.closed, 0);
+  EXPECT_EQ(test::u32(page.state, 4) & 4U, 4U) << "taken";
+}
+
+TEST(TabProgram, OfASliderThatMovesTheLastValueIsPrepared) {
+  Page page;
+  page.run(0.2);
+  for (int i = 10; i <= 30; ++i) {
+    page.say({{"type", "set"}, {"key", "smoothing"}, {"value", i / 10.0}});
+  }
+  EXPECT_EQ(page.value("smoothing"), 3);
+  page.run(0.5);
+  EXPECT_EQ(page.clouds, 2) << "prepared once";
 }
 
 TEST(TabProgram, APageThatTalksNonsenseIsClosedAndMayComeAgain) {

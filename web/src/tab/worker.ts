@@ -11,8 +11,8 @@ interface Core {
   _malloc(size: number): number;
   _free(at: number): void;
   _tab_open(name: number, bytes: number, size: number, news: number): number; // null: it is touched
-  _tab_connect(now: number): void;
-  _tab_receive(text: number, now: number): void;
+  _tab_connect(now: number): number; // null, or what ended the program; as of the next two
+  _tab_receive(text: number, now: number): number;
   _tab_run(now: number): number;
 }
 declare const Tab: (options: object) => Promise<Core>;
@@ -37,9 +37,9 @@ async function compile(): Promise<WebAssembly.Module> {
 
 async function instance(): Promise<Core> {
   const module = await compiled;
-  return Tab({
+  return new Promise((resolve, reject) => void Tab({
     instantiateWasm(imports: WebAssembly.Imports, done: (made: WebAssembly.Instance, module: WebAssembly.Module) => void) {
-      void WebAssembly.instantiate(module, imports).then((made) => done(made, module));
+      WebAssembly.instantiate(module, imports).then((made) => done(made, module), reject);
       return {};
     },
     say(bytes: Uint8Array, text: boolean) {
@@ -51,7 +51,7 @@ async function instance(): Promise<Core> {
     open: (name: string) => void another({ name }),
     print() {},
     printErr() {}, // what goes wrong is said on the page
-  });
+  }).then(resolve, reject));
 }
 
 const seconds = () => performance.now() / 1000;
@@ -85,6 +85,13 @@ async function open({ name, at, bytes, news = "" }: Wanted): Promise<void> {
   if (wrong !== 0) throw new Error(next.UTF8ToString(wrong));
   for (const each of [place, ...texts]) next._free(each);
   core = next;
+}
+
+/** Calls the program, which ends where it says why. */
+function call(act: (of: Core) => number): void {
+  if (core === undefined) return;
+  const wrong = act(core);
+  if (wrong !== 0) throw new Error(core.UTF8ToString(wrong));
 }
 
 /** Words that name what they are of. */
@@ -125,23 +132,25 @@ function loop(): void {
   if (core === undefined) return;
   setTimeout(loop); // browsers wait 4 ms at least
   try {
-    core._tab_run(seconds());
+    call((of) => of._tab_run(seconds()));
   } catch (error) {
     die(error);
   }
 }
 
 function receive(text: string): void {
-  if (core === undefined) return;
-  const at = textIn(core, text);
-  core._tab_receive(at, seconds());
-  core._free(at);
+  call((of) => {
+    const at = textIn(of, text);
+    const wrong = of._tab_receive(at, seconds());
+    of._free(at);
+    return wrong;
+  });
 }
 
 onmessage = ({ data }: MessageEvent<ToWorker>) => {
   try {
     if (typeof data === "string") receive(data);
-    else if (data.kind === "connect") core?._tab_connect(seconds());
+    else if (data.kind === "connect") call((of) => of._tab_connect(seconds()));
     else if (core === undefined) void first(data.wanted);
     else void another(data.wanted);
   } catch (error) {

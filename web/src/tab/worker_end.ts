@@ -13,6 +13,7 @@ export class WorkerEnd implements End {
   private worker: Worker | undefined;
   private hears: Hears | undefined;
   private ready = false;
+  private giving = false;
   private answer: ((wrong: string | undefined) => void) | undefined; // of the file that was given
 
   /** Begins at once: what is `first` touched is there the sooner. */
@@ -35,16 +36,23 @@ export class WorkerEnd implements End {
   }
 
   async give(file: File): Promise<string | undefined> {
-    if (!this.ready || this.answer !== undefined) return `${file.name} is not opened: another one is being prepared`;
+    if (this.giving) return `${file.name} is not opened: another one is being prepared`;
+    this.giving = true;
     try {
-      const bytes = await file.arrayBuffer();
-      return await new Promise((resolve) => {
-        this.answer = resolve;
-        this.post({ kind: "open", wanted: { name: file.name, bytes } }, [bytes]);
-      });
+      return await this.hand(file.name, await file.arrayBuffer());
     } catch {
       return `${file.name} cannot be read: is it still there?`;
+    } finally {
+      this.giving = false;
     }
+  }
+
+  private async hand(name: string, bytes: ArrayBuffer): Promise<string | undefined> {
+    if (!this.ready) return `${name} is not opened: nothing computes the touch here now`;
+    return new Promise((resolve) => {
+      this.answer = resolve;
+      this.post({ kind: "open", wanted: { name, bytes } }, [bytes]);
+    });
   }
 
   close(): void {

@@ -1,0 +1,78 @@
+// Declares the simulated hand of a tab.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "palpate/base/clock.hpp"
+#include "palpate/device/exploration.hpp"
+#include "palpate/device/simulated.hpp"
+#include "palpate/scene/scene.hpp"
+#include "palpate/servo/servo.hpp"
+
+namespace palpate::tab {
+
+inline constexpr double kReachingSpeed = 2;  // m/s, a fast reach of an arm, as of a program's hands
+inline constexpr double kRiseTime = 0.3;     // s, as of a program's hands that a page may take
+/// s; steps that are later are left out: a hand's command is as old at most (judgement).
+inline constexpr double kMostLate = 0.1;
+
+// Nobody can be thrown by a page, and a command that is overdue counts as a release.
+[[nodiscard]] inline ServoOptions servo_options(const Placement& placement) {
+  ServoOptions options;
+  options.proxy.stiffness = placement.stiffness;
+  options.proxy.rise_time = kRiseTime;
+  options.guard.soft_start = 0;
+  options.guard.silence = std::numeric_limits<double>::infinity();
+  options.workspace = placement.workspace;
+  return options;
+}
+
+/// A simulated hand that a page may take: it, its servo and the time that is simulated of both.
+struct TabHand {
+  explicit TabHand(Scene& scene)
+      : placement(place_device(scene, {}, {})),
+        guide(remote, {}, {.speed = kReachingSpeed}),
+        device({}, guide),
+        servo(device, scene, servo_options(placement)) {}
+
+  void go(TargetSource::Target target) {
+    target.position = placement.workspace.position_to_device(target.position);
+    remote.move(target, heard);
+  }
+
+  void step(double lateness) {
+    const DeviceState read = device.read();
+    servo.step(read, read.time);
+    device.write(servo.device_force());
+    servo.show({.lateness = lateness, .computing = computing});
+    ++steps;
+  }
+
+  // Clocks of browsers are too coarse for one step: the mean of all of a call counts.
+  int step_up_to(double now) {
+    const double rate = device.info().rate;
+    if (!start) start = now;
+    const auto behind = [&] { return now - *start - static_cast<double>(steps) / rate; };
+    if (behind() > kMostLate) *start += behind() - kMostLate;
+    const double begin = clock.now();
+    int count = 0;
+    for (; behind() >= 0; ++count) step(behind());
+    if (count > 0) computing = (clock.now() - begin) / count;
+    return count;
+  }
+
+  Placement placement;
+  RemoteTarget remote;
+  TeleoperatedHand guide;
+  SimulatedDevice device;
+  Servo servo;
+  SteadyClock clock;            // of computing times alone
+  std::optional<double> start;  // when the device's time was 0
+  std::uint64_t steps = 0;
+  double heard = 0;      // when the page said something last
+  double computing = 0;  // of a step, s, in the call before
+};
+
+}  // namespace palpate::tab
