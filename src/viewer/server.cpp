@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cerrno>
 #include <deque>
 #include <exception>
 #include <utility>
@@ -33,6 +35,13 @@ net::ip::address address_of(const std::string& text) {
       text));
 }
 
+int duplicate(int socket) {
+  const int copy = ::fcntl(socket, F_DUPFD_CLOEXEC, 0);
+  if (copy >= 0) return copy;
+  throw Error(fmt::format("viewer: cannot keep its port: {}; close other files of this program",
+                          ErrorCode(errno, boost::system::system_category()).message()));
+}
+
 // A program that this one starts (a browser) has no part in its sockets.
 template <class Socket>
 void keep_to_ourselves(Socket& socket) {
@@ -51,6 +60,11 @@ ErrorCode listen(Tcp::acceptor& acceptor, const Tcp::endpoint& endpoint) {
   return error;
 }
 
+Listening name_of(const Tcp::acceptor& acceptor) {
+  const Tcp::endpoint here = acceptor.local_endpoint();
+  return {here.address().to_string(), here.port(), here.address().is_unspecified()};
+}
+
 Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
   const net::ip::address address = address_of(options.address);
   const int tries = options.port ? 1 : kPortsTried;
@@ -59,7 +73,7 @@ Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
   for (int i = 0; i < tries; ++i) {
     error = listen(acceptor, {address, static_cast<std::uint16_t>(first + i)});
     if (error) continue;
-    return {address.to_string(), acceptor.local_endpoint().port(), address.is_unspecified()};
+    return name_of(acceptor);
   }
   const std::string ports = tries == 1 ? fmt::format("port {}", first)
                                        : fmt::format("any port {}-{}", first, first + tries - 1);
@@ -69,6 +83,31 @@ Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
 
 }  // namespace
 
+}  // namespace palpate::viewer
+
+namespace palpate {
+
+class ListeningPort {
+ public:
+  ListeningPort(int socket, viewer::Tcp protocol)
+      : protocol_(protocol), socket_(viewer::duplicate(socket)) {}
+  ~ListeningPort() { ::close(socket_); }
+  ListeningPort(const ListeningPort&) = delete;
+  ListeningPort& operator=(const ListeningPort&) = delete;
+
+  void give_to(viewer::Tcp::acceptor& acceptor) const {
+    acceptor.assign(protocol_, viewer::duplicate(socket_));
+  }
+
+ private:
+  viewer::Tcp protocol_;
+  int socket_;
+};
+
+}  // namespace palpate
+
+namespace palpate::viewer {
+
 struct Server::State {
   struct Repeated {
     net::steady_timer timer;
@@ -77,7 +116,14 @@ struct Server::State {
   };
 
   State(const ViewerOptions& options, ClientSessions& sessions)
-      : acceptor(io), again(io), context{options.limits, listen(acceptor, options), sessions} {}
+      : acceptor(io), again(io), context{options.limits, begin(acceptor, options), sessions} {}
+
+  // Goes on with the port of a viewer before, or opens one.
+  static Listening begin(Tcp::acceptor& acceptor, const ViewerOptions& options) {
+    if (!options.listening) return listen(acceptor, options);
+    options.listening->give_to(acceptor);
+    return name_of(acceptor);
+  }
 
   void accept();
   void take(Tcp::socket socket);
@@ -161,6 +207,12 @@ Server::Server(const ViewerOptions& options, ClientSessions& sessions)
 }
 
 Server::~Server() = default;
+
+std::shared_ptr<const ListeningPort> Server::keep_listening() const {
+  Tcp::acceptor& acceptor = state_->acceptor;
+  return std::make_shared<ListeningPort>(acceptor.native_handle(),
+                                         acceptor.local_endpoint().protocol());
+}
 
 const Listening& Server::listening() const {
   return state_->context.listening;

@@ -24,6 +24,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   [[nodiscard]] const Listening& listening() const;
+  /// @throws Error if the system has no file descriptor left.
+  [[nodiscard]] std::shared_ptr<const ListeningPort> keep_listening() const;
 
   /// Calls `act` again and again on the network thread, `period` s apart. Before run().
   void every(double period, std::function<void()> act);

@@ -159,6 +159,10 @@ std::uint16_t Viewer::port() const noexcept {
   return parts_->server.listening().port;
 }
 
+std::shared_ptr<const ListeningPort> Viewer::listening() const {
+  return parts_->server.keep_listening();
+}
+
 Viewer::Counts Viewer::counts() const {
   return parts_->counts.get();
 }

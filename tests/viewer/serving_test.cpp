@@ -47,6 +47,24 @@ TEST(Serving, OnAllAddressesItsUrlNamesThisMachine) {
   EXPECT_EQ(viewer.url(), "http://" + test::local(viewer.port()) + "/#secret");
 }
 
+TEST(Serving, WhoComesBetweenTwoViewersWaitsForTheNext) {
+  Scene scene;
+  std::optional<Viewer> viewer;
+  viewer.emplace(scene, std::vector<Servo*>{}, anywhere("127.0.0.1"));
+  const std::uint16_t port = viewer->port();
+  ViewerOptions options = anywhere("127.0.0.1");
+  options.listening = viewer->listening();
+  viewer.reset();
+  RawClient early(port);
+  early.send("GET / HTTP/1.1\r\nHost: " + test::local(port) + "\r\n\r\n");
+  viewer.emplace(scene, std::vector<Servo*>{}, options);
+  EXPECT_EQ(viewer->port(), port);
+  EXPECT_TRUE(early.read_header().starts_with("HTTP/1.1 200"));
+  viewer.reset();
+  options.listening.reset();
+  EXPECT_THROW(RawClient{port}, std::runtime_error) << "nobody keeps it any more";
+}
+
 TEST(Serving, AnswersOnAnAddressOfVersion6) {
   Scene scene;
   std::optional<Viewer> viewer;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,10 @@
 
 namespace CLI {
 class App;
+}
+
+namespace palpate {
+class ListeningPort;
 }
 
 namespace palpate::app {
@@ -69,7 +74,8 @@ struct PagePlan {
   std::string address = {};                ///< empty: this machine alone
   std::string token = {};                  ///< who knows it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
-  bool paused = false;                     ///< as the run before on it was
+  std::shared_ptr<const ListeningPort> listening = {};  ///< that of the run before on it
+  bool paused = false;                                  ///< as the run before on it was
   std::optional<Eigen::Vector3d> up = {};  ///< what is up in the world, 1 long; unset: as it seems
 };
 

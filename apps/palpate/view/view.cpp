@@ -164,6 +164,7 @@ struct View::Parts {
     const PagePlan& page = run.page;
     if (!page.address.empty()) options.address = page.address;
     options.port = page.port;
+    options.listening = page.listening;
     options.token = page.token;
     options.scene = title_of(run.loaded);
     const bool picture = in_picture_axes(run.loaded);
@@ -244,6 +245,7 @@ struct View::Parts {
     page.wanted = true;
     page.headless = true;
     page.port = viewer.port();
+    page.listening = viewer.listening();
     page.token = token_of(viewer.url());
     page.paused = servos.front()->state().paused;
     return page;

@@ -32,6 +32,7 @@ struct WaitingPage::Parts {
     ViewerOptions options;
     if (!page.address.empty()) options.address = page.address;
     options.port = page.port;
+    options.listening = page.listening;
     options.scene = scene_name;
     viewer.emplace(scene, std::vector<Servo*>{}, options);
     const std::string url = viewer->url();
@@ -39,6 +40,7 @@ struct WaitingPage::Parts {
     if (!page.headless) browser.emplace(url);
     page.headless = true;
     page.port = viewer->port();
+    page.listening = viewer->listening();
     page.token = token_of(url);
   }
 

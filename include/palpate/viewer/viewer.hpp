@@ -106,6 +106,10 @@ struct ViewerControls {
   std::function<void(std::size_t device)> release = {};
 };
 
+/// A port that a viewer listens on. While one of these is held, who comes between the end of that
+/// viewer and the next one waits for it, and is not refused.
+class ListeningPort;
+
 struct ViewerOptions {
   /// A stream as the page shows it.
   struct Stream {
@@ -142,6 +146,9 @@ struct ViewerOptions {
   std::string address = "127.0.0.1";
   /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
   std::optional<std::uint16_t> port = {};
+  /// Viewer::listening() of a viewer that has ended: goes on there, in place of `address` and
+  /// `port`.
+  std::shared_ptr<const ListeningPort> listening = {};
   /// 1 to 256 letters, digits and any of -._~; empty: 128 random bits of the system.
   std::string token = {};
   std::string scene = "palpate";  ///< the scene's name, for people
@@ -197,6 +204,8 @@ class Viewer {
   /// Address to open in a browser: "http://127.0.0.1:8420/#token".
   [[nodiscard]] std::string url() const;
   [[nodiscard]] std::uint16_t port() const noexcept;
+  /// For the viewer that follows. @throws Error if the system has no file descriptor left.
+  [[nodiscard]] std::shared_ptr<const ListeningPort> listening() const;
   [[nodiscard]] Counts counts() const;
 
   /// At its end, pages are notified that another viewer follows here, and why. Any thread but a
