@@ -16,8 +16,10 @@ const kLive = 2000; // ms: what changes more often is a camera's, which is drawn
 const kSharp = 8; // pictures with places in a pixel that the sharp one is the mean of
 const kAtOnce = 4; // that are enough where each pixel of the screen is four
 const kSampled = 2 ** 24; // samples in memory, of 8 bytes (colour and depth): 128 MiB
-const kQuick = 20; // ms between two frames: a larger part is drawn in the next;
-const kSlow = 50; // a smaller one; but it ends where the machine is busy, too:
+// ms between two frames: below the first a larger part is drawn in the next, above the second a smaller one; but it ends
+// where the machine is busy, too. Where the processor draws, a frame takes 80 ms without any (measured).
+const kPace = [20, 50] as const;
+const kSoftwarePace = [100, 200] as const;
 const kLeastEffort = 1 / 6;
 
 function screen(fragmentShader: string, uniforms: Record<string, IUniform>): Mesh<PlaneGeometry, ShaderMaterial> {
@@ -141,8 +143,9 @@ export class Backdrop {
     if (isSame && wanted.clouds === this.clouds) {
       if (this.progress.pictures === kSharp) return false;
       if (now - Math.max(this.drawn, this.changed + 2 * this.gap) < kStill) return true;
-      if (interval < kQuick) this.effort = Math.min(1, 1.25 * this.effort);
-      if (interval > kSlow) this.effort = Math.max(kLeastEffort, 0.8 * this.effort);
+      const [quick, slow] = this.samples === 0 ? kSoftwarePace : kPace;
+      if (interval < quick) this.effort = Math.min(1, 1.25 * this.effort);
+      if (interval > slow) this.effort = Math.max(kLeastEffort, 0.8 * this.effort);
       this.refine(renderer, scene, camera, wanted);
       return true;
     }

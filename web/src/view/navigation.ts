@@ -12,6 +12,7 @@ const kLoose = 0.8; // of the radius, while no place is known
 const kRounds = 4;
 const kStep = 1.25; // of the distance: noise gives no other view at the next start
 const kLag = 0.25; // s
+const kGlide = 0.13; // s, a time constant: 0.12 of the rest in each picture of a screen (judgement)
 
 export class Navigation {
   controls: OrbitControls;
@@ -118,14 +119,23 @@ export class Navigation {
     this.changed();
   }
 
-  update(): void {
-    this.controls.update();
+  /** Lets the view glide on after a drag for `seconds`; what is left of that, once nobody could see it, is done at once:
+   * the eye stands still then, and its picture becomes sharp. */
+  update(seconds: number): void {
+    const { camera, canvas, controls } = this;
+    const from = camera.position.clone();
+    controls.dampingFactor = 1 - Math.exp(-seconds / kGlide);
+    controls.update();
+    const left = camera.position.distanceTo(from) / controls.dampingFactor / controls.getDistance();
+    if (!controls.enableDamping || left === 0 || left > (0.5 * camera.fov * Math.PI) / 180 / canvas.clientHeight) return;
+    controls.enableDamping = false;
+    controls.update();
+    controls.enableDamping = true;
   }
 
   private makeControls(): OrbitControls {
     const controls = new OrbitControls(this.camera, this.canvas);
     controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    controls.dampingFactor = 0.12;
     controls.rotateSpeed = 0.8;
     controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;

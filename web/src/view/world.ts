@@ -214,13 +214,14 @@ export class World {
   }
 
   private update(now: number): void {
+    const seconds = Math.min(0.5, (now - this.before) / 1000);
     const followed = this.followed === undefined ? undefined : this.tools[this.followed];
     if (followed?.group.visible && !this.dragging) {
-      this.navigation.follow(followed.proxyPlace, Math.min(0.5, (now - this.before) / 1000));
+      this.navigation.follow(followed.proxyPlace, seconds);
     }
     this.before = now;
     this.dropLines(now);
-    this.navigation.update();
+    this.navigation.update(seconds);
     const { look, stage, colouring } = this;
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;

@@ -128,7 +128,7 @@ test("a page whose tool another takes is told, and holds it no more", () =>
 
 test("drawn in software, the picture of a moving eye is coarse; it becomes sharp once the eye stands still", async () => {
   const server = await serve({ points: 4000, still: true });
-  const page = await openPage(browser, server.address, kSmall);
+  const page = await openPage(browser, server.address, { ...kSmall, reducedMotion: "no-preference" }); // the view glides
   await ready(page);
   const sharpness = () => page.evaluate(() => {
     const view = document.getElementById("view");
@@ -140,6 +140,13 @@ test("drawn in software, the picture of a moving eye is coarse; it becomes sharp
     await page.mouse.wheel(0, 100);
     await until("coarse", async () => (await sharpness()) < 0.51);
   }
+  const { x, y, height } = await page.locator("#view").boundingBox();
+  await page.mouse.move(x + 20, y + height / 3);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y + height / 3, { steps: 4 });
+  await until("coarse", async () => (await sharpness()) < 0.51);
+  await page.mouse.up();
+  await until("sharp after a drag", async () => (await sharpness()) > 0.99);
   assert.deepEqual(page.troubles, []);
   await page.context().close();
   await server.close();
