@@ -43,27 +43,35 @@ function countBuffers() {
   };
 }
 
-/** Runs in a page: the fewest buffers that it had within one and a half seconds, in which clouds come ten times a second. */
-async function leastBuffers() {
-  let least = Infinity;
-  for (const end = Date.now() + 1500; Date.now() < end; ) {
-    await new Promise((resolve) => setTimeout(resolve, 20));
-    least = Math.min(least, window.buffers.size);
-  }
-  return least;
-}
-
 test("a cloud of which a part is drawn while it changes leaves nothing on the graphics card", async () => {
   const server = await serve({ points: 50_000 }); // more than are drawn of what moves
+  const { program } = server;
   const page = await openPage(browser, server.address, kSmall, countBuffers);
   await ready(page);
-  const held = []; // the least of each run: a cloud that is replaced holds the buffers of both for a moment
-  for (let i = 0; i < 6; i += 1) {
-    server.program.beginAnew();
-    held.push(await page.evaluate(leastBuffers));
+  const { tellClouds } = program;
+  const count = () => page.evaluate(() => window.buffers.size);
+  /** Buffers of a run without a cloud, once they are the same for half a second. */
+  async function left() {
+    program.tellClouds = () => {};
+    program.beginAnew();
+    let [last, since] = [NaN, Date.now()];
+    await until("the cloud before is gone", async () => {
+      const now = await count();
+      if (now !== last) [last, since] = [now, Date.now()];
+      return Date.now() - since > 500;
+    });
+    program.tellClouds = tellClouds;
+    return last;
   }
-  const most = Math.max(...held.slice(2));
-  assert.ok(most < held[1] + 8, `${held.join(", ")} buffers: an index more for each of two clouds in each of four runs`);
+  await page.waitForTimeout(1000); // clouds come ten times a second
+  const first = await left();
+  for (let run = 0; run < 4; run += 1) {
+    program.beginAnew();
+    await until("clouds", async () => (await count()) > first + 8);
+    await page.waitForTimeout(1000);
+  }
+  const last = await left();
+  assert.ok(last <= first, `${first}, ${last} buffers: an index more for each of two clouds in each of four runs`);
   await page.context().close();
   await server.close();
 });
