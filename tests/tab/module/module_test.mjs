@@ -35,18 +35,21 @@ class Program {
     const wrong = this.core._tab_open(this.text(name), bytes === undefined ? 0 : this.put(bytes), bytes?.length ?? 0, this.text(""));
     return wrong === 0 ? "" : this.core.UTF8ToString(wrong);
   }
+  goesOn(wrong) {
+    assert.equal(wrong, 0, wrong === 0 ? "" : this.core.UTF8ToString(wrong));
+  }
   say(message) {
     const at = this.text(JSON.stringify(message));
-    this.core._tab_receive(at, this.now);
+    this.goesOn(this.core._tab_receive(at, this.now));
     this.core._free(at);
   }
   connect() {
-    this.core._tab_connect(this.now);
+    this.goesOn(this.core._tab_connect(this.now));
     this.say({ type: "hello", token: "tab", points: 1000 });
     return this.texts.find(({ type }) => type === "welcome");
   }
   run(seconds) {
-    for (const end = this.now + seconds; this.now < end - 1e-9;) this.core._tab_run((this.now += 0.004));
+    for (const end = this.now + seconds; this.now < end - 1e-9;) this.goesOn(this.core._tab_run((this.now += 0.004)));
   }
   take(bytes, text) {
     if (text) return void this.texts.push(JSON.parse(new TextDecoder().decode(bytes)));
