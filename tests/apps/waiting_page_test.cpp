@@ -25,9 +25,9 @@ TEST(WaitingPage, TheRunsOwnPageFollowsAtItsPlace) {
   EXPECT_NE(next.port, plan.page.port);
   EXPECT_FALSE(next.token.empty());
   ViewerOptions options;
-  options.port = next.port;
+  options.listening = next.listening;
   Scene scene;
-  EXPECT_EQ(Viewer(scene, {}, options).port(), next.port) << "the place is free";
+  EXPECT_EQ(Viewer(scene, {}, options).port(), next.port) << "it goes on at the same port";
 }
 
 TEST(WaitingPage, WhatIsReadAtOnceHasNone) {
