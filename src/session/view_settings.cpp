@@ -10,6 +10,7 @@
 
 #include "field/description.hpp"
 #include "palpate/base/error.hpp"
+#include "palpate/device/exploration.hpp"
 #include "scene/description.hpp"
 #include "session/materials.hpp"
 
@@ -117,6 +118,18 @@ void make_paper(ViewSettings& settings) {
 }
 
 }  // namespace
+
+ViewScope scope_of(const Scene& scene, double scale, const std::vector<Servo*>& servos) {
+  ViewScope scope;
+  scope.scale = scale;
+  scope.stiffest = kSteadyStiffness / scale;
+  for (const Servo* servo : servos) {
+    scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
+  }
+  const double deepest = deepest_texture(scene);
+  scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
+  return scope;
+}
 
 std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope& scope) {
   const Unit unit = unit_of(scope);

@@ -43,6 +43,11 @@ struct ViewScope {
   bool clouds = false;         ///< clouds are prepared here
 };
 
+/// What `scene` and `servos` allow to be felt, at so many world metres of a metre of the hand; what
+/// is known of sources is to be added. No stiffer than every hand's device bears.
+[[nodiscard]] ViewScope scope_of(const Scene& scene, double scale,
+                                 const std::vector<Servo*>& servos);
+
 /// The settings with their bounds as a page shows them: lengths in mm, or in m for large scenes.
 [[nodiscard]] std::vector<Setting> list_settings(const ViewSettings& settings,
                                                  const ViewScope& scope);

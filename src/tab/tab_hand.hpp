@@ -10,20 +10,18 @@
 #include "palpate/device/simulated.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
+#include "session/page_hand.hpp"
 
 namespace palpate::tab {
 
-inline constexpr double kReachingSpeed = 2;  // m/s, a fast reach of an arm, as of a program's hands
-inline constexpr double kRiseTime = 0.3;     // s, as of a program's hands that a page may take
 /// s; steps that are later are left out: a hand's command is as old at most (judgement).
 inline constexpr double kMostLate = 0.1;
 
-// Nobody can be thrown by a page, and a command that is overdue counts as a release.
+/// A command that is overdue counts as a release.
 [[nodiscard]] inline ServoOptions servo_options(const Placement& placement) {
   ServoOptions options;
   options.proxy.stiffness = placement.stiffness;
-  options.proxy.rise_time = kRiseTime;
-  options.guard.soft_start = 0;
+  session::set_for_pages(options);
   options.guard.silence = std::numeric_limits<double>::infinity();
   options.workspace = placement.workspace;
   return options;
@@ -33,7 +31,7 @@ inline constexpr double kMostLate = 0.1;
 struct TabHand {
   explicit TabHand(Scene& scene)
       : placement(place_device(scene, {}, {})),
-        guide(remote, {}, {.speed = kReachingSpeed}),
+        guide(remote, {}, {.speed = session::kReachingSpeed}),
         device({}, guide),
         servo(device, scene, servo_options(placement)) {}
 

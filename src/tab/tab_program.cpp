@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <exception>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <new>
 #include <optional>
@@ -19,10 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "palpate/base/clock.hpp"
-#include "palpate/base/error.hpp"
-#include "palpate/device/exploration.hpp"
-#include "palpate/device/simulated.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
@@ -39,9 +32,6 @@ using session::ViewSettings;
 
 constexpr std::string_view kSynthetic = "synthetic:";
 constexpr std::array<const char*, 3> kExamples = {"rabbit", "torus", "room"};
-
-constexpr double kStatePeriod = 1.0 / 60;  // s, as of the viewer
-constexpr double kReportPeriod = 0.5;      // s, as of the viewer
 
 // A quarter of the memory that a tab may have, 2 GB: a file's bytes, its cloud and what is made of
 // it are there at once.
@@ -82,17 +72,16 @@ struct TabCloud {
         source(scene.add(touched.name, touched.cloud)),
         first(source.options()) {
     preparation.voxel = first.prepare.voxel;
-    initial = wanted = preparation;
+    initial = preparation;
   }
 
   // What could not be prepared leaves the surface as it was. @throws Error as preparing does.
-  void prepare_what_is_wanted() {
+  void prepare(const ViewSettings::Preparation& wanted) {
     if (wanted == preparation) return;
     source.change(prepared_by(wanted, initial, first));
     try {
       source.set(touched.cloud);
     } catch (...) {
-      wanted = preparation;
       source.change(prepared_by(preparation, initial, first));
       throw;
     }
@@ -102,10 +91,9 @@ struct TabCloud {
   Touched touched;
   Scene scene;
   Source& source;
-  SourceOptions first;                // as it was at first
-  ViewSettings::Preparation initial;  // the same, as settings
-  ViewSettings::Preparation preparation;
-  ViewSettings::Preparation wanted;
+  SourceOptions first;                    // as it was at first
+  ViewSettings::Preparation initial;      // the same, as settings
+  ViewSettings::Preparation preparation;  // by which it is prepared
 };
 
 // When what was done last.
@@ -133,12 +121,9 @@ struct TabProgram::Parts {
     return first;
   }
 
-  [[nodiscard]] session::ViewScope scope() const {
-    session::ViewScope scope;
-    scope.scale = hand.placement.workspace.scale;
-    scope.stiffest = std::min(kSteadyStiffness / scope.scale, hand.servo.stiffness_limit());
-    const double deepest = session::deepest_texture(cloud.scene);
-    scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
+  [[nodiscard]] session::ViewScope scope() {
+    session::ViewScope scope =
+        session::scope_of(cloud.scene, hand.placement.workspace.scale, {&hand.servo});
     scope.clouds = true;
     scope.spacing = cloud.source.report().spacing;
     return scope;
@@ -183,13 +168,12 @@ struct TabProgram::Parts {
   void apply(const ViewSettings& wanted) {
     hand.servo.set_contact(wanted.feel);
     hand.servo.set_field(wanted.field);
-    cloud.wanted = wanted.preparation;
     settings = wanted;
   }
 
   void prepare() {
     try {
-      cloud.prepare_what_is_wanted();
+      cloud.prepare(settings.preparation);
     } catch (const std::exception& error) {
       settings.preparation = cloud.preparation;
       view.sessions().send_settings();
@@ -198,11 +182,11 @@ struct TabProgram::Parts {
   }
 
   void tell(double now) {
-    if (now - done.states >= kStatePeriod) {
+    if (now - done.states >= view.kStatePeriod) {
       done.states = now;
       view.tell_states(now);
     }
-    if (now - done.reports >= kReportPeriod) {
+    if (now - done.reports >= view.kReportPeriod) {
       done.reports = now;
       view.tell_faults();
     }

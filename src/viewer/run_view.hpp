@@ -18,6 +18,9 @@ namespace palpate::viewer {
 /// it.
 class RunView {
  public:
+  static constexpr double kStatePeriod = 1.0 / 60;  ///< s; a screen's frame (judgement)
+  static constexpr double kReportPeriod = 0.5;      ///< s (judgement)
+
   /// Scene and servos outlive it; what `options` and `controls` leave open is filled in.
   /// @throws Error as Viewer's constructor does, but for address and port.
   RunView(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
@@ -32,9 +35,9 @@ class RunView {
 
   /// Point budgets of the pages that are there; empty: nobody looks.
   [[nodiscard]] std::set<std::size_t> budgets() const;
-  /// Sends the newest states at `now`, s, where somebody looks.
+  /// Sends the newest states at `now`, s, where somebody looks: to be called every kStatePeriod.
   void tell_states(double now);
-  /// Sends what is wrong with streams and devices, where somebody looks.
+  /// Sends what is wrong with streams and devices, where somebody looks: every kReportPeriod.
   void tell_faults();
   void show(const EncodedScene& encoded);
   /// Tells of long work, done from 0 to 1; pages that come later hear of it, too.

@@ -104,9 +104,6 @@ namespace {
 
 using namespace viewer;
 
-constexpr double kStatePeriod = 1.0 / 60;  // s; a screen's frame (judgement)
-constexpr double kReportPeriod = 0.5;      // s (judgement)
-
 }  // namespace
 
 struct Viewer::Parts {
@@ -115,8 +112,8 @@ struct Viewer::Parts {
       : run(scene, std::move(servos), given, std::move(controls)),
         server(run.options(), run.sessions()),
         encoder(scene, run.encoding(), [this](EncodedScene encoded) { post(std::move(encoded)); }) {
-    server.every(kStatePeriod, [this] { tick(); });
-    server.every(kReportPeriod, [this] { run.tell_faults(); });
+    server.every(RunView::kStatePeriod, [this] { tick(); });
+    server.every(RunView::kReportPeriod, [this] { run.tell_faults(); });
     network = std::jthread([this] { server.run(); });
   }
   ~Parts() {

@@ -16,6 +16,7 @@
 #include "palpate/device/hardware.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/io/trajectory.hpp"
+#include "session/page_hand.hpp"
 
 namespace palpate::app {
 namespace {
@@ -23,8 +24,6 @@ namespace {
 // A day: longer ones are times in another unit, or broken.
 constexpr double kLongestRun = 86'400;  // s
 
-constexpr double kReachingSpeed = 2;  // m/s, a fast reach of an arm; judgement
-constexpr double kRiseTime = 0.3;     // s; shorter than a press with a mouse lasts (judgement)
 // Guard's watchdog for simulated devices, s; judgement: PacedDevice catches up after a late step.
 constexpr double kSimulatedSilence = 0.05;
 
@@ -81,7 +80,7 @@ void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Traj
   static const RemoteTarget nobody;
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
-  TeleoperatedHandOptions options{.speed = kReachingSpeed};
+  TeleoperatedHandOptions options{.speed = session::kReachingSpeed};
   if (hand.plan) options.presses = hand.plan->presses;
   if (task.page.served) hand.remote = std::make_unique<RemoteTarget>();
   hand.guide = std::make_unique<TeleoperatedHand>(hand.remote ? *hand.remote : nobody,
@@ -184,11 +183,7 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   const bool usual = !run.time.own_watchdog;
   if (usual && hand.device->info().keeps_time) options.guard.silence = kSimulatedSilence;
   if (usual && hand.remote) options.guard.silence = std::numeric_limits<double>::infinity();
-  // Nobody can be thrown by a page, and a hand that rests in contact would pay for no more force.
-  if (hand.remote) {
-    options.guard.soft_start = 0;
-    options.proxy.rise_time = kRiseTime;
-  }
+  if (hand.remote) session::set_for_pages(options);
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;

@@ -45,17 +45,10 @@ ViewSettings initial_settings(const Run& run) {
   return settings;
 }
 
-// No stiffer than every hand's device bears.
 ViewScope scope_of(const Run& run, const std::vector<Servo*>& servos) {
-  ViewScope scope;
-  scope.scale = 0;
-  for (const Hand& hand : run.hands) scope.scale = std::max(scope.scale, hand.workspace.scale);
-  scope.stiffest = kSteadyStiffness / scope.scale;
-  for (const Servo* servo : servos) {
-    scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
-  }
-  const double deepest = session::deepest_texture(run.loaded.scene);
-  scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
+  double scale = 0;
+  for (const Hand& hand : run.hands) scale = std::max(scale, hand.workspace.scale);
+  ViewScope scope = session::scope_of(run.loaded.scene, scale, servos);
   for (const LoadedSource& source : run.loaded.sources) {
     scope.lives = scope.lives || source.camera;
     scope.depth = scope.depth || (source.camera && !source.plan.as_cloud);

@@ -3,7 +3,7 @@
 import type { End, Hears } from "./end";
 
 const kLongest = 60; // characters of a name
-const kAgain = 1500; // ms: between two runs nobody listens
+const kAgain = 1500; // ms: a run that ends cuts off what it has not answered, and another may follow
 
 /** What the program takes as the name of a file, as like `name` as can be; its ending stays. */
 export function fileName(name: string): string {
