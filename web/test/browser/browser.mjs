@@ -28,6 +28,9 @@ export async function until(what, condition) {
   }
 }
 
+/** Waits until a page is connected with its program. */
+export const connected = (page) => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
+
 /** Does something become true within `patience` ms? */
 export async function soon(condition, patience = 2000) {
   const end = Date.now() + patience;

@@ -7,6 +7,7 @@ import { openPage, until } from "./browser.mjs";
 import { distance, felt, listen } from "./heard.mjs";
 import { picture } from "./picture.mjs";
 import { shaded, viewOf } from "./pixels.mjs";
+import { pointAt } from "./touching.mjs";
 import { browser, kPhone, kSmall, ready, text, withPage } from "./with_page.mjs";
 
 test("a press beside what is seen says that there is no surface; a drag turns the view and says nothing", () =>
@@ -93,11 +94,7 @@ test("a first visit says that the tool explores by itself, and offers to show ho
 test("where a cloud is seen but nothing is felt, the page says so, until something is", () =>
   withPage(kSmall, async (page, program) => {
     program.servo.hole = true;
-    await until("a surface is under the pointer", async () => {
-      await page.mouse.move(301, 240);
-      await page.mouse.move(300, 240);
-      return page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
-    });
+    await pointAt(page, 300, 240);
     assert.doesNotMatch(await text(page, "#touch"), /no surface/);
     await page.mouse.down();
     await until("said", async () => (await text(page, "#touch")) === "no surface here");

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
-import { openPage, until } from "./browser.mjs";
+import { connected, openPage, until } from "./browser.mjs";
 import { browser, kSmall, ready } from "./with_page.mjs";
 
 test("a link's settings wait while clouds are read, also for a page that is loaded again", async () => {
@@ -14,10 +14,9 @@ test("a link's settings wait while clouds are read, also for a page that is load
     return { ...welcome.call(this), run: "reading", devices: [], sources: [], settings: [], presets: [] };
   };
   const page = await openPage(browser, `${server.address}&stiffness=900`, kSmall);
-  const connected = () => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
-  await connected();
+  await connected(page);
   await page.reload();
-  await connected();
+  await connected(page);
   program.welcome = welcome;
   program.beginAnew();
   await until("set", () => program.settings.find(({ key }) => key === "stiffness").value === 900);

@@ -2,21 +2,11 @@
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { openPage, until } from "./browser.mjs";
+import { ball } from "./ball.mjs";
+import { connected, openPage, until } from "./browser.mjs";
 import { e57 } from "./e57.mjs";
 import { felt, listen } from "./heard.mjs";
 import { startProgram } from "./real_program.mjs";
-
-/** A ball, as XYZ; its radius in m. */
-function ball(radius) {
-  const rows = [];
-  for (let i = 0; i < 4000; i += 1) {
-    const z = 1 - (2 * i + 1) / 4000;
-    const r = Math.sqrt(1 - z * z);
-    rows.push([r * Math.cos(2.4 * i), r * Math.sin(2.4 * i), z].map((x) => (radius * x).toFixed(6)).join(" "));
-  }
-  return rows.join("\n");
-}
 
 /** A cube as OBJ: eight vertices and six faces. */
 function cube(side) {
@@ -46,7 +36,7 @@ async function drag(page, name, text, types) {
 const said = (page, words) => until(words, async () => (await page.locator("#notices .warning").allTextContents()).join().includes(words));
 
 /** A cube of 20 is 20 mm, until somebody says otherwise; then an example. */
-async function unitsAndExamples(page, scene, connected) {
+async function unitsAndExamples(page, scene) {
   const unit = (name) => until(`the unit ${name}`, async () => (await page.getByLabel("Unit of part").inputValue().catch(() => "")) === name);
   await page.setInputFiles("#open-file", { name: "part.obj", mimeType: "text/plain", buffer: Buffer.from(cube(20)) });
   await unit("mm");
@@ -56,7 +46,7 @@ async function unitsAndExamples(page, scene, connected) {
   await until("its scale in metres", async () => /^\d+ m$/.test(await page.locator("#scale-label").innerText()));
   assert.ok(await page.locator("#ask").isHidden(), "it is answered");
   await unit("m");
-  await connected();
+  await connected(page);
   await page.getByLabel("Scene").selectOption("desk");
   await until("the desk", async () => (await scene()) === "desk");
   assert.equal(await page.locator("#units select").count(), 0, "a camera's unit is its own");
@@ -66,9 +56,8 @@ export async function opens(browser) {
   const program = await startProgram(["touch", "table.xyz", "--view", "--port", "0"]);
   const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" }, listen);
   const scene = () => page.locator("#scene").innerText();
-  const connected = () => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
   try {
-    await connected();
+    await connected(page);
     await drag(page, "notes.txt", "this is no cloud", ["dragenter", "dragover"]);
     await page.locator("#drop").waitFor({ state: "visible" });
     await drag(page, "notes.txt", "this is no cloud", ["drop"]);
@@ -77,17 +66,17 @@ export async function opens(browser) {
     assert.equal(await scene(), "table", "what cannot be read has ended the run");
     await drag(page, "Größe 点 (1).xyz", ball(0.05), ["dragenter", "dragover", "drop"]);
     await until("the dropped cloud", async () => (await scene()) === "Größe 点 (1)");
-    await connected();
+    await connected(page);
     await until("steps", async () => /steps\/s/.test(await page.locator("#link-words").innerText()));
     await until("its scale", async () => / mm$/.test(await page.locator("#scale-label").innerText()));
     await page.setInputFiles("#open-file", { name: "Größe 点 (1).xyz", mimeType: "text/plain", buffer: Buffer.from(ball(50)) });
     await until("the whole of a larger one", async () => / m$/.test(await page.locator("#scale-label").innerText()));
     assert.equal(await scene(), "Größe 点 (1)", "of the same name");
-    await connected();
+    await connected(page);
     await until("it is felt", async () => Number(await page.locator("#force").innerText()) > 0);
     await page.setInputFiles("#open-file", { name: "house.e57", mimeType: "application/octet-stream", buffer: floor() });
     await until("a source of each scan", async () => (await scene()) === "house-1 + house-2 + house-3");
-    await connected();
+    await connected(page);
     await until("its floor is felt", async () => {
       const { force, proxy } = await felt(page);
       return force > 0 && Math.hypot(...proxy) < 0.15; // the ball before is larger
@@ -96,9 +85,9 @@ export async function opens(browser) {
     for (const [name, buffer] of Object.entries(others)) {
       await page.setInputFiles("#open-file", { name, mimeType: "application/octet-stream", buffer });
       await until(name, async () => (await scene()).startsWith(name.split(".")[0]));
-      await connected();
+      await connected(page);
     }
-    await unitsAndExamples(page, scene, connected);
+    await unitsAndExamples(page, scene);
   } finally {
     await page.context().close();
     assert.equal(await program.stop(), 0);

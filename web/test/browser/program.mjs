@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readdir } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { openBrowser, openPage, until } from "./browser.mjs";
+import { connected, openBrowser, openPage, until } from "./browser.mjs";
 import { dragsTouch } from "./drags.mjs";
 import { distance, felt, heard, listen } from "./heard.mjs";
 import { opens } from "./opening.mjs";
@@ -27,11 +27,10 @@ before(async () => {
 after(() => Promise.all([browser?.close(), table?.stop()]));
 
 const text = (page, selector) => page.locator(selector).innerText();
-const phase = (page) => page.getAttribute("#link-state", "data-phase");
 
 async function open(address, options = kSmall, where = browser) {
   const page = await openPage(where, address, options, listen);
-  await until("the page is connected", async () => (await phase(page)) === "open");
+  await connected(page);
   await until("the tool can be taken", () => page.locator("#take").isEnabled());
   return page;
 }
@@ -253,7 +252,7 @@ test("a cut connection comes back by itself, and the tool is let go meanwhile", 
     await until("says so", async () => /Connection lost[\s\S]*tool is released[\s\S]*reconnects/.test(await text(page, "#cover")));
     await until("let go", async () => !(await felt(watcher)).taken);
     relay.mend();
-    await until("connected", async () => (await phase(page)) === "open");
+    await connected(page);
     assert.ok(await page.locator("#cover").isHidden());
     const { states } = await heard(page);
     await until("states come", async () => (await heard(page)).states > states);
@@ -281,7 +280,7 @@ test("live cameras are shown; a program that ends and one that follows are told 
     /rejected this page[\s\S]*open the address that it printed last/.test(await text(page, "#cover")));
   await page.fill("#cover-token", two.address);
   await page.keyboard.press("Enter");
-  await until("connected to the other", async () => (await phase(page)) === "open");
+  await connected(page);
   await page.context().close();
   assert.equal(await two.stop(), 0);
 });

@@ -4,9 +4,10 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
-import { openPage, until } from "./browser.mjs";
+import { connected, openPage, until } from "./browser.mjs";
 import { picture } from "./picture.mjs";
 import { dark, vivid } from "./pixels.mjs";
+import { pointAt } from "./touching.mjs";
 import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
 import "./next_run.mjs";
 import "./finer.mjs";
@@ -74,11 +75,7 @@ test("a press on the surface takes the tool there and pulls with 1 N; the wheel 
   withPage(kSmall, async (page, program) => {
     const axis = () => page.locator("line.axis-x").getAttribute("x2");
     const graspable = () => page.evaluate(() => document.querySelector("#view").classList.contains("graspable"));
-    await until("a surface is under the pointer", async () => {
-      await page.mouse.move(301, 240);
-      await page.mouse.move(300, 240);
-      return graspable();
-    });
+    await pointAt(page, 300, 240);
     assert.equal(await page.evaluate(() => window.getComputedStyle(document.querySelector("#view")).cursor), "move");
     await page.mouse.down();
     await until("presses with 1 N", () => hands(program).at(-1)?.force === 1);
@@ -233,7 +230,7 @@ test("comes back by itself when the program is gone for a while", async () => {
   await page.keyboard.press("t");
   assert.equal(await page.getAttribute("#take", "aria-pressed"), "false", "nobody hears that it is taken");
   const again = await serve({ points: 1000, port: server.port, token: server.token });
-  await until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
+  await connected(page);
   assert.ok(await page.locator("#cover").isHidden());
   await page.context().close();
   await again.close();

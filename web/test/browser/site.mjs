@@ -6,6 +6,7 @@ import { createServer } from "node:http";
 import { extname, join } from "node:path";
 import { until } from "./browser.mjs";
 import { felt } from "./heard.mjs";
+import { pointAt } from "./touching.mjs";
 
 const kTypes = { ".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
 export const kHome = "/some/where/"; // of the site on its server
@@ -29,27 +30,10 @@ export async function serveSite(site, clouds = {}) {
   return { asked, address: `http://127.0.0.1:${server.address().port}${kHome}`, close: () => server.close() };
 }
 
-/** A ball of points, as XYZ; its radius in m. */
-export function ball(radius) {
-  const rows = [];
-  for (let i = 0; i < 4000; i += 1) {
-    const z = 1 - (2 * i + 1) / 4000;
-    const r = Math.sqrt(1 - z * z);
-    rows.push([r * Math.cos(2.4 * i), r * Math.sin(2.4 * i), z].map((x) => (radius * x).toFixed(6)).join(" "));
-  }
-  return rows.join("\n");
-}
-
-export const connected = (page) => until("connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
-
 /** Presses the mouse on what is in the middle of the view until it is felt; resolves to the force, N. */
 export async function touch(page) {
   const { x, y, width, height } = await page.locator("#view").boundingBox();
-  await until("a surface is under the pointer", async () => {
-    await page.mouse.move(x + width / 2 + 1, y + height / 2);
-    await page.mouse.move(x + width / 2, y + height / 2);
-    return page.evaluate(() => document.getElementById("view").classList.contains("graspable"));
-  });
+  await pointAt(page, x + width / 2, y + height / 2);
   await page.mouse.down();
   let force = 0;
   await until("the mouse presses it", async () => {

@@ -3,10 +3,11 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { openBrowser, openPage, until } from "./browser.mjs";
+import { connected, openBrowser, openPage, until } from "./browser.mjs";
 import { felt, heard, listen } from "./heard.mjs";
 import { filled } from "./pixels.mjs";
 import { kTable, startProgram } from "./real_program.mjs";
+import { pointAt } from "./touching.mjs";
 
 const kLeastFilled = 0.1; // of the view: a tool alone fills less
 
@@ -14,15 +15,11 @@ test("the program's page shows its cloud, and a press of the mouse on it is felt
   const [browser, program] = await Promise.all([openBrowser(), startProgram(kTable)]);
   try {
     const page = await openPage(browser, program.address, { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" }, listen, true);
-    await until("the page is connected", async () => (await page.getAttribute("#link-state", "data-phase")) === "open");
+    await connected(page);
     await until("a cloud has come", async () => (await heard(page)).points > 5000);
     await until("the cloud is seen", async () => (await filled(page)) > kLeastFilled);
     const { width, height } = await page.locator("#view").boundingBox();
-    await until("a surface is under the pointer", async () => {
-      await page.mouse.move(width / 2 + 1, height / 2);
-      await page.mouse.move(width / 2, height / 2);
-      return page.evaluate(() => document.getElementById("view").classList.contains("graspable"));
-    });
+    await pointAt(page, width / 2, height / 2);
     await page.mouse.down();
     await until("the mouse presses the table", async () => {
       const { taken, touching, force } = await felt(page);

@@ -2,9 +2,10 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { openBrowser, openPage, until } from "./browser.mjs";
+import { ball } from "./ball.mjs";
+import { connected, openBrowser, openPage, until } from "./browser.mjs";
 import { heard, listen } from "./heard.mjs";
-import { ball, connected, kHome, serveSite, touch } from "./site.mjs";
+import { kHome, serveSite, touch } from "./site.mjs";
 
 const kView = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
 const scene = (page) => page.locator("#scene").innerText();

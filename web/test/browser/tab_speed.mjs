@@ -2,9 +2,9 @@
 import { readFile } from "node:fs/promises";
 import { basename } from "node:path";
 import { drags } from "./drags.mjs";
-import { openBrowser, openPage } from "./browser.mjs";
+import { connected, openBrowser, openPage } from "./browser.mjs";
 import { heard, listen } from "./heard.mjs";
-import { connected, serveSite, touch } from "./site.mjs";
+import { serveSite, touch } from "./site.mjs";
 
 const file = process.argv[2];
 const clouds = file === undefined ? {} : { [basename(file)]: await readFile(file) };

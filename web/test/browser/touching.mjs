@@ -1,10 +1,19 @@
-// What a hand on keys does with the table.
+// What a hand on keys does with the table, and a mouse with what it points at.
 
 import assert from "node:assert/strict";
 import { soon, until } from "./browser.mjs";
 import { felt, waysInto } from "./heard.mjs";
 
 const kPress = 6000; // ms
+
+/** Moves the mouse there until a surface is under it. */
+export async function pointAt(page, x, y) {
+  await until("a surface is under the pointer", async () => {
+    await page.mouse.move(x + 1, y);
+    await page.mouse.move(x, y);
+    return page.evaluate(() => document.getElementById("view").classList.contains("graspable"));
+  });
+}
 
 /** Holds a key until something is true. */
 export async function hold(page, key, what, condition) {
