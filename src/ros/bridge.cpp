@@ -239,7 +239,7 @@ void RosBridge::Inside::tell_diagnostics(const Header& header) {
   diagnostics.writer.write(message);
 }
 
-RosBridge::RosBridge(std::vector<Hand> hands, const Scene& scene,
+RosBridge::RosBridge(const std::vector<Hand>& hands, const Scene& scene,
                      std::function<std::vector<StreamState>()> streams,
                      const RosBridgeOptions& options)
     : inside_(std::make_unique<Inside>(hands, scene, std::move(streams), options,

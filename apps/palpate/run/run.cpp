@@ -77,13 +77,13 @@ void play_back(Hand& hand, Trajectory trajectory) {
 // The hand is pulled along `target` again and again, unless somebody takes the tool. Who did not
 // ask for the page has a run that ends with its trajectory.
 void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Trajectory target) {
-  static const RemoteTarget nobody;
+  static const RemoteTarget kNobody;
   device.duration = task.motion.duration;
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
   TeleoperatedHandOptions options{.speed = session::kReachingSpeed};
   if (hand.plan) options.presses = hand.plan->presses;
   if (task.page.served) hand.remote = std::make_unique<RemoteTarget>();
-  hand.guide = std::make_unique<TeleoperatedHand>(hand.remote ? *hand.remote : nobody,
+  hand.guide = std::make_unique<TeleoperatedHand>(hand.remote ? *hand.remote : kNobody,
                                                   std::move(target), options);
   hand.device = std::make_unique<SimulatedDevice>(device, *hand.guide);
 }

@@ -59,7 +59,7 @@ class RosBridge {
   /// Scene and servos outlive it. `streams` returns the cameras' states; it is called on the
   /// bridge's thread, and may be empty.
   /// @throws Error when an option is out of range, or DDS fails.
-  RosBridge(std::vector<Hand> hands, const Scene& scene,
+  RosBridge(const std::vector<Hand>& hands, const Scene& scene,
             std::function<std::vector<StreamState>()> streams,
             const RosBridgeOptions& options = {});
   ~RosBridge();
