@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "palpate/base/clock.hpp"
 #include "tab/tab_program.hpp"
 
 // clang-format off
@@ -22,7 +23,8 @@ namespace {
 using namespace palpate::tab;
 
 std::unique_ptr<TabProgram> program;
-std::string words;  // of what went wrong last
+std::string words;                     // of what went wrong last
+const palpate::SteadyClock stopwatch;  // of computing times
 
 Outside worker() {
   return {[](std::string_view bytes, bool text) {
@@ -53,7 +55,7 @@ EMSCRIPTEN_KEEPALIVE const char* tab_open(const char* name, const std::byte* byt
   try {
     Touched touched =
         bytes != nullptr ? of_file({bytes, static_cast<std::size_t>(size)}, name) : synthetic(name);
-    program = std::make_unique<TabProgram>(std::move(touched), worker(), news);
+    program = std::make_unique<TabProgram>(std::move(touched), worker(), stopwatch, news);
     return nullptr;
   } catch (const std::exception& error) {
     words = words_of(error, name);

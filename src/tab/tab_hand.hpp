@@ -29,8 +29,9 @@ inline constexpr double kMostLate = 0.1;
 
 /// A simulated hand that a page may take: it, its servo and the time that is simulated of both.
 struct TabHand {
-  explicit TabHand(Scene& scene)
-      : placement(place_device(scene, {}, {})),
+  TabHand(Scene& scene, const Clock& stopwatch)
+      : clock(stopwatch),
+        placement(place_device(scene, {}, {})),
         guide(remote, {}, {.speed = session::kReachingSpeed}),
         device({}, guide),
         servo(device, scene, servo_options(placement)) {}
@@ -61,12 +62,12 @@ struct TabHand {
     return count;
   }
 
+  const Clock& clock;  // of computing times alone
   Placement placement;
   RemoteTarget remote;
   TeleoperatedHand guide;
   SimulatedDevice device;
   Servo servo;
-  SteadyClock clock;            // of computing times alone
   std::optional<double> start;  // when the device's time was 0
   std::uint64_t steps = 0;
   double heard = 0;      // when the page said something last

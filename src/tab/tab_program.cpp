@@ -104,11 +104,11 @@ struct Done {
 };
 
 struct TabProgram::Parts {
-  Parts(Touched what, Outside to, std::string say_first)
+  Parts(Touched what, Outside to, const Clock& stopwatch, std::string say_first)
       : outside(std::move(to)),
         news(std::move(say_first)),
         cloud(std::move(what)),
-        hand(cloud.scene),
+        hand(cloud.scene, stopwatch),
         initial(initial_settings()),
         settings(initial),
         view(cloud.scene, {&hand.servo}, viewer_options(), controls()),
@@ -227,8 +227,9 @@ struct TabProgram::Parts {
   Done done;
 };
 
-TabProgram::TabProgram(Touched touched, Outside outside, std::string news)
-    : parts_(std::make_unique<Parts>(std::move(touched), std::move(outside), std::move(news))) {}
+TabProgram::TabProgram(Touched touched, Outside outside, const Clock& stopwatch, std::string news)
+    : parts_(std::make_unique<Parts>(std::move(touched), std::move(outside), stopwatch,
+                                     std::move(news))) {}
 
 TabProgram::~TabProgram() = default;
 

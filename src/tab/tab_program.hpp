@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 
 namespace palpate::tab {
@@ -44,12 +45,13 @@ struct Outside {
 /// hand that the page may take. Device, hand and servo are simulated together, so what is felt does
 /// not depend on how often run() is called.
 ///
-/// Times in s, on one clock, which never goes back. One thread uses it.
+/// Times in s, on one clock, which never goes back; a second clock measures how long computing
+/// takes, which decides how seldom pictures come, and nothing else. One thread uses it.
 class TabProgram {
  public:
-  /// Prepares the cloud. `news`: said to the first page; empty: nothing.
+  /// Prepares the cloud. `news`: said to the first page; empty: nothing. `stopwatch` outlives it.
   /// @throws Error as preparing does, and where there is nothing to touch.
-  TabProgram(Touched touched, Outside outside, std::string news = {});
+  TabProgram(Touched touched, Outside outside, const Clock& stopwatch, std::string news = {});
   ~TabProgram();
   TabProgram(const TabProgram&) = delete;
   TabProgram& operator=(const TabProgram&) = delete;

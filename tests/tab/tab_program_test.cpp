@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "tab/tab_hand.hpp"
 #include "viewer/bytes.hpp"
@@ -21,6 +22,11 @@ using test::f32;
 
 constexpr const char* kHello = R"({"type":"hello","token":"tab","points":2000})";
 
+// Computing takes no time, on every machine.
+struct Stopped final : Clock {
+  [[nodiscard]] double now() const noexcept override { return 0; }
+};
+
 // A program and the page that it speaks to. Its clock is what a test says.
 struct Page {
   explicit Page(Touched touched = synthetic("synthetic:torus"), std::string news = {})
@@ -28,7 +34,7 @@ struct Page {
                 {[this](std::string_view bytes, bool text) { take(std::string(bytes), text); },
                  [this](int code, const std::string&) { closed = code; },
                  [this](const std::string& name) { opened = name; }},
-                std::move(news)) {
+                stopwatch, std::move(news)) {
     program.run(now);
     connect();
   }
@@ -82,6 +88,7 @@ struct Page {
   int clouds = 0;
   int closed = 0;
   std::string opened;
+  Stopped stopwatch;
   TabProgram program;  // last: it speaks to all of the above
 };
 
