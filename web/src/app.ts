@@ -219,6 +219,7 @@ export class App {
     if (first && this.session.recorded) this.panels.show(true);
     if (again || !this.linked) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
+    if (this.link.view !== undefined) this.world.ask(this.link.view);
     this.linked = applyLink(this.link, welcome, set, (text) => this.notices.add("warning", text));
     if (!this.linked) history.replaceState(null, "", writeLink(this.link.token, [])); // not again when it is loaded again
   }

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Backoff } from "../src/protocol/backoff";
-import { applyLink, readLink, settingFromText, writeLink } from "../src/protocol/link";
+import { applyLink, readLink, settingFromText, writeLink, type View } from "../src/protocol/link";
 import { parseMessage, type Setting } from "../src/protocol/messages";
 
 const kNumber: Setting = { key: "k", label: "Stiffness", kind: "number", least: 0, most: 2000, value: 500 };
@@ -15,6 +15,18 @@ test("a link gives back what was put into it", () => {
   const link = readLink(writeLink("0f3a", values));
   assert.equal(link.token, "0f3a");
   assert.deepEqual([...link.values], values.map(([key, value]) => [key, String(value)]));
+});
+
+test("a link holds the view, to a millionth; what is none is said to be no setting", () => {
+  const view: View = { eye: [1.23456789, 0, -2e-7], target: [0, 0.5, 0], up: [0, 0, 1] };
+  const link = readLink(writeLink("t", [["k", 4]], view));
+  assert.deepEqual(link, { token: "t", values: new Map([["k", "4"]]), view: { ...view, eye: [1.23457, 0, -2e-7] } });
+  for (const text of ["", "1", "1,2,3,4,5,6,7,8,", "1,2,3,1,2,3,0,0,1", "1,2,3,4,5,6,0,0,0", "1,2,3,4,5,6,7,8,NaN", "1,2,3,4,5,6,7,8,9,10"]) {
+    const { values, view: none } = readLink(`#t&view=${text}`);
+    assert.equal(none, undefined);
+    assert.deepEqual([...values], [["view", text]]);
+  }
+  assert.equal(applyLink(readLink(writeLink("t", [], view)), { settings: [] }, assert.fail, assert.fail), true, "it waits for clouds");
 });
 
 test("a token alone, nothing, and nonsense are borne", () => {

@@ -145,10 +145,10 @@ export class Bar {
 
   private async share(): Promise<void> {
     const token = this.end.here ? "" : this.end.token;
-    const address = location.href.replace(/#.*/, "") + writeLink(token, this.session.values);
+    const address = location.href.replace(/#.*/, "") + writeLink(token, this.session.values, this.world.framing.view);
     try {
       await navigator.clipboard.writeText(address);
-      this.notices.add("info", `copied a link with these settings${token === "" ? "" : "; it contains the token, so share it with care"}`);
+      this.notices.add("info", `copied a link with these settings and this view${token === "" ? "" : "; it contains the token, so share it with care"}`);
     } catch {
       const field = byId<HTMLInputElement>("share-link");
       field.value = address;

@@ -62,7 +62,7 @@ export class Overlay {
   }
 
   private showRamp(): void {
-    const { x: low, y: high } = this.world.heights;
+    const { x: low, y: high } = this.world.framing.heights;
     const ends: Partial<Record<Colouring, [string, string]>> = {
       height: ["0", `${lengthInWords(high - low)} high`], age: ["now", "1 s old"], trust: ["low trust", "high trust"],
     };

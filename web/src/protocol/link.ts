@@ -1,12 +1,23 @@
-// The part of the address after '#': the program's token, where it has one, then settings as key=value.
+// The part of the address after '#': the program's token, where it has one, then settings as key=value, and the view.
 // A person with such a link may steer the program: it says so where it is copied.
 
-import type { Setting, SettingValue, Welcome } from "./messages";
+import type { Setting, SettingValue, Vector, Welcome } from "./messages";
+
+/** Where the eye is and what it looks at, both less the scene's origin (m), and what is up. */
+export interface View {
+  eye: Vector;
+  target: Vector;
+  up: Vector;
+}
 
 export interface Link {
   token: string;
   values: Map<string, string>;
+  view?: View;
 }
+
+const kView = "view"; // no setting has that key
+const kDigits = 6; // of a millionth of the scene nobody sees anything
 
 export function readLink(fragment: string): Link {
   const parts = fragment.replace(/^#/, "").split("&");
@@ -17,15 +28,30 @@ export function readLink(fragment: string): Link {
     if (at <= 0) continue;
     values.set(unescapePart(part.slice(0, at)), unescapePart(part.slice(at + 1)));
   }
-  return { token: unescapePart(token), values };
+  const view = viewFromText(values.get(kView));
+  if (view === undefined) return { token: unescapePart(token), values };
+  values.delete(kView);
+  return { token: unescapePart(token), values, view };
 }
 
-export function writeLink(token: string, values: Iterable<[string, SettingValue]>): string {
+export function writeLink(token: string, values: Iterable<[string, SettingValue]>, view?: View): string {
   const parts = token === "" ? [] : [encodeURIComponent(token)];
   for (const [key, value] of values) {
     parts.push(`${encodeURIComponent(key)}=${encodeURIComponent(String(value))}`);
   }
+  if (view !== undefined) {
+    const numbers = [view.eye, view.target, view.up].flat().map((value) => Number(value.toPrecision(kDigits)));
+    parts.push(`${kView}=${numbers.join()}`);
+  }
   return `#${parts.join("&")}`;
+}
+
+function viewFromText(text: string | undefined): View | undefined {
+  const numbers = text?.split(",").map((one) => (one.trim() === "" ? NaN : Number(one)));
+  if (numbers?.length !== 9 || !numbers.every(Number.isFinite)) return undefined;
+  const [a, b, c, d, e, f, ...up] = numbers as [number, number, number, number, number, number, number, number, number];
+  const isSomewhere = Math.hypot(a - d, b - e, c - f) > 0 && Math.hypot(...up) > 0;
+  return isSomewhere ? { eye: [a, b, c], target: [d, e, f], up } : undefined;
 }
 
 /** The value that a link's text means for a setting; undefined where it cannot be one. */
@@ -47,7 +73,7 @@ export function applyLink(
   set: (key: string, value: SettingValue) => void, warn: (text: string) => void,
 ): boolean {
   const waits = settings.length === 0 && timeline === undefined; // a recording gets none
-  if (waits) return link.values.size > 0;
+  if (waits) return link.values.size > 0 || link.view !== undefined;
   const wanted = [...link.values].map(([key, text]) => {
     const setting = settings.find((one) => one.key === key);
     return { key, text, setting, value: setting === undefined ? undefined : settingFromText(setting, text) };

@@ -20,7 +20,7 @@ export class Navigation {
   private radius = 0.5;
 
   constructor(
-    private readonly camera: PerspectiveCamera,
+    readonly camera: PerspectiveCamera,
     private readonly canvas: HTMLCanvasElement,
     private readonly changed: () => void,
   ) {
@@ -42,10 +42,15 @@ export class Navigation {
     this.camera.near = 0.004 * distance;
     this.camera.far = 60 * distance;
     this.camera.updateProjectionMatrix();
-    this.controls.target.copy(target);
-    this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.minDistance = 0.02 * bounds.radius;
     this.controls.maxDistance = 12 * bounds.radius;
+    this.look(target.clone().addScaledVector(direction, distance), target);
+  }
+
+  /** Looks from a place at another one. */
+  look(from: Vector3, at: Vector3): void {
+    this.controls.target.copy(at);
+    this.camera.position.copy(from);
     const { touched } = this;
     this.controls.update();
     this.touched = touched; // this was nobody's

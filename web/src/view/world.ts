@@ -1,17 +1,17 @@
 // Everything that is drawn, and what of it is shown.
 
 import {
-  Line, Mesh, Points, Quaternion, Vector2, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
+  Line, Mesh, Points, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
 } from "three";
 import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
+import type { View } from "../protocol/link";
 import type { SourceReport, Welcome } from "../protocol/messages";
 import { recall, remember } from "../model/memory";
-import { boundsOf, heightsOf, samplesOf, type Sample } from "./bounds";
 import { Cloud, type Colouring } from "./cloud";
 import { rampTexture } from "./colours";
 import { Frustum } from "./frustum";
 import type { Graphics } from "./graphics";
-import { firstDirection } from "./first_view";
+import { Framing } from "./framing";
 import { Navigation } from "./navigation";
 import { nearestTo, surfaceAlong, type Seen } from "./pick";
 import { scaleBar, type ScaleBar } from "./scale_bar";
@@ -32,7 +32,6 @@ export interface Look {
 const kClose = 12; // support radii
 const kDropInterval = 100; // ms between two searches for what a tool hovers above
 const kStand = 1.7; // spacings by which discs may stand out of a surface that bends (judgement)
-const kLonePoint = 5e-3; // m, two R of a cloud whose points are all at one place
 const kArrow = 0.16; // of the radius, an arrow for a newton; from close by:
 const kArrowPixels = 80;
 
@@ -45,6 +44,7 @@ export const kFirstLook: Look = {
 export class World {
   readonly stage: Stage;
   readonly navigation: Navigation;
+  readonly framing: Framing;
   readonly up = new Vector3(0, 0, 1);
   look: Look = { ...kFirstLook };
   followed: number | undefined; // device
@@ -56,22 +56,16 @@ export class World {
   visible: boolean[] = [];
   private surfaces: Surface[] = [];
   private frusta: Frustum[] = [];
-  private samples: Sample[][] = [];
-  private cameras: Vector3[] = []; // directions that lead back to them
-  private eye: Vector3[] = []; // where it begins, if the program says so
   private readonly ramps = rampTexture();
-  readonly heights = new Vector2(0, 1); // along up, low and high, m
-  private radius = 0.5;
   private time = NaN;
   private changes = 0; // of what clouds look like
-  private framedBy = -1; // what was known of the scene when it was framed; less than now: once more
-  private heard = false; // of the sources: where cameras are
   private before = 0;
   private dropped = 0;
 
   constructor(canvas: HTMLCanvasElement, graphics: Graphics) {
     this.stage = new Stage(canvas, graphics);
     this.navigation = new Navigation(this.stage.camera, canvas, () => this.stage.request());
+    this.framing = new Framing(this.navigation, this.up);
   }
 
   /** Draws from now on; the function is called before every picture. */
@@ -89,23 +83,14 @@ export class World {
     this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
     const chosen = recall<unknown>(this.upKey, undefined);
     this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
-    this.radius = welcome.radius > 0 ? welcome.radius : kLonePoint;
-    this.eye = welcome.eye === undefined ? [] : [new Vector3(...welcome.eye)];
-    this.navigation.setUp(this.up);
+    this.framing.begin(welcome, again);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps, !this.stage.software));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));
     this.tools = welcome.devices.map((_, i) => new Tool(i));
     this.surfaces = welcome.devices.map(() => new Surface());
-    this.samples = welcome.sources.map(() => []);
     this.visible = welcome.sources.map(() => true);
     for (const object of this.objects()) this.stage.scene.add(object); // add() takes no empty list
-    this.heard = false;
     this.known = true;
-    if (!again) {
-      this.framedBy = -1;
-      this.navigation.touched = false;
-    }
-    if (this.framedBy < 0) this.fit();
     this.stage.request();
   }
 
@@ -120,10 +105,7 @@ export class World {
     if (cloud === undefined) return;
     cloud.take(message);
     this.changes += 1;
-    if (this.samples.flat().length === 0) this.navigation.touched = false; // by a press before there was something
-    this.samples[message.source] = samplesOf(message);
-    this.measureHeights();
-    this.settle();
+    this.framing.takeCloud(message);
     this.stage.request();
   }
 
@@ -134,22 +116,18 @@ export class World {
 
   takeSources(reports: readonly SourceReport[]): void {
     reports.forEach((report, i) => {
-      this.frusta[i]?.take(report, 0.12 * this.radius);
+      this.frusta[i]?.take(report, 0.12 * this.framing.radius);
       const cloud = this.clouds[i];
       if (cloud !== undefined) cloud.whole = report.points ?? 0;
     });
-    this.cameras = reports.flatMap(({ pose }) => (pose ? [new Vector3(0, 0, -1).applyQuaternion(new Quaternion(...pose.quaternion))] : []));
-    this.heard = true;
-    this.settle();
+    this.framing.takeSources(reports);
     this.stage.request();
   }
 
-  fit(): void {
-    const samples = this.samples.flat();
-    const centre = samples[0]?.place.clone() ?? new Vector3();
-    const bounds = boundsOf(samples) ?? { samples: [], centre, radius: this.radius };
-    const towards = this.cameras.length > 0 ? this.cameras : this.eye.map((place) => place.clone().sub(bounds.centre));
-    this.navigation.frame(bounds, firstDirection(this.up, towards, bounds));
+  /** What a link asks for. */
+  ask(view: View): void {
+    this.framing.ask(view);
+    this.changes += 1;
   }
 
   /** The next of the six axes is up, here and when this scene is seen again. */
@@ -157,19 +135,18 @@ export class World {
     const at = kAxes.findIndex((axis) => axis.distanceTo(this.up) < 1e-3);
     this.up.copy(kAxes[(at + 1) % kAxes.length]!);
     remember(this.upKey, this.up.toArray());
-    this.navigation.setUp(this.up);
+    this.framing.turn();
     this.changes += 1;
-    this.measureHeights();
-    this.fit();
+    this.framing.fit();
   }
 
   /** Comes so close to a tool that its support radius shows, and goes along with it; or back. */
   followTool(device: number | undefined): void {
     this.followed = device;
     const tool = device === undefined ? undefined : this.tools[device];
-    if (tool === undefined) return this.fit();
-    const distance = Math.max(kClose * tool.support, 0.02 * this.radius);
-    this.navigation.approach(tool.proxyPlace, Math.min(distance, this.radius));
+    if (tool === undefined) return this.framing.fit();
+    const distance = Math.max(kClose * tool.support, 0.02 * this.framing.radius);
+    this.navigation.approach(tool.proxyPlace, Math.min(distance, this.framing.radius));
   }
 
   retint(): void {
@@ -200,19 +177,6 @@ export class World {
     return this.clouds.some((cloud) => cloud.knows(colouring)) ? colouring : "own";
   }
 
-  /** The first place of the eye: gets better with each source that is known, until somebody takes it. */
-  private settle(): void {
-    const known = this.samples.filter((samples) => samples.length > 0).length + (this.heard ? 1 : 0);
-    if (known <= this.framedBy) return;
-    this.framedBy = known;
-    if (!this.navigation.touched) this.fit();
-  }
-
-  private measureHeights(): void {
-    const samples = this.samples.flat();
-    if (samples.length > 1) this.heights.copy(heightsOf(samples, this.up));
-  }
-
   private update(now: number): void {
     const seconds = Math.min(0.5, (now - this.before) / 1000);
     const followed = this.followed === undefined ? undefined : this.tools[this.followed];
@@ -225,7 +189,7 @@ export class World {
     const { look, stage, colouring } = this;
     this.clouds.forEach((cloud, i) => {
       cloud.points.visible = look.points && cloud.count > 0 && this.visible[i] === true;
-      cloud.shade(colouring, this.clouds.length > 1, cloud.live ? this.time - cloud.stamp : 0, this.heights, this.up);
+      cloud.shade(colouring, this.clouds.length > 1, cloud.live ? this.time - cloud.stamp : 0, this.framing.heights, this.up);
       cloud.scale(look.disc);
     });
     stage.shown = look.points ? this.shownClouds() : [];
@@ -246,7 +210,7 @@ export class World {
       const pixel = stage.pixelAt(tool.proxyPlace);
       tool.update({
         pixel,
-        perNewton: Math.min(kArrow * this.radius, kArrowPixels * pixel),
+        perNewton: Math.min(kArrow * this.framing.radius, kArrowPixels * pixel),
         camera: stage.camera,
         lift: this.lift(),
       });

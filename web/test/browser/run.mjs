@@ -216,6 +216,28 @@ test("a link brings its settings, says what it cannot, and a link gives them bac
   await page.click("#share");
   const link = await page.inputValue("#share-link");
   assert.ok(link.startsWith(`${server.address}&stiffness=900`) && link.includes("grain=true"));
+  assert.match(link, /&view=([^,&]+,){8}[^,&]+$/);
+  await page.context().close();
+  await server.close();
+});
+
+test("a link brings its view, which holds while clouds come, until the scene is framed anew", async () => {
+  const server = await serve({ points: 1000 });
+  const asked = "view=0.4,-0.9,0.5,0.1,0.05,0.02,0,1,0";
+  const page = await openPage(browser, `${server.address}&${asked}`, kSmall);
+  await ready(page);
+  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: { writeText: async (link) => void (window.copied = link) } }));
+  const view = async () => {
+    await page.click("#share");
+    return (await page.evaluate(() => window.copied)).replace(/.*&/, "");
+  };
+  assert.equal(await view(), asked);
+  await page.waitForTimeout(1000); // clouds and cameras come
+  assert.equal(await view(), asked);
+  await page.focus("#view");
+  await page.keyboard.press("f");
+  await until("the scene is framed", async () => (await view()) !== asked);
+  assert.match(await view(), /,0,1,0$/, "up stays");
   await page.context().close();
   await server.close();
 });
