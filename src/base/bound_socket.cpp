@@ -28,7 +28,7 @@ constexpr int kTries = 50;                      // for the folder's lock: 1 s in
 constexpr int kBacklog = 8;                     // connections that wait to be accepted (judgement)
 
 // Names the listener and its path, for messages.
-struct Place {
+struct Listener {
   std::string_view what;
   const std::string& path;
 
@@ -50,11 +50,11 @@ std::string words(int error) {
   return std::system_category().message(error);
 }
 
-Address address_of(const Place& place) {
+Address address_of(const Listener& listener) {
   constexpr std::size_t kLongest = sizeof(sockaddr_un::sun_path) - 1;
-  const std::string& path = place.path;
+  const std::string& path = listener.path;
   if (path.empty() || path.size() > kLongest) {
-    place.refuse(fmt::format("its name has {} characters; give 1 to {}", path.size(), kLongest));
+    listener.refuse(fmt::format("its name has {} characters; give 1 to {}", path.size(), kLongest));
   }
   Address to;
   to.address.sun_family = AF_UNIX;
@@ -63,24 +63,24 @@ Address address_of(const Place& place) {
   return to;
 }
 
-int open_socket(const Place& place, int type) {
+int open_socket(const Listener& listener, int type) {
   const int handle = ::socket(AF_UNIX, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (handle < 0) place.refuse(words(errno));
+  if (handle < 0) listener.refuse(words(errno));
   return handle;
 }
 
 // Lets one program at a time check and take a path: locks its folder, which leaves nothing behind.
 class Turn {
  public:
-  explicit Turn(const Place& place) {
-    const std::filesystem::path folder = std::filesystem::absolute(place.path).parent_path();
+  explicit Turn(const Listener& listener) {
+    const std::filesystem::path folder = std::filesystem::absolute(listener.path).parent_path();
     folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder_ < 0) place.refuse(fmt::format("{}; {}", words(errno), kFolder));
+    if (folder_ < 0) listener.refuse(fmt::format("{}; {}", words(errno), kFolder));
     const auto locked = [&] { return errno == EWOULDBLOCK || errno == EINTR; };
     for (int tries = 0; ::flock(folder_, LOCK_EX | LOCK_NB) != 0 && locked(); ++tries) {
       if (tries == kTries) {
         ::close(folder_);
-        place.refuse(
+        listener.refuse(
             "another program keeps its folder locked; choose a path in a folder of your own");
       }
       std::this_thread::sleep_for(kTurn);
@@ -104,35 +104,35 @@ bool left_over(const Address& address) noexcept {
   return refused;
 }
 
-void make_room(const Place& place, const Address& address) {
+void make_room(const Listener& listener, const Address& address) {
   struct stat file {};
-  if (::lstat(place.path.c_str(), &file) != 0) return;
-  if (!S_ISSOCK(file.st_mode)) place.refuse("it is a file, not a socket; give another path");
+  if (::lstat(listener.path.c_str(), &file) != 0) return;
+  if (!S_ISSOCK(file.st_mode)) listener.refuse("it is a file, not a socket; give another path");
   if (!left_over(address)) {
-    place.refuse("another program is listening there; stop it or give another path");
+    listener.refuse("another program is listening there; stop it or give another path");
   }
-  ::unlink(place.path.c_str());
+  ::unlink(listener.path.c_str());
 }
 
 // The mode is that of the socket when it is bound: nobody else could ever open it.
-void bind_privately(int handle, const Place& place, const Address& address) {
+void bind_privately(int handle, const Listener& listener, const Address& address) {
   if (::fchmod(handle, S_IRUSR | S_IWUSR) != 0 ||
       ::bind(handle, address.get(), address.size) != 0) {
-    place.refuse(fmt::format("{}; {}", words(errno), kFolder));
+    listener.refuse(fmt::format("{}; {}", words(errno), kFolder));
   }
 }
 
 }  // namespace
 
 BoundSocket::BoundSocket(std::string_view what, const std::string& path, Kind kind) : path_(path) {
-  const Place place{what, path};
-  const Address address = address_of(place);
-  const Turn turn(place);
-  make_room(place, address);
-  handle_ = open_socket(place, kind == Kind::stream ? SOCK_STREAM : SOCK_DGRAM);
+  const Listener listener{what, path};
+  const Address address = address_of(listener);
+  const Turn turn(listener);
+  make_room(listener, address);
+  handle_ = open_socket(listener, kind == Kind::stream ? SOCK_STREAM : SOCK_DGRAM);
   try {
-    bind_privately(handle_, place, address);
-    if (kind == Kind::stream && ::listen(handle_, kBacklog) != 0) place.refuse(words(errno));
+    bind_privately(handle_, listener, address);
+    if (kind == Kind::stream && ::listen(handle_, kBacklog) != 0) listener.refuse(words(errno));
   } catch (...) {
     ::close(handle_);
     throw;

@@ -15,7 +15,7 @@ class BoundSocket {
   };
 
   /// Replaces a socket file that no program has open any more. `what` is to listen there, for
-  /// messages. Waits for a second at most while another program takes a place in the same folder.
+  /// messages. Waits for a second at most while another program binds in the same folder.
   /// @throws Error when the path is too long, is in use or is no socket, or binding fails.
   BoundSocket(std::string_view what, const std::string& path, Kind kind);
   /// Removes the file, if it still belongs to this socket.

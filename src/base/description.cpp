@@ -1,4 +1,4 @@
-// Checks options by what is said of them.
+// Checks options by their descriptions.
 #include "base/description.hpp"
 
 #include <fmt/format.h>

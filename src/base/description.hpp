@@ -10,9 +10,9 @@
 
 #include "base/named.hpp"
 
-/// Options are described once: `describe(options, take)`, beside each struct, hands `take` what is
-/// said of each member, and the member. Checks, recordings, set-up files, the command line and its
-/// help, and Python's keywords are made of that.
+/// Options are described once: `describe(options, take)`, beside each struct, hands `take` the
+/// description of each member, and the member. Checks, recordings, set-up files, the command line
+/// and its help, and Python's keywords are made of that.
 namespace palpate {
 
 /// The numbers that an option may be.
@@ -45,7 +45,7 @@ enum class Offered {
   everywhere,  ///< the command line, too
 };
 
-/// What is said of one option, in this order.
+/// The description of one option, in this order.
 struct About {
   const char* name;       ///< the member's, in recordings, Python and set-up files
   const char* unit = "";  ///< "m"
@@ -80,13 +80,13 @@ void each_option(Options& options, const Take& take, const std::string& part = {
   });
 }
 
-/// What is said of one option, and its key.
+/// The description of one option, and its key.
 struct KeyedAbout {
   std::string key;
   About about;
 };
 
-/// What is said of a member of `options`, or of a part of it.
+/// The description of a member of `options`, or of a part of it.
 template <class Options, class Member>
 [[nodiscard]] KeyedAbout described(const Options& options, const Member& member) {
   std::optional<KeyedAbout> found;
@@ -127,7 +127,7 @@ void check_option(std::string_view what, const std::string& name, const About& a
 
 /// Checks all numbers and choices of `options`, those of parts as "passivity.mass"; `what` begins
 /// the message. What options have to do with each other is not checked.
-/// @throws Error that says which is wrong, and what to give.
+/// @throws Error that names the wrong one and what to give.
 template <class Options>
 void check_described(std::string_view what, const Options& options, const std::string& part = {}) {
   describe(options, [&](const About& about, const auto& member) {

@@ -11,8 +11,8 @@ namespace palpate {
 
 /// Shows the newest of the values that one thread sets to any number of others: copies, without
 /// locks and without memory. Neither side ever waits for the other. Where Handoff shares large
-/// things that outlive their readers' steps, this is for small ones: a servo's state on its way to
-/// those who watch, a wish on its way to the servo.
+/// things that outlive their readers' steps, this is for small ones: a servo's state for those
+/// who watch it, a request for the servo.
 ///
 /// A reader pins the slot that it copies from; the writer takes one that is neither pinned nor the
 /// newest. Only when kSlots - 1 readers were interrupted in the middle of copying is a value

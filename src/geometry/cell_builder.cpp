@@ -128,9 +128,9 @@ CellBuilder::Bounds CellBuilder::bounds_of_all() const {
   return bounds;
 }
 
-template <class PlaceOf>
+template <class IndexOf>
 void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const CellGrid::Cube& cube,
-                            int levels, const PlaceOf& place_of) {
+                            int levels, const IndexOf& index_of) {
   const Eigen::Vector3d lower = cube.lower;
   const double steps = std::ldexp(1., levels);
   const double scale = cube.edge > 0 ? steps / cube.edge : 0;
@@ -140,11 +140,11 @@ void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const CellGr
       return static_cast<std::uint32_t>(std::clamp((v - low) * scale, 0., steps - 1));
     };
     for (std::size_t i = begin + from; i < begin + to; ++i) {
-      const std::uint64_t place = place_of(i);
-      const Eigen::Vector3f& p = positions_[place];
+      const std::uint64_t index = index_of(i);
+      const Eigen::Vector3f& p = positions_[index];
       const std::uint64_t key =
           morton_key(cell(p.x(), lower.x()), cell(p.y(), lower.y()), cell(p.z(), lower.z()));
-      records_[i] = key << shift | place;
+      records_[i] = key << shift | index;
     }
   });
 }

@@ -41,9 +41,9 @@ class CellBuilder {
   };
 
   [[nodiscard]] std::span<Record> allocate(std::size_t count);
-  template <class PlaceOf>
+  template <class IndexOf>
   void make_keys(std::uint32_t begin, std::uint32_t end, const CellGrid::Cube& cube, int levels,
-                 const PlaceOf& place_of);
+                 const IndexOf& index_of);
   void divide(std::size_t cell);
   bool sort_again(std::size_t cell);
   void append_children(std::size_t cell, int shift);

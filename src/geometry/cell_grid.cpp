@@ -160,7 +160,7 @@ void CellGrid::nearest(const Eigen::Vector3f& center, std::size_t k,
       stack.push_sorted(cells_, cell, center);
       continue;
     }
-    // Ties go by index: of points at one place only the first ones can be among the nearest.
+    // Ties go by index: of points at one position only the first ones can be among the nearest.
     const auto most =
         cell.lower == cell.upper ? std::min<std::size_t>(k, cell.size()) : cell.size();
     for (std::uint32_t i = cell.begin; i < cell.begin + most; ++i) {

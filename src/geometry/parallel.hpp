@@ -1,6 +1,6 @@
 #pragma once
 
-// What runs side by side, by TBB. Only extras/tile/in_order.hpp knows TBB as well. PALPATE_SERIAL,
+// What runs side by side, by TBB. Only extras/tile/in_order.hpp uses TBB as well. PALPATE_SERIAL,
 // as a machine without threads has it: one thread does all in turn, with the same results.
 #ifndef PALPATE_SERIAL
 #include <oneapi/tbb/blocked_range.h>
@@ -92,7 +92,7 @@ class Background {
 
 #endif
 
-/// Calls body(i) for each of [0, count) in the same way.
+/// Calls body(i) for each of [0, count) likewise.
 template <class Body>
 void parallel_each(std::size_t count, std::size_t grain, const Body& body) {
   parallel_ranges(count, grain, [&](std::size_t i, std::size_t end) {
@@ -109,7 +109,7 @@ void parallel_each_with(std::size_t count, std::size_t grain, const Body& body) 
   });
 }
 
-/// A place on a Morton curve through cells numbered along each axis, of which the lower 11 bits
+/// A position on a Morton curve through cells numbered along each axis, of which the lower 11 bits
 /// count.
 inline std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   // Puts two zero bits between any two.
@@ -123,13 +123,13 @@ inline std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t 
   return spread(x) << 2 | spread(y) << 1 | spread(z);
 }
 
-/// A Morton key and the place of its point in the input, in one word: sorting words sorts by key,
-/// and by place among equal keys.
+/// A Morton key and the index of its point in the input, in one word: sorting words sorts by key,
+/// and by index among equal keys.
 using Record = std::uint64_t;
 
 inline constexpr int kPlaceBits = 31;  ///< what a key leaves of 64 bits
 inline constexpr int kKeyBits = 33;    ///< eleven levels of three bits (judgement)
-inline constexpr std::uint64_t kPlaceMask = (std::uint64_t{1} << kPlaceBits) - 1;  ///< the place
+inline constexpr std::uint64_t kPlaceMask = (std::uint64_t{1} << kPlaceBits) - 1;  ///< the index
 
 /// Sorts records by the upper `bits` of their kKeyBits key; equal keys keep their order. `scratch`
 /// is as long as `records`. Runs on several threads when there are many records; the result does

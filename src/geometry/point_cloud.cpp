@@ -95,14 +95,14 @@ Lattice make_lattice(const PointCloud& cloud, double leaf) {
   return lattice;
 }
 
-// Sorts by key bits [shift, shift + bits), keeping the order of equal ones. place_of(i): the point
+// Sorts by key bits [shift, shift + bits), keeping the order of equal ones. index_of(i): the point
 // that is i-th so far.
-template <class PlaceOf>
+template <class IndexOf>
 std::vector<Record> sort_by(const PointCloud& cloud, const Lattice& lattice, int shift, int bits,
-                            const PlaceOf& place_of) {
+                            const IndexOf& index_of) {
   std::vector<Record> records(cloud.size());
   detail::parallel_each(records.size(), kVoxelGrain, [&](std::size_t i) {
-    const std::uint64_t key = lattice.key(cloud.positions[place_of(i)]) >> shift;
+    const std::uint64_t key = lattice.key(cloud.positions[index_of(i)]) >> shift;
     records[i] = key << (kPlaceBits + kKeyBits - bits) | i;
   });
   std::vector<Record> scratch(records.size());
@@ -110,61 +110,61 @@ std::vector<Record> sort_by(const PointCloud& cloud, const Lattice& lattice, int
   return records;
 }
 
-// The points' places, cube by cube, in the input's order within a cube.
-std::vector<std::uint32_t> sort_places(const PointCloud& cloud, const Lattice& lattice) {
+// The points' indices, cube by cube, in the input's order within a cube.
+std::vector<std::uint32_t> sort_indices(const PointCloud& cloud, const Lattice& lattice) {
   const int bits = std::max(1, lattice.key_bits());
   const int low_bits = std::min(bits, kKeyBits);
-  std::vector<std::uint32_t> places(cloud.size());
+  std::vector<std::uint32_t> indices(cloud.size());
   const auto low = sort_by(cloud, lattice, 0, low_bits, [](std::size_t i) { return i; });
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i] = static_cast<std::uint32_t>(low[i] & kPlaceMask);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    indices[i] = static_cast<std::uint32_t>(low[i] & kPlaceMask);
   }
-  if (bits == low_bits) return places;
+  if (bits == low_bits) return indices;
   const auto high =
-      sort_by(cloud, lattice, low_bits, bits - low_bits, [&](std::size_t i) { return places[i]; });
-  std::vector<std::uint32_t> sorted(places.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = places[high[i] & kPlaceMask];
+      sort_by(cloud, lattice, low_bits, bits - low_bits, [&](std::size_t i) { return indices[i]; });
+  std::vector<std::uint32_t> sorted(indices.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = indices[high[i] & kPlaceMask];
   return sorted;
 }
 
-// Index in `places` where each cube's points begin, and where the last cube's end.
+// Index in `indices` where each cube's points begin, and where the last cube's end.
 std::vector<std::uint32_t> find_cubes(const PointCloud& cloud, const Lattice& lattice,
-                                      std::span<const std::uint32_t> places) {
+                                      std::span<const std::uint32_t> indices) {
   std::vector<std::uint32_t> starts;
   std::uint64_t previous = ~std::uint64_t{0};
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::uint64_t key = lattice.key(cloud.positions[places[i]]);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::uint64_t key = lattice.key(cloud.positions[indices[i]]);
     if (key != previous) starts.push_back(static_cast<std::uint32_t>(i));
     previous = key;
   }
-  starts.push_back(static_cast<std::uint32_t>(places.size()));
+  starts.push_back(static_cast<std::uint32_t>(indices.size()));
   return starts;
 }
 
 // Double sums, whatever the column's type.
 template <class Column>
-Eigen::Vector3d sum_of(const Column& column, std::span<const std::uint32_t> places) {
+Eigen::Vector3d sum_of(const Column& column, std::span<const std::uint32_t> indices) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t i : places) {
+  for (const std::uint32_t i : indices) {
     sum += Eigen::Vector3d(static_cast<double>(column[i][0]), static_cast<double>(column[i][1]),
                            static_cast<double>(column[i][2]));
   }
   return sum;
 }
 
-void average(const PointCloud& cloud, std::span<const std::uint32_t> places, std::size_t cube,
+void average(const PointCloud& cloud, std::span<const std::uint32_t> indices, std::size_t cube,
              PointCloud& result) {
-  const auto count = static_cast<double>(places.size());
-  result.positions[cube] = (sum_of(cloud.positions, places) / count).cast<float>();
+  const auto count = static_cast<double>(indices.size());
+  result.positions[cube] = (sum_of(cloud.positions, indices) / count).cast<float>();
   if (!cloud.normals.empty()) {
-    const Eigen::Vector3d sum = sum_of(cloud.normals, places);
+    const Eigen::Vector3d sum = sum_of(cloud.normals, indices);
     const double length = sum.norm();
     const bool cancelled = !(length > 1e-6 * count);
     result.normals[cube] =
         cancelled ? Eigen::Vector3f::Zero() : Eigen::Vector3f((sum / length).cast<float>());
   }
   if (!cloud.colors.empty()) {
-    const Eigen::Vector3d mean = sum_of(cloud.colors, places) / count;
+    const Eigen::Vector3d mean = sum_of(cloud.colors, indices) / count;
     for (std::size_t c = 0; c < 3; ++c) {
       result.colors[cube][c] =
           static_cast<std::uint8_t>(std::lround(mean[static_cast<Eigen::Index>(c)]));
@@ -172,7 +172,7 @@ void average(const PointCloud& cloud, std::span<const std::uint32_t> places, std
   }
   if (!cloud.intensities.empty()) {
     double sum = 0;
-    for (const std::uint32_t i : places) sum += static_cast<double>(cloud.intensities[i]);
+    for (const std::uint32_t i : indices) sum += static_cast<double>(cloud.intensities[i]);
     result.intensities[cube] = static_cast<float>(sum / count);
   }
 }
@@ -189,8 +189,8 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
                             cloud.size(), kPlaceMask));
   }
   const Lattice lattice = make_lattice(cloud, leaf);
-  const std::vector<std::uint32_t> places = sort_places(cloud, lattice);
-  const std::vector<std::uint32_t> starts = find_cubes(cloud, lattice, places);
+  const std::vector<std::uint32_t> indices = sort_indices(cloud, lattice);
+  const std::vector<std::uint32_t> starts = find_cubes(cloud, lattice, indices);
   const std::size_t cubes = starts.size() - 1;
   if (counts) {
     counts->resize(cubes);
@@ -203,7 +203,7 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
   result.colors.resize(cloud.colors.empty() ? 0 : cubes);
   result.intensities.resize(cloud.intensities.empty() ? 0 : cubes);
   detail::parallel_each(cubes, kVoxelGrain / 16, [&](std::size_t cube) {
-    const auto inside = std::span(places).subspan(starts[cube], starts[cube + 1] - starts[cube]);
+    const auto inside = std::span(indices).subspan(starts[cube], starts[cube + 1] - starts[cube]);
     average(cloud, inside, cube, result);
   });
   return result;

@@ -17,7 +17,7 @@ class SignedSets {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
 
-  /// The root of i's set and i's sign relative to it. Shortens the way for the next time.
+  /// The root of i's set and i's sign relative to it. Compresses the path for the next time.
   std::pair<std::uint32_t, int> find(std::uint32_t i) {
     std::uint32_t root = i;
     int sign = 1;

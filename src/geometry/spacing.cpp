@@ -28,24 +28,24 @@ float value_of(std::uint32_t rank) {
   return std::bit_cast<float>((rank & 0x80000000u) != 0 ? rank ^ 0x80000000u : ~rank);
 }
 
-// The digit in which entry `place` falls; `place` becomes its place within that digit.
-std::uint32_t digit_at(const std::vector<std::uint32_t>& counts, std::size_t& place) {
+// The digit in which entry `index` falls; `index` becomes its index within that digit.
+std::uint32_t digit_at(const std::vector<std::uint32_t>& counts, std::size_t& index) {
   std::uint32_t digit = 0;
-  for (; place >= counts[digit]; ++digit) place -= counts[digit];
+  for (; index >= counts[digit]; ++digit) index -= counts[digit];
   return digit;
 }
 
 // Counts upper, then lower halves of ranks: no copy, and memory is read in order.
-float select(std::span<const float> values, std::size_t place) {
+float select(std::span<const float> values, std::size_t index) {
   std::vector<std::uint32_t> counts(kDigits, 0);
   for (const float value : values) ++counts[rank_of(value) >> 16];
-  const std::uint32_t upper = digit_at(counts, place);
+  const std::uint32_t upper = digit_at(counts, index);
   std::fill(counts.begin(), counts.end(), 0u);
   for (const float value : values) {
     const std::uint32_t rank = rank_of(value);
     if (rank >> 16 == upper) ++counts[rank & (kDigits - 1)];
   }
-  return value_of(upper << 16 | digit_at(counts, place));
+  return value_of(upper << 16 | digit_at(counts, index));
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ std::vector<float> mean_distances_to_three(const CellGrid& grid) {
   const auto others = static_cast<float>(std::min<std::size_t>(3, grid.size() - 1));
   find_nearest<4>(grid, simd::best_joins().nearest4,
                   [&](std::uint32_t point, std::uint32_t query, const simd::Row* rows) {
-                    float sum = 0;  // row 0 is the point itself, or another at its place
+                    float sum = 0;  // row 0 is the point itself, or another at its position
                     for (std::size_t k = 1; k < 4; ++k) {
                       if (rows[k][query] < kInfinity) sum += std::sqrt(rows[k][query]);
                     }

@@ -28,8 +28,8 @@ class WaitingClock : public Clock {
   WaitingClock& operator=(const WaitingClock&) = default;
 };
 
-/// The host's monotonic clock. Waits for absolute times, so that what happens between reading the
-/// clock and going to sleep adds no lateness.
+/// The machine's monotonic clock. Waits for absolute times, so that what happens between reading
+/// the clock and going to sleep adds no lateness.
 class SteadyClock final : public WaitingClock {
  public:
   [[nodiscard]] double now() const noexcept override;

@@ -58,13 +58,13 @@ class CellGrid {
   CellGrid(std::span<const Eigen::Vector3f> positions, const Cube& cube);
 
   /// Builds the index again, in the memory of the last one, of points that stand along a curve
-  /// already, as those of a depth image do: `codes`, which never fall, give the place on it, two
+  /// already, as those of a depth image do: `codes`, which never fall, give the position on it, two
   /// bits a level. A cell's points agree in their leading bits; those that agree in all of them
   /// stay together, however many. Their order is kept. Allocates only to grow. Positions are
   /// finite.
   ///
   /// `ends`: where the points are going, empty when they stay: the cells' boxes hold both, so a
-  /// search finds what passes by on its way too. within() and nearest() see the positions alone.
+  /// search finds what passes by on its path, too. within() and nearest() see the positions alone.
   void rebuild(std::span<const Eigen::Vector3f> positions, std::span<const std::uint32_t> codes,
                std::span<const Eigen::Vector3f> ends = {});
 
@@ -74,7 +74,7 @@ class CellGrid {
   /// The points in sorted order.
   [[nodiscard]] std::span<const Eigen::Vector3f> points() const { return points_; }
 
-  /// order()[k] is the place in the input of the k-th sorted point.
+  /// order()[k] is the index in the input of the k-th sorted point.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
   /// Appends the sorted indices of all points with |p - center| <= radius to `found`, in rising

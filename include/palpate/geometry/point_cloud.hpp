@@ -23,7 +23,7 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> normals;              ///< unit length, or zero where undefined
   std::vector<std::array<std::uint8_t, 3>> colors;   ///< red, green, blue
   std::vector<float> intensities;                    ///< in the file's own scale
-  std::optional<Eigen::Vector3d> viewpoint;          ///< where the sensor stood, m, if known
+  std::optional<Eigen::Vector3d> viewpoint;          ///< where the sensor stood, m, if given
 
   // Image of an organised cloud, whose points are pixels; else 0, 0 and empty.
   std::size_t width = 0;              ///< columns of the image

@@ -15,8 +15,8 @@
 namespace palpate {
 
 /// A cloud in an octree, as Potree and COPC write it. Each point is in exactly one node; those of a
-/// level are about a spacing apart, which halves from level to level. So the points at a place are
-/// in nodes of all levels that lie over it.
+/// level are about a spacing apart, which halves from level to level. So the points around a
+/// position are in nodes of all levels that lie over it.
 class PointStore {
  public:
   struct Node {
@@ -25,7 +25,7 @@ class PointStore {
     std::size_t points = 0;              ///< may be 0
   };
 
-  /// What is known without reading a point. Lengths in metres.
+  /// What the header and the tree contain, without any point. Lengths in metres.
   struct Layout {
     std::string format;                                ///< such as "COPC" or "Potree 2.0, DEFAULT"
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the clouds that are read

@@ -68,8 +68,8 @@ struct Eyes {
   Row normal[3];        ///< x, y, z, unit
   Row squared_reach;    ///< of all that is looked for, m^2
   Row least;            ///< a point off the plane: its height is above this, m, ...
-  Row squared_tube;     ///< ... its way to the side at most the root of this, m^2, ...
-  float squared_slope;  ///< ... and its height over that way at least the root of this
+  Row squared_tube;     ///< ... its distance to the side at most the root of this, m^2, ...
+  float squared_slope;  ///< ... and its height over that at least the root of this
   Row squared_vote;     ///< of points of other segments, m^2; below 0: none is looked for
   std::uint32_t segment[kQueries];
   const std::uint32_t* segments;  ///< of all points
