@@ -181,7 +181,7 @@ Piece Blocks::prepare(std::size_t number) const {
   piece.report.points_in = division_.points(number);
   piece.report.points_out = piece.report.speckle = piece.report.duplicates = 0;
   std::vector<std::uint8_t> first(points.size());  // a second plane is at its point's place
-  for (const std::uint32_t i : first_of_each_place(points.grid)) first[i] = 1;
+  for (const std::uint32_t i : distinct_points(points.grid)) first[i] = 1;
   for (const std::uint32_t i : kept) {
     if (first[points.grid.order()[i]] == 0) continue;
     ++(points.density_weights[i] > 0 ? piece.report.points_out : piece.report.speckle);

@@ -65,7 +65,7 @@ void assemble(Surfels& surfels) {
   points.confidences.resize(points.size(), 0.0f);
   points.segments = std::move(surfels.segments);
   Prepared::Report& report = surfels.prepared.report;
-  report.speckle = surfels.weights.speckle;
+  report.speckle = surfels.weights.outliers;
   report.points_out = points.size() - report.speckle;
 }
 

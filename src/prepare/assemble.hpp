@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Moves all columns of `surfels` into their places among its `prepared` points.
+/// Moves all columns of `surfels` into its `prepared` points.
 void assemble(Surfels& surfels);
 
 /// Finishes points whose columns are whole, and reports on their radii and trust.

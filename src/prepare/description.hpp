@@ -3,7 +3,7 @@
 #include "field/description.hpp"
 #include "palpate/prepare/prepare.hpp"
 
-/// What is said of the options of preparation.
+/// The descriptions of the options of preparation.
 namespace palpate {
 
 // In the order in which help and errors list them.

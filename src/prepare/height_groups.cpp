@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 // Two groups of heights: their means this many deviations within them apart, at least half a
-// spacing, with nothing on this share of the way between.
+// spacing, with nothing on this share of the distance between.
 constexpr double kApart = 4;            // judgement (docs/method.md 5.5)
 constexpr double kApartSpacings = 0.5;  // judgement
 constexpr double kEmpty = 0.45;         // judgement
@@ -43,9 +43,9 @@ bool may_fall_apart(std::span<const double> heights, double spacing) {
   if ((empty & (empty >> 1) & (empty >> 2)) == 0) return false;
   const auto count = static_cast<double>(heights.size());
   const double variance = (squares - sum * sum / count) / count;
-  // The variance of two groups is within^2 + share (1 - share) way^2, with `way` between their
-  // means and `within` at most way / kApart. So it bounds from below how long the way is, and with
-  // it the gap.
+  // The variance of two groups is within^2 + share (1 - share) apart^2, with `apart` between their
+  // means and `within` at most apart / kApart. So it bounds `apart` from below, and with it the
+  // gap.
   constexpr double kLeast = 0.999 * kEmpty * kEmpty;  // derived: less than rounding takes
   double below = 0;
   int last = 0;

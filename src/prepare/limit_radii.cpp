@@ -1,4 +1,4 @@
-// Lets support radii grow slowly from place to place.
+// Lets support radii grow slowly over the surface.
 #include "prepare/limit_radii.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ class Limiter {
               [](const Leaf& a, const Leaf& b) { return a.bound < b.bound; });
   }
 
-  /// min_j (R_j + slope * distance), but for points j on the plane of i, where `own` is known.
+  /// min_j (R_j + slope * distance), but for points j on the plane of i, where `own` is given.
   [[nodiscard]] float limit_at(std::uint32_t i) const {
     const Eigen::Vector3f& p = grid_.points()[i];
     const float matters = kMatters * radii_[i];

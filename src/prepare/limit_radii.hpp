@@ -9,7 +9,7 @@ namespace palpate {
 
 struct PointFits;
 
-/// Lets support radii vary slowly from place to place, as the paper's section III-D assumes: each
+/// Lets support radii vary slowly over the surface, as the paper's section III-D assumes: each
 /// becomes min_j (R_j + slope |p_i - p_j|). Then a sparse point's support ends before it reaches
 /// what is sampled finely. In sorted order, m.
 /// `own`: points on the plane of a point do not limit it, since it shows nothing else of them;

@@ -19,16 +19,16 @@ namespace {
 // What separates lines from surfaces; all are judgement (docs/preparation.md, Spacing).
 constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
 constexpr int kLineWidenings = 4;  // reaches tried, each twice the last: lines up to 30 points away
-constexpr std::size_t kEnough = 2048;   // points in reach: no sparse place any more
+constexpr std::size_t kEnough = 2048;   // points in reach: not sparse any more
 constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
 constexpr int kLineScales = 4;          // 4, 8, 16, 32 others: noise hides a line among few
 constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
-constexpr std::size_t kAlongLine = 16;  // nearest, over which the way to the next line is averaged
+constexpr std::size_t kAlongLine = 16;  // nearest, over which the gap to the next line is averaged
 constexpr std::size_t kTried = 64;      // nearest points beside a line
 constexpr float kThin = 0.2f;           // deviation of a line across, against along
 constexpr float kLines = 0.5f;          // of the sampled points, on lines: a cloud of lines
 
-/// The line that a point and its nearest places are on.
+/// The line that a point and the nearest positions are on.
 struct Line {
   Eigen::Vector3f along = Eigen::Vector3f::UnitX();
   float spacing = 0;  // m, to the farthest of the nearest
@@ -42,10 +42,10 @@ float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
                 std::span<const std::uint32_t> near) {
   std::vector<std::pair<float, Eigen::Vector3f>> aside;  // by distance; directions
   for (const std::uint32_t j : near) {
-    const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
-    const float length = way.norm();
-    if (length > 0 && std::abs(way.dot(line.along)) <= kAside * length) {
-      aside.emplace_back(length, way / length);
+    const Eigen::Vector3f offset = grid.points()[j] - grid.points()[i];
+    const float length = offset.norm();
+    if (length > 0 && std::abs(offset.dot(line.along)) <= kAside * length) {
+      aside.emplace_back(length, offset / length);
     }
   }
   const std::size_t count = std::min(aside.size(), kTried);
@@ -86,8 +86,8 @@ Line line_among(const CellGrid& grid, std::uint32_t i,
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   Line line;
   for (const CellGrid::Neighbor& found : nearest) {
-    const Eigen::Vector3f way = grid.points()[found.index] - grid.points()[i];
-    squares += way * way.transpose();
+    const Eigen::Vector3f offset = grid.points()[found.index] - grid.points()[i];
+    squares += offset * offset.transpose();
     line.spacing = std::sqrt(found.squared_distance);
   }
   line.step = 2 * line.spacing / static_cast<float>(std::max<std::size_t>(nearest.size(), 2) - 1);
@@ -99,11 +99,11 @@ Line line_among(const CellGrid& grid, std::uint32_t i,
   return line;
 }
 
-/// The line at the smallest scale at which there is one: of the point and the four places nearest
-/// to it, or of more of its nearest. `nearest`: memory.
+/// The line at the smallest scale at which there is one: of the point and the four positions
+/// nearest to it, or of more of its nearest. `nearest`: memory.
 Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
                    std::vector<CellGrid::Neighbor>& nearest) {
-  nearest_places(grid, i, kOnLine, nearest);
+  nearest_distinct(grid, i, kOnLine, nearest);
   Line line = line_among(grid, i, nearest);
   std::size_t others = kOnLine - 1;
   for (int k = 1; k < kLineScales && line.off >= kThin; ++k) {
@@ -148,17 +148,17 @@ bool lies_in_lines(const CellGrid& grid) {
 
 namespace {
 
-/// The spacing of the nearest point beside a line whose own gap is as wide as the way to it, m; 0:
+/// The spacing of the nearest point beside a line whose own gap is as wide as its distance, m; 0:
 /// there is none. The square of a gap is at most 2 s^2 (side_of_square).
 float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
                      std::span<const float> spacings, std::vector<std::uint32_t>& near) {
   return widen(grid, i, 2 * line.spacing, near, [&](float nearest) {
     float spacing = 0;
     for (const std::uint32_t j : near) {
-      const Eigen::Vector3f way = grid.points()[j] - grid.points()[i];
-      const float length = way.norm();
-      if (length >= nearest || way.squaredNorm() >= 2 * spacings[j] * spacings[j]) continue;
-      if (std::abs(way.dot(line.along)) > kAside * length) continue;
+      const Eigen::Vector3f offset = grid.points()[j] - grid.points()[i];
+      const float length = offset.norm();
+      if (length >= nearest || offset.squaredNorm() >= 2 * spacings[j] * spacings[j]) continue;
+      if (std::abs(offset.dot(line.along)) > kAside * length) continue;
       nearest = length;
       spacing = spacings[j];
     }

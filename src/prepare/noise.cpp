@@ -61,8 +61,8 @@ bool fills(double residual, double reach) {
   return residual > kFilled * reach;
 }
 
-/// The fit at a place: `first`, whose window reaches `reach`, or one of a window so much wider that
-/// noise does not fill it. In a volume no window finds a layer: then it is `first`.
+/// The fit at a position: `first`, whose window reaches `reach`, or one of a window so much wider
+/// that noise does not fill it. In a volume no window finds a layer: then it is `first`.
 SegmentFit fit_beyond_noise(SegmentFitter& fitter, const CellGrid& grid, const Eigen::Vector3f& at,
                             double reach, double spacing, const SegmentFit& first) {
   SegmentFit fit = first;
@@ -209,16 +209,16 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
     found[k] = {static_cast<float>(fit.quadric_residual),
                 static_cast<float>(fit.quadric_residual * fit.footprint)};
   });
-  std::vector<Eigen::Vector3f> places;
+  std::vector<Eigen::Vector3f> positions;
   std::vector<Value> values;
   for (std::size_t k = 0; k < count; ++k) {
     if (!(found[k].product > 0)) continue;
-    places.push_back(raw.points()[k * step + step / 2]);
+    positions.push_back(raw.points()[k * step + step / 2]);
     values.push_back(found[k]);
   }
   reach_ = kSurroundings * static_cast<float>(median(spacings));
-  places_ = CellGrid(places);
-  for (const std::uint32_t k : places_.order()) values_.push_back(values[k]);
+  positions_ = CellGrid(positions);
+  for (const std::uint32_t k : positions_.order()) values_.push_back(values[k]);
   typical_ = {static_cast<float>(median_of(values_, &Value::sigma)),
               static_cast<float>(median_of(values_, &Value::product))};
 }
@@ -226,7 +226,7 @@ NoiseMap::NoiseMap(const CellGrid& raw, std::span<const float> spacings) {
 NoiseMap::Value NoiseMap::at(const Eigen::Vector3f& point, std::vector<std::uint32_t>& near,
                              std::vector<float>& around) const {
   near.clear();
-  places_.within(point, reach_, near);
+  positions_.within(point, reach_, near);
   if (near.size() < kFewest) return typical_;
   const auto flatter = [&](float Value::*of) {
     around.clear();

@@ -1,4 +1,4 @@
-// The noise of a cloud: of all, and from place to place.
+// The noise of a cloud: of all, and locally.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,8 +48,8 @@ class NoiseMap {
   [[nodiscard]] Value at(const Eigen::Vector3f& point, std::vector<std::uint32_t>& near,
                          std::vector<float>& around) const;
 
-  CellGrid places_;
-  std::vector<Value> values_;  // in the order of places_
+  CellGrid positions_;
+  std::vector<Value> values_;  // in the order of positions_
   float reach_ = 0;            // how far a value is of interest, m
   Value typical_;
 };

@@ -38,7 +38,7 @@ std::vector<Pair> pairs_of(const CellGrid& grid, const PointFits& fits) {
   return pairs;
 }
 
-/// What is known of the free side of a set of points, relative to the sign of its root.
+/// Votes for the free side of a set of points, relative to the sign of its root.
 struct Votes {
   double given = 0;
   double seen = 0;
@@ -52,12 +52,12 @@ Eigen::Vector3d middle_of(const CellGrid& grid) {
 }
 
 /// The votes of one point, whose normal is `normal`.
-void add(const KnownSigns& known, const Eigen::Vector3d& middle, std::uint32_t i,
+void add(const PriorSigns& prior, const Eigen::Vector3d& middle, std::uint32_t i,
          const Eigen::Vector3f& p, const Eigen::Vector3f& normal, Votes& votes) {
-  if (!known.given.empty() && known.given[i].allFinite()) {
-    votes.given += static_cast<double>(known.given[i].dot(normal));
+  if (!prior.given.empty() && prior.given[i].allFinite()) {
+    votes.given += static_cast<double>(prior.given[i].dot(normal));
   }
-  if (known.eye) votes.seen += static_cast<double>((*known.eye - p).normalized().dot(normal));
+  if (prior.eye) votes.seen += static_cast<double>((*prior.eye - p).normalized().dot(normal));
   votes.outward += (p.cast<double>() - middle).dot(normal.cast<double>());
 }
 
@@ -69,33 +69,33 @@ bool is_inward(const Votes& votes) {
 
 }  // namespace
 
-KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+PriorSigns given_signs(const Placed& placed, const Sampling& sampling,
                        const PrepareOptions& options) {
   using Orientation = PrepareOptions::Orientation;
   const Orientation how = options.orientation;
-  KnownSigns known;
+  PriorSigns prior;
   const bool seen = how == Orientation::automatic || how == Orientation::viewpoint;
-  if (seen && placed.viewpoint) known.eye = (*placed.viewpoint - sampling.origin).cast<float>();
+  if (seen && placed.viewpoint) prior.eye = (*placed.viewpoint - sampling.origin).cast<float>();
   const bool given = how == Orientation::automatic || how == Orientation::given;
-  const bool asked = options.viewpoint && how != Orientation::given;
-  if (given && !asked) known.given = sampling.normals;
-  if (options.facts) known.middle = options.facts->extent.center() - sampling.origin;
-  return known;
+  const bool requested = options.viewpoint && how != Orientation::given;
+  if (given && !requested) prior.given = sampling.normals;
+  if (options.facts) prior.middle = options.facts->extent.center() - sampling.origin;
+  return prior;
 }
 
-void orient(const Sampling& sampling, const KnownSigns& known, PointFits& fits) {
+void orient(const Sampling& sampling, const PriorSigns& prior, PointFits& fits) {
   if (fits.normals.empty()) return;
   const CellGrid& grid = sampling.grid;
   detail::SignedSets sets(grid.size());
   for (const Pair& pair : pairs_of(grid, fits)) {
     sets.join(pair.a, pair.b, pair.cosine < 0 ? -1 : 1);
   }
-  const Eigen::Vector3d middle = known.middle.value_or(middle_of(grid));
+  const Eigen::Vector3d middle = prior.middle.value_or(middle_of(grid));
   std::vector<Votes> votes(grid.size());  // at the roots
   for (std::uint32_t i = 0; i < grid.size(); ++i) {
     const auto [root, sign] = sets.find(i);
     if (sign < 0) fits.normals[i] = -fits.normals[i];
-    add(known, middle, i, grid.points()[i], fits.normals[i], votes[root]);
+    add(prior, middle, i, grid.points()[i], fits.normals[i], votes[root]);
   }
   for (std::uint32_t i = 0; i < grid.size(); ++i) {
     if (is_inward(votes[sets.find(i).first])) fits.normals[i] = -fits.normals[i];

@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// Signs of normals that are known from outside: given normals and a viewpoint.
-struct KnownSigns {
+/// Prior evidence for the signs of normals: given normals and a viewpoint.
+struct PriorSigns {
   std::span<const Eigen::Vector3f> given;  ///< normals in sorted order, some of them maybe zero or
                                            ///< not finite; empty: none
   std::optional<Eigen::Vector3f> eye;      ///< of the sensor, in the grid's frame, m
@@ -21,13 +21,13 @@ struct KnownSigns {
 };
 
 /// The signs that the options allow to be used.
-[[nodiscard]] KnownSigns given_signs(const Placed& placed, const Sampling& sampling,
+[[nodiscard]] PriorSigns given_signs(const Placed& placed, const Sampling& sampling,
                                      const PrepareOptions& options);
 
 /// Turns normals so that those of neighbours agree: pairs of neighbours whose planes are most
 /// parallel join first (Hoppe et al. 1992). Each connected set then faces the side of given normals
 /// or of the viewpoint, else outward. For one smooth surface; where surfaces meet or lie close
 /// together, refinements do more.
-void orient(const Sampling& sampling, const KnownSigns& known, PointFits& fits);
+void orient(const Sampling& sampling, const PriorSigns& prior, PointFits& fits);
 
 }  // namespace palpate

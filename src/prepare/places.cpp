@@ -1,4 +1,4 @@
-// Looks at single points and what lies nearest to them.
+// Looks at single points and at the positions nearest to them.
 
 #include "prepare/places.hpp"
 
@@ -6,10 +6,11 @@ namespace palpate {
 
 namespace {
 
-/// Leaves the places of at most `count` of the points that were found, nearest first.
-void keep_places(const CellGrid& grid, std::size_t count, std::vector<CellGrid::Neighbor>& found) {
-  constexpr float kOnePlace = 0.2f;  // of the way to the farthest: 0.7 and more on a grid
-  const float apart = kOnePlace * kOnePlace * found[count - 1].squared_distance;
+/// Leaves at most `count` of the points that were found, at distinct positions, nearest first.
+void keep_distinct(const CellGrid& grid, std::size_t count,
+                   std::vector<CellGrid::Neighbor>& found) {
+  constexpr float kSamePosition = 0.2f;  // of the distance to the farthest: 0.7 and more on a grid
+  const float apart = kSamePosition * kSamePosition * found[count - 1].squared_distance;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < found.size() && kept < count; ++k) {
     const Eigen::Vector3f& here = grid.points()[found[k].index];
@@ -24,15 +25,15 @@ void keep_places(const CellGrid& grid, std::size_t count, std::vector<CellGrid::
 
 }  // namespace
 
-void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
-                    std::vector<CellGrid::Neighbor>& places) {
-  constexpr std::size_t kCopies = 4;  // of each place, on the average; judgement
-  // The first `count` are most often places of their own: then farther ones change nothing.
-  for (std::size_t asked = count; asked <= kCopies * count; asked *= 2) {
-    grid.nearest(grid.points()[i], asked, places);
-    if (places.size() < count) return;
-    keep_places(grid, count, places);
-    if (places.size() == count) return;
+void nearest_distinct(const CellGrid& grid, std::uint32_t i, std::size_t count,
+                      std::vector<CellGrid::Neighbor>& nearest) {
+  constexpr std::size_t kCopies = 4;  // of each position, on the average; judgement
+  // The first `count` are most often distinct: then farther ones change nothing.
+  for (std::size_t tried = count; tried <= kCopies * count; tried *= 2) {
+    grid.nearest(grid.points()[i], tried, nearest);
+    if (nearest.size() < count) return;
+    keep_distinct(grid, count, nearest);
+    if (nearest.size() == count) return;
   }
 }
 

@@ -10,9 +10,9 @@
 namespace palpate {
 
 /// The point itself and its nearest others, `count` in all, no two of them nearer to each other
-/// than a fifth of the way to the farthest: points that were seen twice count once, and so does a
-/// cluster far away. Fewer where most points around are of such a kind.
-void nearest_places(const CellGrid& grid, std::uint32_t i, std::size_t count,
-                    std::vector<CellGrid::Neighbor>& places);
+/// than a fifth of the distance to the farthest: points that were seen twice count once, and so
+/// does a cluster far away. Fewer where most points around are of such a kind.
+void nearest_distinct(const CellGrid& grid, std::uint32_t i, std::size_t count,
+                      std::vector<CellGrid::Neighbor>& nearest);
 
 }  // namespace palpate

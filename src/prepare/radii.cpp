@@ -61,11 +61,11 @@ constexpr double kFinestShape = 25;
 
 constexpr float kSlope = 0.5f;  // of R over distance; judgement (docs/method.md 5.3)
 
-/// R by spacing and noise, which is taken from place to place where the cloud was thinned for it.
+/// R by spacing and noise, which is taken point by point where the cloud was thinned for it.
 std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions& options) {
   const CloudFacts& facts = sampling.facts;
-  const bool by_place = !sampling.local.products.empty();
-  const double noise = by_place ? 0 : facts.noise.sigma;
+  const bool by_point = !sampling.local.products.empty();
+  const double noise = by_point ? 0 : facts.noise.sigma;
   const double finest = std::max(facts.extent.size().norm(), kLoneSpacing) / kFinestShape;
   std::vector<float> radii(sampling.spacings.size());
   std::ranges::transform(sampling.spacings, radii.begin(), [&](float of_point) {
@@ -77,11 +77,11 @@ std::vector<float> radii_by_noise(const Sampling& sampling, const PrepareOptions
     return static_cast<float>(
         std::max({kUsualMultiple * spacing, options.minimum_radius, for_noise}));
   });
-  if (!by_place) return radii;
+  if (!by_point) return radii;
   return noisy_radii(sampling.grid, sampling.local, options.normal_error, std::move(radii));
 }
 
-/// R of all points; which of them are outliers is not known yet.
+/// R of all points; which of them are outliers is decided later.
 std::vector<float> radii_of(const Sampling& sampling, const PrepareOptions& options) {
   const auto all = [&](double radius) {
     return std::vector<float>(sampling.grid.size(), static_cast<float>(radius));

@@ -28,7 +28,7 @@ struct Radii {
 /// demand so.
 [[nodiscard]] Radii choose_radii(const Sampling& sampling, const PrepareOptions& options);
 
-/// Support radii for a noisy cloud: from place to place so large that noise tilts normals by
+/// Support radii for a noisy cloud: at each point so large that noise tilts normals by
 /// `normal_error` (rad), and at least four sigma, nowhere below a point's of `floors` nor above
 /// 2.4 times that. All in sorted order, m.
 [[nodiscard]] std::vector<float> noisy_radii(const CellGrid& grid, const LocalNoise& noise,

@@ -19,17 +19,17 @@ constexpr double kLeafSpacings = 2;  // edge of a voxel of a noisy cloud; judgem
 
 }  // namespace
 
-std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid) {
+std::vector<std::uint32_t> distinct_points(const CellGrid& grid) {
   std::vector<std::uint8_t> later(grid.size());  // 1: another one stands there before it
-  std::vector<Eigen::Vector3f> places;           // of the cell; all points may share one
+  std::vector<Eigen::Vector3f> positions;        // of the cell; all points may share one
   for (const CellGrid::Cell& cell : grid.cells()) {
     if (cell.children > 0) continue;
-    places.clear();
+    positions.clear();
     for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-      const Eigen::Vector3f& place = grid.points()[i];
-      const bool repeated = std::ranges::find(places, place) != places.end();
+      const Eigen::Vector3f& position = grid.points()[i];
+      const bool repeated = std::ranges::find(positions, position) != positions.end();
       later[grid.order()[i]] = repeated ? 1 : 0;
-      if (!repeated) places.push_back(place);
+      if (!repeated) positions.push_back(position);
     }
   }
   std::vector<std::uint32_t> first;
@@ -64,7 +64,7 @@ bool is_noisy(const CloudFacts& facts) {
 
 /// Leaves the points at positions of their own.
 void drop_duplicates(PointCloud& less, const PointCloud*& cloud, Sampling& sampling) {
-  const auto distinct = first_of_each_place(sampling.grid);
+  const auto distinct = distinct_points(sampling.grid);
   if (distinct.size() == cloud->size()) return;
   less = select(*cloud, distinct);
   cloud = &less;

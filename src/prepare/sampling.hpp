@@ -34,7 +34,7 @@ struct Sampling {
 [[nodiscard]] double voxel_of(const CloudFacts& facts, const PrepareOptions& options);
 
 /// Indices of the first point at each position, in input order.
-[[nodiscard]] std::vector<std::uint32_t> first_of_each_place(const CellGrid& grid);
+[[nodiscard]] std::vector<std::uint32_t> distinct_points(const CellGrid& grid);
 
 /// Indexes the cloud, drops points at positions of others, measures spacing and noise, and thins
 /// noisy clouds. Writes what it finds and how long it takes into the `report`.

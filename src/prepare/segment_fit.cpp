@@ -170,7 +170,7 @@ SegmentFit SegmentFitter::fit(const CellGrid& grid, const Eigen::Vector3f& cente
 SegmentFit SegmentFitter::fit_offsets(double reach) {
   const Plane plane = plane_of(offsets_);
   SegmentFit fit;
-  placed_.clear();
+  local_.clear();
   if (plane.normal.isZero()) return fit;
   fit.points = offsets_.size();
   fit.normal = plane.normal;
@@ -190,7 +190,7 @@ void SegmentFitter::subtract_quadric(double reach, SegmentFit& fit) {
   std::array<Two, 3> right = {};
   double squares = 0;
   for (const Vector3d& offset : offsets_) {
-    const Vector3d& p = placed_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
+    const Vector3d& p = local_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
     const double x = p.x() / reach;
     const double y = p.y() / reach;
     const double xx = x * x;
@@ -218,7 +218,7 @@ void SegmentFitter::subtract_quadric(double reach, SegmentFit& fit) {
   }
   quadric_ = matrix.ldlt().solve(heights);
   squares = std::max(squares - quadric_.dot(heights), 0.);
-  fit.quadric_residual = std::sqrt(squares / static_cast<double>(placed_.size() - kTerms));
+  fit.quadric_residual = std::sqrt(squares / static_cast<double>(local_.size() - kTerms));
   fit.off = std::abs(quadric_[0]);
 }
 
@@ -230,11 +230,11 @@ double SegmentFitter::tile_variance(double reach, double tile) const {
     int count = 0;
   };
   std::array<Tile, std::size_t{kTiles * kTiles}> tiles;
-  const auto place = [tile](double along) {
+  const auto index = [tile](double along) {
     return std::clamp(static_cast<int>(std::floor(along / tile)) + kTiles / 2, 0, kTiles - 1);
   };
-  for (const Vector3d& p : placed_) {
-    Tile& at = tiles[static_cast<std::size_t>(place(p.x()) * kTiles + place(p.y()))];
+  for (const Vector3d& p : local_) {
+    Tile& at = tiles[static_cast<std::size_t>(index(p.x()) * kTiles + index(p.y()))];
     at.sum += p.z() - terms_at(p / reach).dot(quadric_);
     ++at.count;
   }

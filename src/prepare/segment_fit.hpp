@@ -16,7 +16,7 @@ namespace palpate {
 /// the normal fall into two groups with an empty gap between them, those of the position's own
 /// group alone count.
 struct SegmentFit {
-  std::size_t points = 0;  ///< that the fit is of; 0, and nothing else is known: they fit no plane
+  std::size_t points = 0;  ///< that the fit is of; 0, and nothing else is set: they fit no plane
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, sign arbitrary; zero: undefined
   bool others = false;                               ///< are there points of other segments around?
   double planarity = 0;                              ///< 0-1, as Normals::confidences
@@ -39,7 +39,7 @@ inline constexpr double kPlanar = 0.5;  ///< planarity of a plane, at least; jud
 /// enough and no other segments are looked for, m.
 [[nodiscard]] double flat_residual(double radius, double noise);
 
-/// Fits one place after another; keeps its memory in between.
+/// Fits one position after another; keeps its memory in between.
 class SegmentFitter {
  public:
   /// The points within `reach` of `center`, whose spacing is `spacing` (0: all are of one segment).
@@ -72,7 +72,7 @@ class SegmentFitter {
   std::vector<Eigen::Vector3d> offsets_;  // from the centre, m; of the own group
   std::vector<Eigen::Vector3d> some_;
   std::vector<double> heights_;
-  std::vector<Eigen::Vector3d> placed_;       // along and above the plane, m
+  std::vector<Eigen::Vector3d> local_;        // along and above the plane, m
   Eigen::Matrix<double, 6, 1> quadric_ = {};  // of its height, over the reach, m
 };
 

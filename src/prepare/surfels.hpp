@@ -1,4 +1,4 @@
-// Holds a cloud on its way through prepare(), and where refinements come in.
+// Holds a cloud during prepare(), and where refinements come in.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Surfels {
 /// The step of prepare() after which a refinement runs.
 enum class Stage {
   radii,    ///< support radii are chosen
-  fits,     ///< planes are fitted, and sums of weights are known
+  fits,     ///< planes are fitted, and sums of weights are computed
   weights,  ///< points are weighed
   points,   ///< columns have become surface points
 };
@@ -52,11 +52,11 @@ struct Refinement {
   void (*refine)(Surfels& surfels);
 };
 
-/// Thrown by a preparation that was told to stop.
+/// Thrown by a preparation that was stopped.
 struct PreparationStopped {};
 
 /// Takes all steps of prepare() but place(), with these refinements in their order. `report`: what
-/// is known so far.
+/// has been measured so far.
 /// @throws Error as prepare() does, and PreparationStopped between two steps once `stop` is
 ///   requested.
 [[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,

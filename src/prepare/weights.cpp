@@ -18,7 +18,7 @@ namespace {
 using WeightSum = decltype(simd::JoinFunctions::wyvill_sums);
 
 constexpr float kLargest = std::numeric_limits<float>::max();  // 1/m^2: 1 / R^2 stays finite
-constexpr std::size_t kFewestOthers = 3;  // points; with fewer it is speckle; judgement
+constexpr std::size_t kFewestOthers = 3;  // points; with fewer: a radius outlier; judgement
 
 void check(const CellGrid& grid, std::span<const float> radii) {
   if (radii.size() != grid.size()) {
@@ -49,35 +49,35 @@ Input make_input(const CellGrid& grid, std::span<const float> radii, Kernel kern
   return input;
 }
 
-// For each point i that is `asked` for (empty: for all) the sum of w_ij values_j over all points j;
+// For each point i that is `wanted` (empty: for all) the sum of w_ij values_j over all points j;
 // no values: all 1.
-void sums_of(const Input& input, std::span<const float> values, std::span<const std::uint8_t> asked,
-             std::vector<float>& sums) {
-  const auto is_asked = [&](std::uint32_t begin, std::uint32_t count) {
-    return asked.empty() || std::ranges::count(asked.subspan(begin, count), 1) > 0;
+void sums_of(const Input& input, std::span<const float> values,
+             std::span<const std::uint8_t> wanted, std::vector<float>& sums) {
+  const auto is_wanted = [&](std::uint32_t begin, std::uint32_t count) {
+    return wanted.empty() || std::ranges::count(wanted.subspan(begin, count), 1) > 0;
   };
   detail::for_each_block(input.grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    if (!is_asked(block.begin, block.size())) return;
+    if (!is_wanted(block.begin, block.size())) return;
     detail::for_each_part(
         input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach}, block, around,
         [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          if (!is_asked(first, count)) return;
+          if (!is_wanted(first, count)) return;
           simd::Row row;
           input.sum(detail::make_join(input.grid, first, count, runs), input.inverse.data(),
                     values.data(), &row);
           for (std::uint32_t q = 0; q < count; ++q) {
-            if (is_asked(first + q, 1)) sums[first + q] = row[q];
+            if (is_wanted(first + q, 1)) sums[first + q] = row[q];
           }
         });
   });
 }
 
-// For each point i that is asked for the mean of its surroundings: sum of w_ij own_j over own_i.
-void means_of(const Input& input, std::span<const float> own, std::span<const std::uint8_t> asked,
+// For each point i that is `wanted` the mean of its surroundings: sum of w_ij own_j over own_i.
+void means_of(const Input& input, std::span<const float> own, std::span<const std::uint8_t> wanted,
               std::vector<float>& means) {
-  sums_of(input, own, asked, means);
+  sums_of(input, own, wanted, means);
   for (std::size_t i = 0; i < means.size(); ++i) {
-    if (asked.empty() || asked[i] != 0) means[i] /= own[i];
+    if (wanted.empty() || wanted[i] != 0) means[i] /= own[i];
   }
 }
 
@@ -172,8 +172,8 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
       });
 }
 
-std::vector<std::uint8_t> speckle_mask(const CellGrid& grid, std::span<const float> radii,
-                                       std::span<const float> own) {
+std::vector<std::uint8_t> radius_outliers(const CellGrid& grid, std::span<const float> radii,
+                                          std::span<const float> own) {
   std::vector<std::uint8_t> mask(grid.size());
   detail::parallel_each_with<std::vector<std::uint32_t>>(
       grid.size(), 4096, [&](std::size_t k, auto& near) {
@@ -190,13 +190,13 @@ Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& su
     weigh_by_counts(sampling.grid, sampling.counts, radii.values, weights.values);
   }
   if (!options.remove_speckle || options.paper) return weights;
-  auto mask = speckle_mask(sampling.grid, radii.values, sums.own);
+  auto mask = radius_outliers(sampling.grid, radii.values, sums.own);
   for (std::size_t i = 0; i < radii.outliers.size(); ++i) mask[i] |= radii.outliers[i];
-  const auto speckle = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
-  // A whole cloud of nothing but speckle is a sparse one and keeps its weights. A part of a cloud,
+  const auto outliers = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+  // A whole cloud of nothing but outliers is a sparse one and keeps its weights. A part of a cloud,
   // which has facts, does consist of outliers.
-  if (speckle == mask.size() && !options.facts) return weights;
-  weights.speckle = speckle;
+  if (outliers == mask.size() && !options.facts) return weights;
+  weights.outliers = outliers;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] != 0) weights.values[i] = 0;
   }

@@ -48,17 +48,17 @@ void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts
 /// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
 /// others are within 2 R_i and 2 R_j of each other (docs/method.md 5.4). `own`: WeightSums' of the
 /// same radii.
-[[nodiscard]] std::vector<std::uint8_t> speckle_mask(const CellGrid& grid,
-                                                     std::span<const float> radii,
-                                                     std::span<const float> own);
+[[nodiscard]] std::vector<std::uint8_t> radius_outliers(const CellGrid& grid,
+                                                        std::span<const float> radii,
+                                                        std::span<const float> own);
 
 struct Weights {
   std::vector<float> values;  ///< a_i in sorted order; 0: noise put the point there
-  std::size_t speckle = 0;    ///< how many are 0
+  std::size_t outliers = 0;   ///< how many are 0
 };
 
 /// Density weights (docs/method.md 2.2) by the `sums` of the radii, by how many points each stands
-/// for, and 0 for speckle and outliers, which stay in the index.
+/// for, and 0 for radius and isolated outliers, which stay in the index.
 [[nodiscard]] Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
                             const PrepareOptions& options);
 

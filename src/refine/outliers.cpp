@@ -55,7 +55,7 @@ std::vector<std::uint8_t> find_outliers(const CellGrid& grid, std::span<const fl
   const auto near = static_cast<float>(typical);
   std::vector<std::uint8_t> doubted(grid.size());
   const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& places) {
-    nearest_places(grid, static_cast<std::uint32_t>(i), kNeighbors, places);
+    nearest_distinct(grid, static_cast<std::uint32_t>(i), kNeighbors, places);
     if (places.size() < kNeighbors) return Neighborhood{};
     return neighborhood(grid, static_cast<std::uint32_t>(i), places);
   };
@@ -117,10 +117,10 @@ void refine_outliers_off_segments(Surfels& s) {
   for (std::size_t k = 0; k < outliers.size(); ++k) {
     const std::uint32_t i = off[grid.order()[k]];
     if (outliers[k] == 0) continue;
-    nearest_places(sampling.grid, i, 2, places);
+    nearest_distinct(sampling.grid, i, 2, places);
     if (places.size() > 1 && places[1].squared_distance <= typical_squared) continue;
     weights.values[i] = 0;
-    ++weights.speckle;
+    ++weights.outliers;
   }
 }
 

@@ -41,7 +41,7 @@ struct Evidence {
 };
 
 /// For each segment: given normals where nearly all agree, else what the eye sees of it.
-std::vector<Evidence> evidence_of(const SegmentInput& input, const KnownSigns& known,
+std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& known,
                                   const PointFits& own, const GrownSegments& grown) {
   const SurfacePoints::Segments& segments = grown.segments;
   struct Counts {
@@ -210,7 +210,7 @@ void join_components(const SegmentInput& input, const std::vector<SignedEdge>& e
 
 }  // namespace
 
-SurfacePoints::Segments make_segments(const SegmentInput& input, const KnownSigns& known,
+SurfacePoints::Segments make_segments(const SegmentInput& input, const PriorSigns& known,
                                       PointFits& own, std::vector<SecondPlane>& second_planes) {
   GrownSegments grown = grow_segments(input, own);
   second_planes = std::move(grown.second_planes);
@@ -227,7 +227,7 @@ void refine_segments(Surfels& s) {
   for (std::size_t i = 0; i < s.weights.values.size(); ++i) {
     if (s.weights.values[i] <= 0) s.fits.confidences[i] = 0;
   }
-  const KnownSigns known = given_signs(s.placed, s.sampling, s.options);
+  const PriorSigns known = given_signs(s.placed, s.sampling, s.options);
   s.segments =
       make_segments({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
                     known, s.fits, s.second_planes);

@@ -36,7 +36,7 @@ struct SegmentInput {
 /// arc joined the two. `second_planes`: gets those of points that lie on two segments, in rising
 /// order.
 [[nodiscard]] SurfacePoints::Segments make_segments(const SegmentInput& input,
-                                                    const KnownSigns& known, PointFits& own,
+                                                    const PriorSigns& prior, PointFits& own,
                                                     std::vector<SecondPlane>& second_planes);
 
 /// Which segment each point lies on.

@@ -39,7 +39,7 @@ TEST(Clip, KeepsWhatIsInsideWithAllItsColumns) {
 std::vector<std::uint8_t> mask_of(const CellGrid& grid) {
   std::vector<float> radii = local_spacings(grid);
   for (float& radius : radii) radius *= 2.5f;
-  return speckle_mask(grid, radii, WeightSums(grid, radii).own);
+  return radius_outliers(grid, radii, WeightSums(grid, radii).own);
 }
 
 TEST(Speckle, IsWhatFloatsAroundASurfaceAndNothingOfIt) {

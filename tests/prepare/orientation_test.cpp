@@ -26,8 +26,8 @@ struct Turned {
   }
 
   /// How many normals point to where the truth does, after orient().
-  std::size_t alike(const KnownSigns& known) {
-    orient(sampling, known, fits);
+  std::size_t alike(const PriorSigns& prior) {
+    orient(sampling, prior, fits);
     std::size_t count = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) count += fits.normals[i].dot(truth[i]) > 0;
     return count;

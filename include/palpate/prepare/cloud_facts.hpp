@@ -28,10 +28,10 @@ struct CloudFacts {
   Noise noise = {};       ///< of the points as given
   bool in_lines = false;  ///< do they lie on lines, nearer to each other than the lines are?
   Box extent = {};        ///< of all but a few outliers, world frame, m
-  double radius = 0;      ///< a typical R, m; 0: not known, and R has no cap
+  double radius = 0;      ///< a typical R, m; 0: not measured, and R has no cap
 };
 
-/// Measures the facts of a cloud in places that are drawn, always the same of the same cloud: some
+/// Measures the facts of a cloud at positions that are drawn, the same ones of the same cloud: some
 /// thousand points around each, which takes a few tenths of a second whatever the cloud's size.
 /// A few outliers change nothing, and crops of one scan have nearly the same facts.
 /// @throws Error as prepare() does.

@@ -19,9 +19,9 @@ namespace palpate {
 struct PrepareOptions {
   /// The source of normals' signs. They help segments to form oriented components; the free side of
   /// each is the one that the tool comes from or, with a viewpoint that proves true, the one that
-  /// was seen. Components that nothing is known of point outward.
+  /// was seen. Components without any evidence point outward.
   enum class Orientation {
-    automatic,  ///< what is given; else a viewpoint where one is known
+    automatic,  ///< what is given; else a viewpoint where there is one
     viewpoint,  ///< towards PrepareOptions::viewpoint or the cloud's own
     outward,    ///< nothing: outward, or up where points bound nothing
     given,      ///< the cloud's normals alone
@@ -33,7 +33,7 @@ struct PrepareOptions {
   double smoothing = 1;               ///< factor on the R that is chosen where none is given
   double minimum_radius = 0;          ///< no R below this, m (a tool's radius / 0.3)
   double normal_error = 0.02;         ///< wanted error of normals, rad (theta: 1.15 degrees)
-  /// Position of the sensor, in the cloud's frame, m. Gives the signs in place of given normals,
+  /// Position of the sensor, in the cloud's frame, m. Gives the signs instead of given normals,
   /// unless these alone are requested; components whose side it decides hold from there alone.
   std::optional<Eigen::Vector3d> viewpoint = {};
   Orientation orientation = Orientation::automatic;
@@ -54,9 +54,9 @@ struct Prepared {
   /// What preparation found and how long it took (wall time, s).
   struct Report {
     std::size_t points_in = 0;
-    std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, speckle
-    std::size_t duplicates = 0;  ///< points left out, as others lie at their very place
-    std::size_t speckle = 0;     ///< points that weigh nothing as speckle
+    std::size_t points_out = 0;  ///< that are felt: after clip, voxel filter, outliers
+    std::size_t duplicates = 0;  ///< points left out: others are at the same position
+    std::size_t speckle = 0;     ///< outliers, which weigh nothing
     double spacing = 0;          ///< s, median, m
     double noise = 0;            ///< rms distance from a smooth surface, m
     double voxel = 0;            ///< leaf used, m; 0: none
