@@ -46,10 +46,10 @@ void HoleFinder::start(const Vector3f& normal, float reach) {
 void HoleFinder::cut(const CellGrid& grid, std::uint32_t i, std::span<const std::uint32_t> near) {
   others_.clear();
   for (const std::uint32_t j : near) {
-    const Vector3f way = grid.points()[j] - grid.points()[i];
-    const Vector2f along(u_.dot(way), v_.dot(way));
+    const Vector3f offset = grid.points()[j] - grid.points()[i];
+    const Vector2f along(u_.dot(offset), v_.dot(offset));
     const float squared = along.squaredNorm();
-    if (way.squaredNorm() > 2 * squared) continue;
+    if (offset.squaredNorm() > 2 * squared) continue;
     others_.push_back(along);
     if (squared > 0 && squared < 4 * squared_) cut(along, 0.5f * squared);
   }
@@ -86,11 +86,11 @@ bool HoleFinder::is_filled(const CellGrid& grid, std::uint32_t i,
       8;  // points between two looks at the result; judgement, for time
   Directions nearest = Directions::Constant(-1);  // how much nearer another is, m^2; below 0: none
   for (std::size_t k = 0; k < near.size(); ++k) {
-    const Vector3f way = grid.points()[near[k]] - grid.points()[i];
-    const float x = u_.dot(way);
-    const float y = v_.dot(way);
+    const Vector3f offset = grid.points()[near[k]] - grid.points()[i];
+    const float x = u_.dot(offset);
+    const float y = v_.dot(offset);
     const float squared = x * x + y * y;
-    if (way.squaredNorm() > 2 * squared) continue;
+    if (offset.squaredNorm() > 2 * squared) continue;
     const Directions ahead = 2 * radius * (x * cosines_ + y * sines_);
     nearest = nearest.max(ahead - squared);
     if (k % kTogether == 0 && nearest.minCoeff() > 0) return true;
@@ -122,9 +122,9 @@ float HoleFinder::radius_beside(const CellGrid& grid, std::uint32_t i,
 bool HoleFinder::is_surrounded(const Vector2f& middle) {
   angles_.assign(1, std::atan2(-middle.y(), -middle.x()));
   for (const Vector2f& other : others_) {
-    const Vector2f way = other - middle;
-    if (way.squaredNorm() > kDiscRim * kDiscRim * middle.squaredNorm()) continue;
-    angles_.push_back(std::atan2(way.y(), way.x()));
+    const Vector2f offset = other - middle;
+    if (offset.squaredNorm() > kDiscRim * kDiscRim * middle.squaredNorm()) continue;
+    angles_.push_back(std::atan2(offset.y(), offset.x()));
   }
   std::ranges::sort(angles_);
   float gap = angles_.front() - angles_.back() + 2 * std::numbers::pi_v<float>;

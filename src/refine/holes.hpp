@@ -31,7 +31,7 @@ class HoleFinder {
   static constexpr int kDirections = 24;
   using Directions = Eigen::Array<float, kDirections, 1>;
 
-  /// Is each place `radius` (m) off the point nearer to one of `near`?
+  /// Is each position `radius` (m) off the point nearer to one of `near`?
   [[nodiscard]] bool is_filled(const CellGrid& grid, std::uint32_t i,
                                std::span<const std::uint32_t> near, float radius) const;
   /// Do points lie around the empty disc with this middle?
@@ -49,7 +49,7 @@ class HoleFinder {
   std::vector<Eigen::Vector2f> cell_;    // what is nearer to the point than to any other
   std::vector<Eigen::Vector2f> kept_;
   std::vector<float> angles_;  // of what lies around a disc, rad
-  float squared_ = 0;          // way to the farthest corner, m^2
+  float squared_ = 0;          // distance to the farthest corner, m^2
 };
 
 }  // namespace palpate

@@ -112,18 +112,18 @@ class Outlook {
   void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
     if (j == first + q) return;
     const Eye& eye = eyes_[q];
-    const Vector3f way = input_.grid.points()[j] - eye.at;
-    const float squared = way.squaredNorm();
-    if (viewer_ && is_before(eye, j, way, squared)) grown_.hidden[first + q] = 1;
+    const Vector3f offset = input_.grid.points()[j] - eye.at;
+    const float squared = offset.squaredNorm();
+    if (viewer_ && is_before(eye, j, offset, squared)) grown_.hidden[first + q] = 1;
     const bool votes_on = squared <= eye.voting && segments_.segment[j] != eye.segment &&
                           segments_.segment[j] != SurfacePoints::Segments::kNone;
     if (votes_on) others_[q].push_back({squared, j});
   }
 
   /// Does j belong to a segment between the point and the viewer?
-  [[nodiscard]] bool is_before(const Eye& eye, std::uint32_t j, const Vector3f& way,
+  [[nodiscard]] bool is_before(const Eye& eye, std::uint32_t j, const Vector3f& offset,
                                float squared) const {
-    const float height = eye.normal.dot(way);
+    const float height = eye.normal.dot(offset);
     const float off = std::abs(height);
     if (off <= eye.least || (height > 0) != eye.faces) return false;
     const float aside = std::max(0.f, squared - height * height);
@@ -135,20 +135,20 @@ class Outlook {
   void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
             std::vector<SegmentVote>& votes) {
     std::sort(others.begin(), others.end());
-    std::array<std::pair<std::uint32_t, int>, kVoteSegments> heard{};
+    std::array<std::pair<std::uint32_t, int>, kVoteSegments> voted{};
     std::size_t count = 0;
     for (const auto& [squared, j] : others) {
       const std::uint32_t segment = segments_.segment[j];
       std::size_t k = 0;
-      while (k < count && heard[k].first != segment) ++k;
+      while (k < count && voted[k].first != segment) ++k;
       if (k == kVoteSegments) continue;
-      if (k == count) heard[count++] = {segment, 0};
-      if (heard[k].second++ >= kVotesEach) continue;
-      const Vector3f way = input_.grid.points()[j] - input_.grid.points()[i];
+      if (k == count) voted[count++] = {segment, 0};
+      if (voted[k].second++ >= kVotesEach) continue;
+      const Vector3f offset = input_.grid.points()[j] - input_.grid.points()[i];
       const auto [a, b] = std::minmax(segments_.segment[i], segment);
       votes.push_back(
           {a, b,
-           agreement(own_.normals[i], own_.normals[j], way, segment_tolerance(input_, i, j))});
+           agreement(own_.normals[i], own_.normals[j], offset, segment_tolerance(input_, i, j))});
     }
   }
 

@@ -25,18 +25,18 @@ constexpr float kAround = 0.5f;  // judgement: no corner of a surface
 // Points, more than half of kNeighbors, the point itself among them; judgement.
 constexpr std::ptrdiff_t kMostOfNearest = 5;
 
-/// How the places nearest to a point lie.
+/// How the nearest neighbours of a point lie.
 struct Neighborhood {
   bool like_a_surface = false;  ///< on a surface or along a line
   float aside = 1;              ///< 0: all around the point; 1: all far away on one side
 };
 
 Neighborhood neighborhood(const CellGrid& grid, std::uint32_t i,
-                          std::span<const CellGrid::Neighbor> places) {
+                          std::span<const CellGrid::Neighbor> nearest) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (const CellGrid::Neighbor& place : places) {
-    const Eigen::Vector3f offset = grid.points()[place.index] - grid.points()[i];
+  for (const CellGrid::Neighbor& other : nearest) {
+    const Eigen::Vector3f offset = grid.points()[other.index] - grid.points()[i];
     sum += offset / static_cast<float>(kNeighbors);
     squares += offset * offset.transpose() / static_cast<float>(kNeighbors);
   }
@@ -54,27 +54,27 @@ std::vector<std::uint8_t> find_outliers(const CellGrid& grid, std::span<const fl
                                         double typical) {
   const auto near = static_cast<float>(typical);
   std::vector<std::uint8_t> doubted(grid.size());
-  const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& places) {
-    nearest_distinct(grid, static_cast<std::uint32_t>(i), kNeighbors, places);
-    if (places.size() < kNeighbors) return Neighborhood{};
-    return neighborhood(grid, static_cast<std::uint32_t>(i), places);
+  const auto look = [&](std::size_t i, std::vector<CellGrid::Neighbor>& nearest) {
+    nearest_distinct(grid, static_cast<std::uint32_t>(i), kNeighbors, nearest);
+    if (nearest.size() < kNeighbors) return Neighborhood{};
+    return neighborhood(grid, static_cast<std::uint32_t>(i), nearest);
   };
   const auto each = [&](const auto& decide) {
     detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(grid.size(), 4096, decide);
   };
-  each([&](std::size_t i, auto& places) {
+  each([&](std::size_t i, auto& nearest) {
     if (spacings[i] <= kOutlierSpacings * near) return;
-    const Neighborhood around = look(i, places);
-    const bool company = places.size() > 1 && places[1].squared_distance <= near * near;
+    const Neighborhood around = look(i, nearest);
+    const bool company = nearest.size() > 1 && nearest[1].squared_distance <= near * near;
     doubted[i] = !company && !around.like_a_surface ? 1 : 0;
   });
   // Where surfaces meet, the nearest points lie on no one surface, but most of them lie on one.
   std::vector<std::uint8_t> outliers(grid.size());
-  each([&](std::size_t i, auto& places) {
+  each([&](std::size_t i, auto& nearest) {
     if (doubted[i] == 0) return;
-    const Neighborhood around = look(i, places);
+    const Neighborhood around = look(i, nearest);
     const auto settled = std::ranges::count_if(
-        places, [&](const CellGrid::Neighbor& place) { return doubted[place.index] == 0; });
+        nearest, [&](const CellGrid::Neighbor& other) { return doubted[other.index] == 0; });
     const bool edge = around.aside < kAround && settled >= kMostOfNearest;
     outliers[i] = edge ? 0 : 1;
   });
@@ -113,12 +113,12 @@ void refine_outliers_off_segments(Surfels& s) {
   widen_to_lines(grid, spacings);
   const std::vector<std::uint8_t> outliers = find_outliers(grid, spacings, sampling.spacing);
   const double typical_squared = sampling.spacing * sampling.spacing;
-  std::vector<CellGrid::Neighbor> places;
+  std::vector<CellGrid::Neighbor> nearest;
   for (std::size_t k = 0; k < outliers.size(); ++k) {
     const std::uint32_t i = off[grid.order()[k]];
     if (outliers[k] == 0) continue;
-    nearest_distinct(sampling.grid, i, 2, places);
-    if (places.size() > 1 && places[1].squared_distance <= typical_squared) continue;
+    nearest_distinct(sampling.grid, i, 2, nearest);
+    if (nearest.size() > 1 && nearest[1].squared_distance <= typical_squared) continue;
     weights.values[i] = 0;
     ++weights.outliers;
   }

@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// Puts points that lie on two segments on both, with half their weight each: a segment that lacks
-/// the points of its crease would give way there. Indexes the points again.
+/// the points of its crease would yield there. Indexes the points again.
 void add_second_planes(std::span<const SecondPlane> second_planes, SurfacePoints& points);
 
 /// add_second_planes() of the surfels.

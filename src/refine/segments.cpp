@@ -23,8 +23,7 @@ constexpr double kOpen = 0.3;  // |sum a n| / sum a of open components, at least
 // Sine of the lean that gives an open component an upper side; judgement.
 constexpr double kUpright = 0.2;
 
-/// What is known from outside of which side of a segment or component is free, relative to its
-/// normals.
+/// Prior evidence for which side of a segment or component is free, relative to its normals.
 struct Evidence {
   double signs = 0;  // sum of votes
   double all = 0;    // sum of their sizes
@@ -41,7 +40,7 @@ struct Evidence {
 };
 
 /// For each segment: given normals where nearly all agree, else what the eye sees of it.
-std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& known,
+std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& prior,
                                   const PointFits& own, const GrownSegments& grown) {
   const SurfacePoints::Segments& segments = grown.segments;
   struct Counts {
@@ -55,12 +54,12 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& k
     const std::uint32_t segment = segments.segment[i];
     if (segment == SurfacePoints::Segments::kNone) continue;
     ++counts[segment].points;
-    if (!known.given.empty() && known.given[i].allFinite()) {
-      const float cosine = known.given[i].dot(own.normals[i]);
+    if (!prior.given.empty() && prior.given[i].allFinite()) {
+      const float cosine = prior.given[i].dot(own.normals[i]);
       if (cosine != 0) given[segment].add(cosine < 0 ? -1 : 1);
     }
-    if (known.eye) {
-      const Vector3f offset = *known.eye - input.grid.points()[i];
+    if (prior.eye) {
+      const Vector3f offset = *prior.eye - input.grid.points()[i];
       const float cosine = own.normals[i].dot(offset.normalized());
       if (grown.hidden[i] != 0) {
         ++counts[segment].hidden;
@@ -105,7 +104,7 @@ struct ComponentSums {
 /// The sign that turns a component's normals to its free side, and whether evidence decided it.
 struct Side {
   int sign = 1;
-  bool known = false;
+  bool decided = false;
 };
 
 /// Evidence counts where nearly all of it agrees. Else a component that closes around something
@@ -202,7 +201,7 @@ void join_components(const SegmentInput& input, const std::vector<SignedEdge>& e
   std::vector<Side> sides;
   for (std::uint32_t k = 0; k < roots.size(); ++k) {
     sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
-    segments.known.push_back(sides.back().known ? 1 : 0);
+    segments.known.push_back(sides.back().decided ? 1 : 0);
   }
   for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[segments.component[k]].sign;
   turn(signs, segments, own);
@@ -210,14 +209,14 @@ void join_components(const SegmentInput& input, const std::vector<SignedEdge>& e
 
 }  // namespace
 
-SurfacePoints::Segments make_segments(const SegmentInput& input, const PriorSigns& known,
+SurfacePoints::Segments make_segments(const SegmentInput& input, const PriorSigns& prior,
                                       PointFits& own, std::vector<SecondPlane>& second_planes) {
   GrownSegments grown = grow_segments(input, own);
   second_planes = std::move(grown.second_planes);
-  const std::vector<SegmentVote> votes = look_around(input, own, known.eye, grown);
-  const std::vector<Evidence> evidence = evidence_of(input, known, own, grown);
+  const std::vector<SegmentVote> votes = look_around(input, own, prior.eye, grown);
+  const std::vector<Evidence> evidence = evidence_of(input, prior, own, grown);
   SurfacePoints::Segments segments = std::move(grown.segments);
-  join_components(input, edges_of(votes), evidence, known.middle, own, segments);
+  join_components(input, edges_of(votes), evidence, prior.middle, own, segments);
   segments.residual = own.residuals;
   return segments;
 }
@@ -227,10 +226,10 @@ void refine_segments(Surfels& s) {
   for (std::size_t i = 0; i < s.weights.values.size(); ++i) {
     if (s.weights.values[i] <= 0) s.fits.confidences[i] = 0;
   }
-  const PriorSigns known = given_signs(s.placed, s.sampling, s.options);
+  const PriorSigns prior = given_signs(s.placed, s.sampling, s.options);
   s.segments =
       make_segments({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
-                    known, s.fits, s.second_planes);
+                    prior, s.fits, s.second_planes);
 }
 
 }  // namespace palpate

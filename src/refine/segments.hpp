@@ -18,7 +18,7 @@
 
 namespace palpate {
 
-/// Sorted points and what is known of them before segments.
+/// Sorted points and what is measured of them before segments.
 struct SegmentInput {
   const CellGrid& grid;
   std::span<const float> spacings;  // m
@@ -29,7 +29,7 @@ struct SegmentInput {
 /// Puts each point on a segment: confident points that continue each other's planes make one; an
 /// uncertain point joins the segment whose plane it lies on and takes over its fit. Those that lie
 /// on none are fitted to each other; without a plane they have no confidence left. Turns
-/// `own.normals` so that they agree within a component, outward where nothing else is known.
+/// `own.normals` so that they agree within a component, outward without other evidence.
 ///
 /// Segments that lie side by side are one component where nearby pairs of their points agree on
 /// what is outside: n_p, mirrored by the plane halfway between p and q, looks like n_q, as if an
@@ -89,7 +89,7 @@ struct Snapped {
 [[nodiscard]] float fitted_curvature(const SegmentInput& input, const PointFits& own,
                                      std::uint32_t i);
 
-// Least height over the way to the side of what lies over a point rather than beside it.
+// Least height over the distance to the side of what lies over a point rather than beside it.
 inline constexpr float kGapSlope = 0.5f;  // judgement
 
 // How far normals may turn where both fits are curved, over what their arc turns.

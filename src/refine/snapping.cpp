@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-// An uncertain point lies on a confident one's plane where it is off by this share of the way to
-// it, or by this many of its residuals.
+// An uncertain point lies on a confident one's plane where it is off by this share of the
+// distance to it, or by this many of its residuals.
 constexpr float kSnapReach = 1.6f;  // R; judgement
 constexpr float kFarSnapReach = 4;  // R, where few are confident within kSnapReach; judgement
 constexpr std::size_t kFewConfident = 12;  // points; judgement
@@ -28,7 +28,7 @@ constexpr float kSnapResiduals = 3;        // three sigma
 // three faces (derived), less a margin for jitter (judgement).
 constexpr float kShared = 0.3f;
 
-// Cost of the way over that of the distance from the plane; judgement.
+// Cost of the distance to a point over that to its plane; judgement.
 constexpr float kNearness = 0.1f;
 
 // When a point lies on a second plane as well; judgement.
@@ -87,13 +87,13 @@ class Snapping {
                                      static_cast<double>(input_.noise[i]));
   }
 
-  /// Assigns planes to the points marked in `asks`. One that has a plane keeps it where no other
+  /// Assigns planes to the points that are `marked`. One that has a plane keeps it where no other
   /// holds.
-  void assign_planes(const std::vector<std::uint8_t>& asks) {
-    if (std::ranges::count(asks, 1) == 0) return;
+  void assign_planes(const std::vector<std::uint8_t>& marked) {
+    if (std::ranges::count(marked, 1) == 0) return;
     index_confident();
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
-      if (asks[i] == 0) return;
+      if (marked[i] == 0) return;
       if (confident_[i] == 0) {
         assign_plane(i, near);
         return;
@@ -113,14 +113,14 @@ class Snapping {
     each_with<Refit>([&](std::uint32_t i, Refit& refit) {
       if (assigned_[i] == kUnassigned) found[i] = fit_again(i, refit) ? 1 : 0;
     });
-    std::vector<Vector3f> places;
+    std::vector<Vector3f> positions;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       if (found[i] == 0) continue;
       confident_[i] = 1;
-      places.push_back(input_.grid.points()[i]);
+      positions.push_back(input_.grid.points()[i]);
     }
-    if (places.empty()) return found;
-    const CellGrid new_ones(places);
+    if (positions.empty()) return found;
+    const CellGrid new_ones(positions);
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (confident_[i] != 0 && own_.others[i] == 0) return;
       near.clear();
@@ -159,13 +159,13 @@ class Snapping {
 
   void index_confident() {
     confident_points_.clear();
-    std::vector<Vector3f> places;
+    std::vector<Vector3f> positions;
     for (std::uint32_t i = 0; i < confident_.size(); ++i) {
       if (confident_[i] == 0) continue;
       confident_points_.push_back(i);
-      places.push_back(input_.grid.points()[i]);
+      positions.push_back(input_.grid.points()[i]);
     }
-    confident_grid_ = CellGrid(places);
+    confident_grid_ = CellGrid(positions);
   }
 
   /// Confident points around; where they are few, as in the foot of a narrow crease, farther ones
