@@ -3,7 +3,7 @@
 #include "base/description.hpp"
 #include "palpate/field/field_options.hpp"
 
-/// What is said of the options of fields.
+/// The descriptions of the options of fields.
 namespace palpate {
 
 // In the order in which help and errors list them.

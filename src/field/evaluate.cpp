@@ -189,7 +189,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
   sample.support = support.w.f;
   sample.radius = support.radius.f;
   const Value v = metaball ? Value{} : trusted(sums, columns.labels);
-  const FieldPlace place{.functions = surface.sums,
+  const FieldQuery query{.functions = surface.sums,
                          .columns = &columns,
                          .kernel = options.kernel,
                          .x = local.data(),
@@ -197,7 +197,7 @@ Sample evaluate(const ImplicitSurface& surface, const Patch& patch, const Vector
                          .radius = support.radius};
   std::optional<Value> height;
   if (v.f > kFaintNormals * support.plain) {
-    height = joined_height(options, place, kFaintLabel * v.f);
+    height = joined_height(options, query, kFaintLabel * v.f);
   }
   Value value = height ? capped(surface, support, *height, v)
                        : as_length(options, support, level_of(surface, support));

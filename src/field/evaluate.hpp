@@ -40,7 +40,7 @@ struct ImplicitSurface {
 /// (sum w_s^4)^(1/4): how the weight sums of several sources unite (docs/method.md 2.9).
 [[nodiscard]] double united(const double* w, int sources) noexcept;
 
-/// Weighted means over a patch's points at a place.
+/// Weighted means over a patch's points at a position.
 struct PatchSurface {
   double material = 1;
   /// Presence of the points times that of their sources, 0-1: min(1, sum_s W_s p_s / max_s W_s).

@@ -14,11 +14,11 @@ namespace palpate {
 /// the field faces no eye, nothing is solid (docs/method.md 2.11). Real-time.
 class Eyes {
  public:
-  /// Forgets all eyes; places are relative to `center` from now on (m, world).
+  /// Forgets all eyes; positions are relative to `center` from now on (m, world).
   void begin(const Eigen::Vector3d& center) noexcept;
 
   /// Adds those of the chosen points of a layer, rising indices into it.
-  void add(const ActiveLayer& layer, std::span<const std::uint32_t> places) noexcept;
+  void add(const ActiveLayer& layer, std::span<const std::uint32_t> indices) noexcept;
 
   /// Does a surface with this gradient at x (from the centre, m) hold? `weights`: of each source
   /// there. Sources whose points nobody saw hold from all sides.
@@ -29,7 +29,8 @@ class Eyes {
   struct Eye {
     std::size_t source = 0;
     bool remembered = false;
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  // from the centre, m; remembered: direction
+    Eigen::Vector3d position =
+        Eigen::Vector3d::Zero();  // from the centre, m; remembered: direction
   };
   static constexpr std::size_t kMost = 2 * simd::kMaxSources;  // one a source and as many others
 

@@ -65,8 +65,8 @@ void Facing::add_references(const Segment& segment) noexcept {
   }
 }
 
-/// Lists all points that are decided. Where a cloud gave way to another (`vanished`), the points
-/// remembered of it are among them, for what lies in their place now.
+/// Lists all points that are decided. Where another cloud replaced one (`vanished`), the points
+/// remembered of it are among them, for what is there instead now.
 void Facing::list_references(const Eigen::Vector3d& proxy, bool vanished) noexcept {
   references_.clear();
   if (vanished) {
@@ -113,9 +113,9 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   remembered_from_ = stance.proxy;
 }
 
-/// Do the points near decide whether the proxy is behind them? Points of one view whose side is not
-/// known do not: for a proxy behind them they count for nothing.
-bool Facing::tells() const noexcept {
+/// Do the points near decide whether the proxy is behind them? Points of one view whose side is
+/// undecided do not: for a proxy behind them they count for nothing.
+bool Facing::decides() const noexcept {
   const std::vector<Component>& components = view_.table.components;
   return std::ranges::any_of(components, &Component::is_one_sided) ||
          (std::ranges::none_of(components, &Component::uncertain) &&
@@ -154,7 +154,7 @@ bool Facing::face(const Points& points, const Stance& stance) noexcept {
   } else {
     look(points, stance);
   }
-  if (tells()) was_behind_ = view_.table.sees_from_behind();
+  if (decides()) was_behind_ = view_.table.sees_from_behind();
   return write(points);
 }
 

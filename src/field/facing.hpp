@@ -39,8 +39,8 @@ class Facing {
   /// until it comes out in front of them.
   [[nodiscard]] bool is_behind() const noexcept { return was_behind_; }
 
-  /// Has all decided again, for a proxy that is where nothing is solid. What was seen on the way
-  /// counts.
+  /// Has all decided again, for a proxy that is where nothing is solid. What was seen on its
+  /// path counts.
   void reopen() noexcept;
 
   /// Forgets what is decided and what was seen.
@@ -84,7 +84,7 @@ class Facing {
   using Meetings = std::array<Meeting, simd::kLabels>;
   [[nodiscard]] Meetings meetings(const Segment& segment, double& beyond) noexcept;
   [[nodiscard]] std::uint8_t label_of(const Segment& segment) noexcept;
-  [[nodiscard]] bool tells() const noexcept;
+  [[nodiscard]] bool decides() const noexcept;
   [[nodiscard]] bool write(const Points& points) const noexcept;
 
   SegmentView view_;

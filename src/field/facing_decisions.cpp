@@ -20,7 +20,7 @@ constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is
 constexpr float kMeetReach = 1.3f;  // R within which segments meet and components give signs
 constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do not meet
-constexpr float kSamePlace = 1e-3f;     // R; rounding sets the direction between closer points
+constexpr float kSamePosition = 1e-3f;  // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one segment
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one segment
 constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the offset to a segment above
@@ -118,15 +118,15 @@ void Facing::decide_signs(bool continued) noexcept {
   std::vector<Component>& components = view_.table.components;
   int beside = 0;  // of components whose normals point outward, as they are seen
   for (const Component& component : components) {
-    if (component.known) beside += component.sign;
+    if (component.outward) beside += component.sign;
   }
   for (std::uint32_t k = 0; k < components.size(); ++k) {
     Component& component = components[k];
     if (component.sign != 0) continue;
-    const bool told = continued && !component.is_one_sided();
-    const double vote = !told ? 0 : component.known && beside != 0 ? beside : votes_on(k);
-    const double told_or_seen = std::abs(vote) > kLeastVote ? vote : component.seen;
-    if (told_or_seen != 0) component.sign = told_or_seen < 0 ? -1 : 1;
+    const bool inherits = continued && !component.is_one_sided();
+    const double vote = !inherits ? 0 : component.outward && beside != 0 ? beside : votes_on(k);
+    const double evidence = std::abs(vote) > kLeastVote ? vote : component.seen;
+    if (evidence != 0) component.sign = evidence < 0 ? -1 : 1;
   }
 }
 
@@ -160,7 +160,7 @@ Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexce
   each_meeting(segment, kMeetReach,
                [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
                  const float length = offset.norm();
-                 if (!(length > kSamePlace * p.radius)) return;
+                 if (!(length > kSamePosition * p.radius)) return;
                  Meeting& m = result[q.label];
                  const double off = w * static_cast<double>(q.normal.dot(offset) / length);
                  m.all += w;
@@ -177,7 +177,7 @@ Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexce
   return result;
 }
 
-/// The label that follows from how the segment lies to segments whose labels are known.
+/// The label that follows from how the segment lies to segments whose labels are decided.
 std::uint8_t Facing::label_of(const Segment& segment) noexcept {
   double beyond = 0;
   Meetings with = meetings(segment, beyond);

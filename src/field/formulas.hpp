@@ -63,13 +63,13 @@ struct KernelValue {
 
 /// How far two points' normals agree on what is outside, -1 ... 1: n_p, mirrored by the plane
 /// halfway between p and q, times n_q, as if an arc joined the two; their plain product where both
-/// points lie on one plane within `tolerance` (m). `way`: from p to q, or back, m.
+/// points lie on one plane within `tolerance` (m). `offset`: from p to q, or back, m.
 [[nodiscard]] inline float agreement(const Eigen::Vector3f& n_p, const Eigen::Vector3f& n_q,
-                                     const Eigen::Vector3f& way, float tolerance) noexcept {
-  const float by_p = n_p.dot(way);
-  const float by_q = n_q.dot(way);
+                                     const Eigen::Vector3f& offset, float tolerance) noexcept {
+  const float by_p = n_p.dot(offset);
+  const float by_q = n_q.dot(offset);
   const float straight = n_p.dot(n_q);
-  const float squared = way.squaredNorm();
+  const float squared = offset.squaredNorm();
   const bool one_plane = std::abs(by_p) <= tolerance && std::abs(by_q) <= tolerance;
   return one_plane || !(squared > 0) ? straight : straight - 2 * by_p * by_q / squared;
 }
@@ -86,8 +86,8 @@ struct SmoothStep {
   return {u * u * (3 - 2 * u), 6 * u * (1 - u) / width};
 }
 
-/// A column of surface points as it is at the end of their way: that of the start where it does not
-/// change.
+/// A column of surface points as it is at the end of their path: that of the start where it does
+/// not change.
 template <class Column>
 [[nodiscard]] const Column& newest(const Column& start, const Column& end) {
   return end.empty() ? start : end;

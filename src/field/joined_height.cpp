@@ -12,15 +12,15 @@ using Eigen::Vector3d;
 
 // f = B + (sum e h - B sum e) / V: e_i = v_i |share_i|, h_i the height above what both planes
 // leave, B the smooth surface, V = sum v.
-Value with_edges(const FieldPlace& place, const Value& smooth) noexcept {
+Value with_edges(const FieldQuery& query, const Value& smooth) noexcept {
   simd::EdgeSums sums;
-  place.functions->edges(*place.columns, place.near_of(place.label), place.near_of(place.label + 1),
-                         place.kernel == Kernel::wendland, place.x, sums);
+  query.functions->edges(*query.columns, query.near_of(query.label), query.near_of(query.label + 1),
+                         query.kernel == Kernel::wendland, query.x, sums);
   if (!(sums.v > 0)) return smooth;
-  const double inverse = 1 / place.sums().v;
+  const double inverse = 1 / query.sums().v;
   const double gain = inverse * (sums.vh - smooth.f * sums.v);
   const Vector3d grad_gain = vector(sums.grad_vh) - smooth.f * vector(sums.grad_v) -
-                             sums.v * smooth.grad - gain * vector(place.sums().grad_v);
+                             sums.v * smooth.grad - gain * vector(query.sums().grad_v);
   return {smooth.f + gain, smooth.grad + inverse * grad_gain};
 }
 
@@ -35,12 +35,12 @@ constexpr double kHollow = 0.01;
 
 }  // namespace
 
-Value crease_closure(const FieldPlace& place) noexcept {
-  const Oriented square = normal_square(place.sums());
+Value crease_closure(const FieldQuery& query) noexcept {
+  const Oriented square = normal_square(query.sums());
   const SmoothStep facing = smooth_step(kFacing - square.f, 0, kFacing);
   if (facing.value <= 0) return {};
-  const Oriented bulge = convexity(place.sums());
-  const Value& radius = place.radius;
+  const Oriented bulge = convexity(query.sums());
+  const Value& radius = query.radius;
   const double inverse = -1 / radius.f;
   const double h = inverse * bulge.f;
   const SmoothStep hollow = smooth_step(h, 0, kHollow);
@@ -52,7 +52,7 @@ Value crease_closure(const FieldPlace& place) noexcept {
   add(share, by_h * inverse, bulge);
   const double closed = facing.value * hollow.value;
   return {kClosed * radius.f * closed,
-          kClosed * (radius.f * (share.base + place.gradient(share.b)) +
+          kClosed * (radius.f * (share.base + query.gradient(share.b)) +
                      (closed - by_h * h) * radius.grad)};
 }
 
@@ -85,30 +85,30 @@ bool keeps_edges(const FieldOptions& options, const simd::Columns& columns) noex
 }
 
 /// The surface of one label's normals, with its exact gradient.
-Value height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  const Oriented oriented = options.kind == FieldOptions::Kind::balanced ? balanced(place.sums())
-                                                                         : pointset(place.sums());
+Value height_at(const FieldOptions& options, const FieldQuery& query) noexcept {
+  const Oriented oriented = options.kind == FieldOptions::Kind::balanced ? balanced(query.sums())
+                                                                         : pointset(query.sums());
   if (options.gradient == FieldOptions::Gradient::normal) return {oriented.f, oriented.base};
-  return {oriented.f, oriented.base + place.gradient(oriented.b)};
+  return {oriented.f, oriented.base + query.gradient(oriented.b)};
 }
 
 /// The same, where several sources may have one surface at different heights, with its creases
 /// closed and its edges sharp.
-Value whole_height_at(const FieldOptions& options, const FieldPlace& place) noexcept {
-  Value height = height_at(options, place);
+Value whole_height_at(const FieldOptions& options, const FieldQuery& query) noexcept {
+  Value height = height_at(options, query);
   if (options.capped) {
-    const Value closure = crease_closure(place);
+    const Value closure = crease_closure(query);
     height = {height.f - closure.f, height.grad - closure.grad};
   }
-  if (keeps_edges(options, *place.columns)) height = with_edges(place, height);
-  if (place.columns->sources > 1 && options.gradient == FieldOptions::Gradient::exact) {
-    const Value shift = united_shift(place);
+  if (keeps_edges(options, *query.columns)) height = with_edges(query, height);
+  if (query.columns->sources > 1 && options.gradient == FieldOptions::Gradient::exact) {
+    const Value shift = united_shift(query);
     height = {height.f + shift.f, height.grad + shift.grad};
   }
   return height;
 }
 
-/// The length by which a label's height moves out of the way of another's as its share of the
+/// The length by which a label's height moves away from another's as its share of the
 /// weight of both runs out, m: R (0.15 / share - 1)^2.
 Value leave(const Value& own, const Value& both, const Value& radius) noexcept {
   constexpr double kShare = 0.15;  // of the weight of both; judgement (docs/method.md 2.8)
@@ -128,25 +128,25 @@ Value difference(const Value& a, const Value& b) noexcept {
 }
 
 /// How much the far face faces away from the near one, 0 to 1: by d = -Nb . Nb' of the two.
-Value back_to_back(FieldPlace place) noexcept {
-  const int labels = place.columns->labels;
+Value back_to_back(FieldQuery query) noexcept {
+  const int labels = query.columns->labels;
   double v[2] = {};  // of the near face, and of the far one
   Vector3d n[2] = {Vector3d::Zero(), Vector3d::Zero()};
   for (int k = 0; k < labels; ++k) {
-    v[k == kFarFace] += place.all->label[k].v;
-    n[k == kFarFace] += vector(place.all->label[k].vn);
+    v[k == kFarFace] += query.all->label[k].v;
+    n[k == kFarFace] += vector(query.all->label[k].vn);
   }
   for (int side = 0; side < 2; ++side) n[side] /= v[side];
   const double d = -n[0].dot(n[1]);
   const SmoothStep away = smooth_step(d, kBackToBack, 1 - kBackToBack);
   Value result{away.value, Vector3d::Zero()};
-  for (place.label = 0; away.slope > 0 && place.label < labels; ++place.label) {
-    const int side = place.label == kFarFace;
+  for (query.label = 0; away.slope > 0 && query.label < labels; ++query.label) {
+    const int side = query.label == kFarFace;
     const double by = -away.slope / v[side];
     simd::Linear b{};
     assign(b.alpha, by * n[1 - side]);
     b.delta = by * d;
-    result.grad += place.gradient(b);
+    result.grad += query.gradient(b);
   }
   return result;
 }
@@ -154,11 +154,11 @@ Value back_to_back(FieldPlace place) noexcept {
 /// The height of the far face. On the far side of a plate it stays away from the near one by the
 /// width of a soft edge: otherwise the plate would end in a hole before its two surfaces run
 /// together.
-Value far_side(const FieldPlace& place, const Value& front, const Value& behind) noexcept {
-  const Value thin = {behind.f + front.f + kOverEdges * place.radius.f,
-                      behind.grad + front.grad + kOverEdges * place.radius.grad};
+Value far_side(const FieldQuery& query, const Value& front, const Value& behind) noexcept {
+  const Value thin = {behind.f + front.f + kOverEdges * query.radius.f,
+                      behind.grad + front.grad + kOverEdges * query.radius.grad};
   if (thin.f <= 0) return behind;
-  const Value away = back_to_back(place);
+  const Value away = back_to_back(query);
   return {behind.f - away.f * thin.f, behind.grad - away.f * thin.grad - thin.f * away.grad};
 }
 
@@ -176,21 +176,21 @@ Value smooth_max(const Value& a, const Value& b, const Value& radius, double wid
           (1 - 0.5 * h) * larger.grad + 0.5 * h * smaller.grad + by_k * width * radius.grad};
 }
 
-std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
+std::optional<Value> joined_height(const FieldOptions& options, FieldQuery query,
                                    double least) noexcept {
   constexpr double kInCreases = 0.1;  // width of the rounding, R; judgement (docs/method.md 2.8)
   Value height[simd::kLabels];
   Value weight[simd::kLabels];
   bool there[simd::kLabels] = {};
-  for (int k = 0; k < place.columns->labels; ++k) {
-    const simd::LabelSums& sums = place.all->label[k];
+  for (int k = 0; k < query.columns->labels; ++k) {
+    const simd::LabelSums& sums = query.all->label[k];
     there[k] = has_normals(options, sums, least);
     if (!there[k]) continue;
-    place.label = k;
-    height[k] = whole_height_at(options, place);
+    query.label = k;
+    height[k] = whole_height_at(options, query);
     weight[k] = {sums.v, vector(sums.grad_v)};
   }
-  const Value& radius = place.radius;
+  const Value& radius = query.radius;
   if (!there[kNearFace] && !there[kConcave] && !there[kFarFace]) return std::nullopt;
   Value front = there[kNearFace] ? height[kNearFace] : height[kConcave];
   Value front_weight = there[kNearFace] ? weight[kNearFace] : weight[kConcave];
@@ -205,7 +205,7 @@ std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place
   const Value both = sum(front_weight, weight[kFarFace]);
   front = difference(front, leave(front_weight, both, radius));
   const Value behind = difference(height[kFarFace], leave(weight[kFarFace], both, radius));
-  return smooth_max(front, far_side(place, front, behind), radius, kOverEdges);
+  return smooth_max(front, far_side(query, front, behind), radius, kOverEdges);
 }
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
   std::array<double, simd::kMaxSources> by_source{};
   for (int run = 0; patch.points() > 0 && run < c.labels * c.sources; ++run) {
     const auto s = static_cast<std::size_t>(run % c.sources);
-    double sure = 0;
+    double present = 0;
     for (std::uint32_t i = c.run_begin[run]; i < c.run_begin[run + 1]; ++i) {
       const Vector3d q = Vector3d(c.position[0][i], c.position[1][i], c.position[2][i]) - local;
       const double r2 = q.squaredNorm() * c.inverse_r2[i];
@@ -34,10 +34,10 @@ PatchSurface mean_surface(const ImplicitSurface& surface, const Patch& patch,
       by_source[s] += w;
       total += w;
       material += w * (c.material ? c.material[i] : 1);
-      sure += w * (c.presence ? c.presence[i] : 1);
+      present += w * (c.presence ? c.presence[i] : 1);
       if (c.moves) velocity += w * Vector3d(c.velocity[0][i], c.velocity[1][i], c.velocity[2][i]);
     }
-    presence += sure * (presences.empty() ? 1 : presences[s]);
+    presence += present * (presences.empty() ? 1 : presences[s]);
   }
   const auto first = by_source.begin();
   const auto most = std::max_element(first, first + c.sources);

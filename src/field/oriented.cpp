@@ -106,26 +106,26 @@ struct Own {
 
 using Owns = std::array<Own, simd::kMaxSources>;
 
-Own own(const FieldPlace& place, int source) noexcept {
-  const simd::SourceMoments& of = place.sums().of[source];
+Own own(const FieldQuery& query, int source) noexcept {
+  const simd::SourceMoments& of = query.sums().of[source];
   Own o;
   o.source = source;
   o.v = of.v;
   o.height = -of.vnq / of.v;
   o.slope = vector(of.vn) / of.v;
   o.normal = o.slope.normalized();
-  const double radius = place.radius.f;
+  const double radius = query.radius.f;
   const double eta = std::abs(o.height) / radius;
-  const double phi = plane_threshold(place.kernel, eta);
+  const double phi = plane_threshold(query.kernel, eta);
   const double squared = phi * phi + kFloor * kFloor;
-  const double w = place.all->w[source];
-  o.radius = place.all->wr_of[source] / w;
+  const double w = query.all->w[source];
+  o.radius = query.all->wr_of[source] / w;
   o.radius_slope =
-      (vector(place.all->grad_wr_of[source]) - o.radius * vector(place.all->grad_w[source])) / w;
+      (vector(query.all->grad_wr_of[source]) - o.radius * vector(query.all->grad_w[source])) / w;
   const double r2 = o.radius * o.radius;
   o.cover = of.v / (std::sqrt(squared) * r2 * r2);
   if (eta < 1) {
-    const double by_eta = -phi * plane_threshold_slope(place.kernel, eta) / squared;
+    const double by_eta = -phi * plane_threshold_slope(query.kernel, eta) / squared;
     o.steep = std::copysign(by_eta / radius, o.height);
   }
   return o;
@@ -133,14 +133,14 @@ Own own(const FieldPlace& place, int source) noexcept {
 
 /// Lists the sources that are there, with their shares. Returns how many; 0 when one has no normal
 /// here.
-int list(const FieldPlace& place, Owns& owns) noexcept {
+int list(const FieldQuery& query, Owns& owns) noexcept {
   int count = 0;
   double covers = 0;
-  for (int s = 0; s < place.columns->sources; ++s) {
-    const simd::SourceMoments& of = place.sums().of[s];
-    if (!(of.v > kFaint * place.sums().v)) continue;
+  for (int s = 0; s < query.columns->sources; ++s) {
+    const simd::SourceMoments& of = query.sums().of[s];
+    if (!(of.v > kFaint * query.sums().v)) continue;
     if (!(vector(of.vn).norm() > kFaint * of.v)) return 0;
-    owns[static_cast<std::size_t>(count)] = own(place, s);
+    owns[static_cast<std::size_t>(count)] = own(query, s);
     covers += owns[static_cast<std::size_t>(count++)].cover;
   }
   for (Own& o : std::span(owns).first(static_cast<std::size_t>(count))) o.share = o.cover / covers;
@@ -149,12 +149,12 @@ int list(const FieldPlace& place, Owns& owns) noexcept {
 
 }  // namespace
 
-Value united_shift(const FieldPlace& place) noexcept {
+Value united_shift(const FieldQuery& query) noexcept {
   Owns all;
-  const int count = place.columns->sources > 1 ? list(place, all) : 0;
+  const int count = query.columns->sources > 1 ? list(query, all) : 0;
   if (count < 2) return {};
   const auto owns = std::span(all).first(static_cast<std::size_t>(count));
-  const double v = place.sums().v;
+  const double v = query.sums().v;
   double by_cover = 0;
   double by_weight = 0;
   Vector3d normal = Vector3d::Zero();
@@ -167,26 +167,26 @@ Value united_shift(const FieldPlace& place) noexcept {
   const SmoothStep tau = smooth_step(coherence, kUniteFrom, kUniteFull - kUniteFrom);
   if (tau.value <= 0) return {};
   normal /= coherence;
-  const double way = by_cover - by_weight;
+  const double offset = by_cover - by_weight;
   // Chain rule through f_s, V_s, the normals and R.
-  Value result{tau.value * way, Vector3d::Zero()};
+  Value result{tau.value * offset, Vector3d::Zero()};
   double by_radius = 0;
   for (const Own& o : owns) {
     const double aligned = normal.dot(o.normal);
     const double by_log =
-        o.share * (tau.value * (o.height - by_cover) + tau.slope * way * (aligned - coherence));
+        o.share * (tau.value * (o.height - by_cover) + tau.slope * offset * (aligned - coherence));
     const double by_height = tau.value * (o.share - o.v / v) + by_log * o.steep;
     const double by_v = by_log / o.v - tau.value * (o.height - by_weight) / v;
-    by_radius -= by_log * o.steep * o.height / place.radius.f;
+    by_radius -= by_log * o.steep * o.height / query.radius.f;
     simd::Linear b{};
     assign(b.alpha,
-           tau.slope * way * o.share / (o.v * o.slope.norm()) * (normal - aligned * o.normal));
+           tau.slope * offset * o.share / (o.v * o.slope.norm()) * (normal - aligned * o.normal));
     b.gamma = -by_height / o.v;
     b.delta = -by_height * o.height / o.v + by_v;
-    const Vector3d sum = place.gradient_of_source(o.source, b);
+    const Vector3d sum = query.gradient_of_source(o.source, b);
     result.grad += by_height * o.slope + sum - by_log * kFine / o.radius * o.radius_slope;
   }
-  result.grad += by_radius * place.radius.grad;
+  result.grad += by_radius * query.radius.grad;
   return result;
 }
 

@@ -51,7 +51,7 @@ struct Oriented {
 void add(Oriented& to, double factor, const Oriented& from) noexcept;
 
 /// A position at which a field is evaluated, with the sums and the radius there.
-struct FieldPlace {
+struct FieldQuery {
   const simd::Functions* functions = nullptr;
   const simd::Columns* columns = nullptr;
   Kernel kernel = Kernel::wyvill;
@@ -99,12 +99,12 @@ struct FieldPlace {
 /// mean radius, grows as its rays graze, so that a source has faded before its surface ends at a
 /// silhouette. tau, taken from |sum lambda_s n_s|, is 1 where normals of two sources differ by less
 /// than 11 degrees and 0 from 23 on: the faces of an edge or of a thin plate do not disagree.
-[[nodiscard]] Value united_shift(const FieldPlace& place) noexcept;
+[[nodiscard]] Value united_shift(const FieldQuery& query) noexcept;
 
 /// A surface of the label's points with its edges sharp: where points lie beside an edge, the mean
-/// of the heights above what both planes leave takes the place of `smooth`. With its exact
+/// of the heights above what both planes leave replaces `smooth`. With its exact
 /// gradient.
-[[nodiscard]] Value with_edges(const FieldPlace& place, const Value& smooth) noexcept;
+[[nodiscard]] Value with_edges(const FieldQuery& query, const Value& smooth) noexcept;
 
 /// The length that closes acute creases: it is subtracted from the height as seen from the proxy's
 /// side, m, with its gradient. 0 on single surfaces, between surfaces that meet at 114 degrees and
@@ -120,16 +120,16 @@ struct FieldPlace {
 /// opens before that, as surfaces are seldom equal. h is half the gap, over R, between surfaces
 /// that face each other, and below 0 in the plate between surfaces that face away, which keeps its
 /// shape.
-[[nodiscard]] Value crease_closure(const FieldPlace& place) noexcept;
+[[nodiscard]] Value crease_closure(const FieldQuery& query) noexcept;
 
 /// Smooth maximum of two lengths over a width k, of R, that may vary: C1 (docs/method.md 1).
 [[nodiscard]] Value smooth_max(const Value& a, const Value& b, const Value& radius,
                                double width) noexcept;
 
-/// The height above the surfaces at a place as they meet there: concave neighbours bound free space
-/// with near faces, and far faces bound the solid with both (Facing). Nothing where no label has
-/// more than `least` of trusted weight. With its exact gradient.
-[[nodiscard]] std::optional<Value> joined_height(const FieldOptions& options, FieldPlace place,
+/// The height above the surfaces at a position as they meet there: concave neighbours bound free
+/// space with near faces, and far faces bound the solid with both (Facing). Nothing where no label
+/// has more than `least` of trusted weight. With its exact gradient.
+[[nodiscard]] std::optional<Value> joined_height(const FieldOptions& options, FieldQuery query,
                                                  double least) noexcept;
 
 }  // namespace palpate

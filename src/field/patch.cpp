@@ -12,15 +12,15 @@ std::size_t whole_lanes(std::size_t points) noexcept {
   return (points + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
 }
 
-/// Is a layer the k-th that was gathered, on its way?
+/// Is a layer the k-th that was gathered, with its progress within that of the run?
 bool follows(const ActiveLayer& now, const GatheredPoints& points, std::size_t k) noexcept {
   const ActiveLayer& before = points.layers[k];
   const Selection::Run& run = points.selection.runs()[k];
   const bool same = now.points == before.points && now.source == before.source &&
                     now.least_radius == before.least_radius;
-  const bool on_the_way =
+  const bool in_range =
       !has_end(*now.points) || (now.progress >= run.from && now.progress <= run.until);
-  return same && on_the_way && (run.counts || !(now.weight > 0));
+  return same && in_range && (run.counts || !(now.weight > 0));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void Patch::copy(std::span<const ActiveLayer> layers, int sources, bool whole) n
   points_.options.stance = nullptr;
   eyes_.begin(center());
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    eyes_.add(layers[k], points_.selection.places(points_.selection.runs()[k]));
+    eyes_.add(layers[k], points_.selection.indices(points_.selection.runs()[k]));
   }
   columns_.write(points_);
 }

@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-/// The points around a place, copied into columns relative to that place: what the sums run over.
+/// The points around a position, copied into columns relative to it: what the sums run over.
 ///
 /// It holds every point whose support reaches into the ball (center, extra), so a sample anywhere
 /// in that ball is exact, and stays so while the points move: advance() follows them. All memory is
@@ -40,7 +40,7 @@ class Patch {
   [[nodiscard]] Facing& sides() noexcept { return facing_; }
   [[nodiscard]] const Facing& sides() const noexcept { return facing_; }
 
-  /// Gathers again at the same place after advance() was refused, and looks for points in those
+  /// Gathers again at the same position after advance() was refused, and looks for points in those
   /// layers alone that are others. False as by gather().
   bool renew(std::span<const ActiveLayer> layers, int sources, int most_visits,
              const Stance* stance = nullptr) noexcept;

@@ -33,11 +33,11 @@ enum Column {
 };
 
 /// Does any of the chosen points lie beside an edge?
-bool knows_edges(const GatheredPoints& points) noexcept {
+bool any_edges(const GatheredPoints& points) noexcept {
   for (std::size_t k = 0; points.options.normals && k < points.layers.size(); ++k) {
     const auto beside = [&](std::uint32_t i) { return has_edge(points.layers[k], i); };
     const Selection& chosen = points.selection;
-    if (std::ranges::any_of(chosen.places(chosen.runs()[k]), beside)) return true;
+    if (std::ranges::any_of(chosen.indices(chosen.runs()[k]), beside)) return true;
   }
   return false;
 }
@@ -72,7 +72,7 @@ void PointColumns::write(const GatheredPoints& points) noexcept {
   const auto varies = [](const ActiveLayer& of) { return !of.points->materials.empty(); };
   columns_.material = if_any(kMaterial, varies);
   columns_.presence = if_any(kPresence, [](const ActiveLayer& of) { return fades(*of.points); });
-  columns_.edges = knows_edges(points);
+  columns_.edges = any_edges(points);
   sort(points);
 }
 
@@ -102,7 +102,7 @@ void PointColumns::advance(GatheredPoints& points, std::span<const ActiveLayer> 
   if (filled) measure(points.ball.radius);
 }
 
-/// Gives every point its place in the columns.
+/// Gives every point its slot in the columns.
 void PointColumns::lay_out(const GatheredPoints& points) noexcept {
   std::array<std::uint32_t, simd::kMaxRuns> next{};
   const int sources = points.sources;
@@ -120,14 +120,14 @@ void PointColumns::lay_out(const GatheredPoints& points) noexcept {
   columns_.labels = 1;
   columns_.run_begin[0] = 0;
   for (int run = 0; run < simd::kLabels * sources; ++run) {
-    std::uint32_t& place = next[static_cast<std::size_t>(run)];
-    if (place > 0) columns_.labels = run / sources + 1;
+    std::uint32_t& slot = next[static_cast<std::size_t>(run)];
+    if (slot > 0) columns_.labels = run / sources + 1;
     const std::uint32_t begin = columns_.run_begin[run];
-    const std::uint32_t end = begin + place;
+    const std::uint32_t end = begin + slot;
     const std::uint32_t filled = (end + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
     pad(end, filled);
     columns_.run_begin[run + 1] = filled;
-    place = begin;
+    slot = begin;
   }
   slots_.resize(points.signs.size());
   each([&](std::size_t layer, std::size_t k) { slots_[k] = next[run_of(layer, k)]++; });
@@ -140,12 +140,12 @@ void PointColumns::pad(std::uint32_t begin, std::uint32_t end) noexcept {
   }
 }
 
-/// Visits a layer's points: place in the layer, place in the columns, sign.
+/// Visits a layer's points: index in the layer, slot in the columns, sign.
 void PointColumns::each_of(const GatheredPoints& points, std::size_t k,
                            const auto& visit) noexcept {
   const Selection::Run& run = points.selection.runs()[k];
   std::size_t chosen = run.first;
-  for (const std::uint32_t i : points.selection.places(run)) {
+  for (const std::uint32_t i : points.selection.indices(run)) {
     visit(i, slots_[chosen], points.signs[chosen]);
     ++chosen;
   }

@@ -34,14 +34,14 @@ struct GatheredPoints {
 
   Selection selection;
   std::vector<ActiveLayer> layers;   ///< as they are in the columns
-  std::vector<std::int8_t> signs;    ///< of the chosen places; 0: it counts for nothing
+  std::vector<std::int8_t> signs;    ///< of the chosen points; 0: it counts for nothing
   std::vector<std::uint8_t> labels;  ///< of the same
   int sources = 1;
   Ball ball{.radius = -1};  ///< they are all that reach into it; radius below 0: of no ball
   GatherOptions options;
 };
 
-/// What the sums read, and what else is known of each point.
+/// What the sums read, and what else is stored of each point.
 struct PatchColumns : simd::Columns {
   const double* material = nullptr;  ///< nullptr: all 1
   const double* presence = nullptr;  ///< 0-1; nullptr: all 1
@@ -83,7 +83,7 @@ class PointColumns {
 
   std::size_t pitch_;  // from column to column; no power of two, or they share cache sets
   std::vector<double> data_;
-  std::vector<std::uint32_t> slots_;  // where each of the chosen places is in the columns
+  std::vector<std::uint32_t> slots_;  // where each of the chosen points is in the columns
   std::vector<std::uint32_t> near_;   // scratch of the sums
   PatchColumns columns_{};
 };

@@ -19,14 +19,14 @@ using Segment = SegmentTable::Segment;
 using Point = SegmentView::Point;
 
 // A component keeps its sign while one of its points is within kHolds, a segment its label within
-// kMeets. Both are above 1 R, where weights end. Labels are settled later, when more is known.
+// kMeets. Both are above 1 R, where weights end. Labels are settled later, with more evidence.
 constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
 
 // What the eye sees (docs/method.md 2.7); all are judgement.
 constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which points count
-constexpr double kFades = 1;   // R of way on which what was seen fades to a third
+constexpr double kFades = 1;   // R of travel on which what was seen fades to a third
 
 /// The index of a component, which is added if it is new. Components are never more than segments,
 /// so there is room for them.
@@ -51,14 +51,14 @@ bool is_decided(const Segment& segment, const Component& component) noexcept {
          component.sign > 0;
 }
 
-void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std::uint32_t> places,
+void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std::uint32_t> indices,
                 const Vector3d& proxy) noexcept {
   const SurfacePoints& surface = *layer.points;
   const SurfacePoints::Segments& own = surface.segments;
   const std::uint32_t none = surface.one_sided() ? SegmentView::kUncertain : SegmentView::kNone;
   std::uint32_t last = SurfacePoints::Segments::kNone;
   std::uint32_t slot = SegmentView::kNone;
-  for (const std::uint32_t i : places) {
+  for (const std::uint32_t i : indices) {
     const double confidence = surface.normals.empty() ? 0 : confidence_now(layer, i);
     const std::uint32_t segment = own.empty() ? 0 : own.segment[i];
     if (confidence <= 0 || segment == SurfacePoints::Segments::kNone) {
@@ -110,10 +110,10 @@ float rise_of(const SegmentView& view, const Point& point) noexcept {
 /// turned, and close above a bulge the planes of most of its points are higher than the eye: half
 /// of the closest point's vote keeps these down.
 float height_over(const SegmentView& view, const Point& point) noexcept {
-  const Vector3f way = view.eye.position - point.position;
-  const float height = point.normal.dot(way);
+  const Vector3f offset = view.eye.position - point.position;
+  const float height = point.normal.dot(offset);
   const bool bent = view.is_one_sided(point) && point.normal.dot(view.eye.beside) > 0.5f;
-  return bent ? 0.5f * (height + view.eye.beside.dot(way)) : height;
+  return bent ? 0.5f * (height + view.eye.beside.dot(offset)) : height;
 }
 
 /// The tool looks from where it is or, where it touches, from a little above.
@@ -176,8 +176,8 @@ std::uint32_t SegmentTable::add(const ActiveLayer& layer, std::uint32_t number,
   std::uint8_t& slot = slots[find(key)];
   if (slot < kMost || segments.size() == kMost) return slot;
   Component component{.key = key_of_all(points),
-                      .known = own.empty() || own.known[own.component[number]] != 0};
-  component.uncertain = points.one_sided() && !component.known;
+                      .outward = own.empty() || own.known[own.component[number]] != 0};
+  component.uncertain = points.one_sided() && !component.outward;
   if (!own.empty() && (component.uncertain || !points.one_sided()))
     component.key = {&points, own.component[number]};
   Segment segment{.key = key,
@@ -204,7 +204,7 @@ void SegmentView::list(std::span<const ActiveLayer> layers, const Selection& cho
   points.clear();
   segment_of_point.clear();
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    list_layer(*this, layers[k], chosen.places(chosen.runs()[k]), proxy);
+    list_layer(*this, layers[k], chosen.indices(chosen.runs()[k]), proxy);
   }
   float radii = 0;
   for (const Point& point : points) radii += point.radius;
@@ -236,16 +236,16 @@ bool SegmentView::is_above(const Point& point) const noexcept {
   return height_over(*this, point) >= rise_of(*this, point);
 }
 
-/// Sums what speaks for the sides that the eye sees. What was seen on the way here counts less the
-/// longer the way is; it counts since close to a sparse bend few points show a side, and the planes
+/// Sums what speaks for the sides that the eye sees. What was seen on the path here counts less the
+/// longer it is; it counts since close to a sparse bend few points show a side, and the planes
 /// of some are wrong.
-void SegmentView::look(const Stance& stance, double way, bool from_behind) noexcept {
+void SegmentView::look(const Stance& stance, double travel, bool from_behind) noexcept {
   const auto decided = [this](const Segment& segment) {
     return is_decided(segment, table.components[segment.component]);
   };
   if (std::ranges::all_of(table.segments, decided)) return;
   choose_eye(*this, stance);
-  const double kept = std::exp(-way / (kFades * static_cast<double>(radius)));
+  const double kept = std::exp(-travel / (kFades * static_cast<double>(radius)));
   std::array<double, kNone> seen{};
   for (const Point& p : points) {
     Segment& segment = table.segments[p.segment];

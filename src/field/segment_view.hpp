@@ -41,7 +41,7 @@ enum Label : std::uint8_t {
 };
 static_assert(kConcave == simd::kLabels - 1);
 
-/// Lets two labels change places in what has a `label`.
+/// Swaps two labels in what has a `label`.
 void swap_labels(auto& labelled, std::uint8_t a, std::uint8_t b) noexcept {
   for (auto& x : labelled) x.label = x.label == a ? b : x.label == b ? a : x.label;
 }
@@ -68,7 +68,7 @@ struct SegmentTable {
   struct Component {
     Key key;
     int sign = 0;            // 0: not decided
-    bool known = false;      // are its normals known to point outward?
+    bool outward = false;    // does evidence turn its normals outward?
     bool uncertain = false;  // was it seen in one view that does not show its side?
     bool near = false;       // has one of its points weight at the proxy, or nearly?
     bool weighs = false;     // has one of them weight there?
@@ -101,7 +101,7 @@ struct SegmentTable {
                     const SegmentTable& before) noexcept;
   /// Makes near faces of the segments with the label `touched`, or of those that are left where
   /// there is no near face: the labels of what comes into view follow from how it meets them.
-  /// Labels that change places leave the field as it is, but for near and far faces beside a
+  /// Swapped labels leave the field as it is, but for near and far faces beside a
   /// concave neighbour: they stay.
   void make_near_face(std::uint8_t touched) noexcept;
   /// Where the segment is in `slots`, or would be.
@@ -148,9 +148,9 @@ struct SegmentView {
   /// Lists what the proxy is among, with what is decided of it by now.
   void list(std::span<const ActiveLayer> layers, const Selection& chosen, const Rise& height,
             const Eigen::Vector3d& proxy) noexcept;
-  /// Sums what speaks for the sides that the tool sees. `way`, m: of the proxy since the last call;
-  /// `from_behind`: it was behind what was seen from one side only.
-  void look(const Stance& stance, double way, bool from_behind) noexcept;
+  /// Sums what speaks for the sides that the tool sees. `travel`, m: of the proxy since the last
+  /// call; `from_behind`: it was behind what was seen from one side only.
+  void look(const Stance& stance, double travel, bool from_behind) noexcept;
   /// The label of what a proxy with this contact normal touches most; kNearFace: of nothing.
   [[nodiscard]] std::uint8_t touched_label(const Eigen::Vector3f& normal) const noexcept;
   /// Is a segment gone that was near the proxy when the last list was made?

@@ -99,17 +99,17 @@ using Eigen::Vector3d;
 constexpr std::uint32_t kLargestStride = std::uint32_t{1}
                                          << 31;  // the largest power of 2 in 32 bits
 
-/// From the origin to the way from a to b.
+/// From the origin to the segment from a to b.
 double squared_distance(const Vector3d& a, const Vector3d& b) noexcept {
-  const Vector3d way = b - a;
-  const double length = way.squaredNorm();
+  const Vector3d path = b - a;
+  const double length = path.squaredNorm();
   if (!(length > 0)) return a.squaredNorm();
-  return (a + std::clamp(-a.dot(way) / length, 0.0, 1.0) * way).squaredNorm();
+  return (a + std::clamp(-a.dot(path) / length, 0.0, 1.0) * path).squaredNorm();
 }
 
 }  // namespace
 
-Selection::Selection(std::size_t capacity) : places_(capacity, 0), places_before_(capacity, 0) {
+Selection::Selection(std::size_t capacity) : indices_(capacity, 0), indices_before_(capacity, 0) {
   runs_.reserve(kMostLayers);
   runs_before_.reserve(kMostLayers);
 }
@@ -133,7 +133,7 @@ bool Selection::renew(std::span<const ActiveLayer> layers, std::span<const std::
                       int most_visits) noexcept {
   options_.most_visits = most_visits;
   const bool whole = stride_ == 1;  // thinned runs lack points that there may be room for now
-  std::swap(places_, places_before_);
+  std::swap(indices_, indices_before_);
   std::swap(runs_, runs_before_);
   begin();
   return choose_all(layers, whole ? before : std::span<const std::size_t>());
@@ -153,7 +153,7 @@ bool Selection::choose_all(std::span<const ActiveLayer> layers,
     }
     runs_.back().count = used_ - runs_.back().first;
   }
-  while (chosen && filled_up(layers) > places_.size()) {
+  while (chosen && filled_up(layers) > indices_.size()) {
     chosen = stride_ < kLargestStride;
     if (chosen) thin();
   }
@@ -166,8 +166,8 @@ bool Selection::take_over(const Run& run) noexcept {
   now.from = run.from;
   now.until = run.until;
   now.counts = run.counts;
-  return std::ranges::all_of(std::span(places_before_).subspan(run.first, run.count),
-                             [this](std::uint32_t place) { return take(place); });
+  return std::ranges::all_of(std::span(indices_before_).subspan(run.first, run.count),
+                             [this](std::uint32_t index) { return take(index); });
 }
 
 bool Selection::walk(const ActiveLayer& layer) noexcept {
@@ -203,11 +203,11 @@ bool Selection::take_near(const ActiveLayer& start, const ActiveLayer& last, std
   while (i < end) {
     if (visits_ >= options_.most_visits) return false;
     ++visits_;
-    const auto place = static_cast<std::uint32_t>(i);
-    const float own = radius > 0 ? radius : largest_radius(start, place);
-    if (!test.far(place, own + extra) && reaches(start, last, place) &&
-        counts(start, last, place)) {
-      if (!take(place)) return false;
+    const auto index = static_cast<std::uint32_t>(i);
+    const float own = radius > 0 ? radius : largest_radius(start, index);
+    if (!test.far(index, own + extra) && reaches(start, last, index) &&
+        counts(start, last, index)) {
+      if (!take(index)) return false;
     }
     i = (i / stride_ + 1) * stride_;  // the stride may have grown
   }
@@ -238,12 +238,12 @@ bool Selection::counts(const ActiveLayer& start, const ActiveLayer& last,
 }
 
 /// False when there is no room for it, however few are taken.
-bool Selection::take(std::uint32_t place) noexcept {
-  while (used_ == places_.size()) {
+bool Selection::take(std::uint32_t index) noexcept {
+  while (used_ == indices_.size()) {
     if (stride_ == kLargestStride) return false;
     thin();
   }
-  if (place % stride_ == 0) places_[used_++] = place;
+  if (index % stride_ == 0) indices_[used_++] = index;
   return true;
 }
 
@@ -255,7 +255,7 @@ void Selection::thin() noexcept {
     const std::uint32_t end = run.first + run.count;
     const std::uint32_t first = kept;
     for (std::uint32_t k = run.first; k < end; ++k) {
-      if (places_[k] % stride_ == 0) places_[kept++] = places_[k];
+      if (indices_[k] % stride_ == 0) indices_[kept++] = indices_[k];
     }
     run.first = first;
     run.count = kept - first;
@@ -263,7 +263,7 @@ void Selection::thin() noexcept {
   used_ = kept;
 }
 
-/// The places when every source's are filled up.
+/// The number of indices when every source's are filled up.
 std::size_t Selection::filled_up(std::span<const ActiveLayer> layers) const noexcept {
   std::size_t total = 0;
   for (std::size_t k = 0; k < layers.size(); ++k) {

@@ -76,7 +76,7 @@ struct ActiveLayer {
 /// The plane beyond it; share 0: there is none.
 [[nodiscard]] SurfacePoints::EdgePlane edge_now(const ActiveLayer& layer, std::uint32_t i) noexcept;
 
-/// Does a point count for nothing at any time (speckle)?
+/// Does a point count for nothing at any time (an outlier)?
 [[nodiscard]] inline bool weightless(const SurfacePoints& points, std::uint32_t i) noexcept {
   return points.density_weights[i] <= 0 &&
          (points.end_density_weights.empty() || points.end_density_weights[i] <= 0);
@@ -162,9 +162,9 @@ class PointTest {
   [[nodiscard]] bool far(std::uint32_t i, float reach) const noexcept {
     Eigen::Vector3f from = starts_[i] - x_;
     if (ends_ != starts_) {
-      const Eigen::Vector3f way = ends_[i] - starts_[i];
-      from += 0.5f * way;
-      reach += 0.5f * std::sqrt(way.squaredNorm());
+      const Eigen::Vector3f path = ends_[i] - starts_[i];
+      from += 0.5f * path;
+      reach += 0.5f * std::sqrt(path.squaredNorm());
     }
     const float limit = reach * (1 + 1e-5f) + slack_;
     return from.squaredNorm() > limit * limit;
@@ -193,11 +193,11 @@ class Selection {
     double from = 0;  ///< progress
     double until = 0;
     bool counts = false;      // does its weight let it be seen at any time until then?
-    std::uint32_t first = 0;  ///< of the places
+    std::uint32_t first = 0;  ///< of the indices
     std::uint32_t count = 0;
   };
 
-  /// `capacity`: the places, when each source's are filled up to a multiple of simd::kLanes.
+  /// `capacity`: the indices, when each source's are filled up to a multiple of simd::kLanes.
   explicit Selection(std::size_t capacity);
 
   /// `layers`: in the order of their sources. False when it has made `most_visits` and did not come
@@ -215,8 +215,8 @@ class Selection {
   /// One for each layer.
   [[nodiscard]] std::span<const Run> runs() const noexcept { return runs_; }
   /// Indices in the layer's sorted order, rising.
-  [[nodiscard]] std::span<const std::uint32_t> places(const Run& run) const noexcept {
-    return std::span(places_).subspan(run.first, run.count);
+  [[nodiscard]] std::span<const std::uint32_t> indices(const Run& run) const noexcept {
+    return std::span(indices_).subspan(run.first, run.count);
   }
   [[nodiscard]] std::uint32_t stride() const noexcept { return stride_; }
   /// Cells and points that were looked at.
@@ -227,7 +227,7 @@ class Selection {
   [[nodiscard]] bool choose_all(std::span<const ActiveLayer> layers,
                                 std::span<const std::size_t> before) noexcept;
   [[nodiscard]] bool take_over(const Run& run) noexcept;
-  [[nodiscard]] bool take(std::uint32_t place) noexcept;
+  [[nodiscard]] bool take(std::uint32_t index) noexcept;
   [[nodiscard]] bool walk(const ActiveLayer& layer) noexcept;
   [[nodiscard]] bool take_near(const ActiveLayer& start, const ActiveLayer& last,
                                std::uint32_t begin, std::uint32_t end) noexcept;
@@ -238,7 +238,7 @@ class Selection {
   void thin() noexcept;
   [[nodiscard]] std::size_t filled_up(std::span<const ActiveLayer> layers) const noexcept;
 
-  std::vector<std::uint32_t> places_, places_before_;
+  std::vector<std::uint32_t> indices_, indices_before_;
   std::vector<Run> runs_, runs_before_;
   std::uint32_t used_ = 0;
   std::uint32_t stride_ = 1;

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-// How far each point reaches from its start: R_i plus the way to its end, m.
+// How far each point reaches from its start: R_i plus the distance to its end, m.
 std::vector<float> reaches(const SurfacePoints& points) {
   std::vector<float> reach = points.radii;
   for (std::size_t i = 0; i < points.end_radii.size(); ++i) {

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// A solid known by its exact signed distance. The fields that the proxy is tested on to
+/// A solid defined by its exact signed distance. The fields that the proxy is tested on to
 /// machine precision; also good as a wall or a floor beside scanned clouds.
 class AnalyticField : public Field {
  public:
@@ -25,7 +25,7 @@ class AnalyticField : public Field {
     double resolution = 2e-5;         ///< Field::Traits::resolution, m
     double tool_radius = 0;           ///< radius of the proxy's ball: pushes the surface out, m
     double reanchor_reach = 0;        ///< Field::Traits::reanchor_reach and step, m
-    Surface surface = {.source = 0};  ///< what every place is made of
+    Surface surface = {.source = 0};  ///< the same everywhere
   };
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;

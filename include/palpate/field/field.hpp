@@ -8,11 +8,11 @@
 
 namespace palpate {
 
-/// The implicit function at one place. Free where value > 0, solid where value <= 0.
+/// The implicit function at one position. Free where value > 0, solid where value <= 0.
 struct Sample {
   double value = 0;                                    ///< length-like, m
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< d value / d x; points outward
-  double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: nothing known here
+  double support = 0;  ///< sum of weights (1 on a well sampled surface); 0: no points here
   double radius = 0;   ///< support radius R here: the length that steps are measured in, m
   /// Is it free though a surface's points lie in front of it, since that holds towards its eye
   /// alone? Then the gradient is zero.

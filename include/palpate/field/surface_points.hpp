@@ -70,7 +70,7 @@ struct SurfacePoints {
   Segments segments;
   std::vector<float> materials;  ///< 0-1; empty: all 1
   std::vector<float> presences;  ///< 0-1: the sensor's confidence in this point. Empty: all 1
-  /// Red, green, blue, for those who draw; empty: not known.
+  /// Red, green, blue, for those who draw; empty: unknown.
   std::vector<std::array<std::uint8_t, 3>> colors;
   std::vector<Eigen::Vector3f> end_positions;
   std::vector<Eigen::Vector3f> end_normals;
@@ -83,14 +83,14 @@ struct SurfacePoints {
   Edges edges;
 
   /// From where all points were seen, on the side that their normals point to: the surface holds
-  /// towards that eye alone. Points of components whose side is not known hold from the side that
+  /// towards that eye alone. Points of components whose side is undecided hold from the side that
   /// the hand comes from. None: all do.
   std::optional<SurfaceEye> eye;
 
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
   std::vector<float> cell_reach;  ///< for each cell: how far its points reach out of its box
-                                  ///< on their way, m
+                                  ///< on their path, m
   double radius = 0;              ///< a typical R (median), m
   double smallest_radius = 0;     ///< smallest R_i, m
 
