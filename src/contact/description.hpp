@@ -3,7 +3,7 @@
 #include "base/description.hpp"
 #include "palpate/contact/proxy.hpp"
 
-/// What is said of the options of proxies.
+/// The descriptions of the options of proxies.
 namespace palpate {
 
 // In the order in which help and errors list them.

@@ -1,4 +1,4 @@
-// Looks for a way from a proxy, and from its hand, to open air.
+// Looks for a path from a proxy, and from its hand, to open air.
 #include "contact/escape_search.hpp"
 
 #include <Eigen/Geometry>
@@ -10,11 +10,11 @@
 namespace palpate {
 namespace {
 
-// The first way, along the normal, is open for most who press deep: they pay for little
+// The first path, along the normal, is open for most who press deep: they pay for little
 // (judgement).
 constexpr int kFirstLooks = 4;   // a step
 constexpr int kFirstWork = 1;    // points: one sample a step
-constexpr int kMostWork = 8000;  // points, a step on the other ways: some 50 us (measured: dragon)
+constexpr int kMostWork = 8000;  // points, a step on the other paths: some 50 us (measured: dragon)
 
 constexpr double kOpenAir = 256;      // of R (judgement): who has so much room is in no body
 constexpr double kFirstBall = 0.5;    // of R (judgement); later ones double where there is room
@@ -22,16 +22,16 @@ constexpr double kLeastBall = 0.25;   // of R (judgement): with less room the fi
 constexpr double kSurfaceEnds = 0.3;  // of W: the default of FieldOptions::minimum_support
 constexpr double kAir = std::numeric_limits<double>::infinity();  // m: higher than any field
 constexpr double kStride = 0.3;   // of R (derived): single surfaces are solid for over half an R
-constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no way
+constexpr double kClear = 0.1;    // of R (judgement): roughness below it bars no path
 constexpr double kDeep = 1;       // of R (judgement), from the proxy: less is not held hard
 constexpr double kElsewhere = 1;  // of R that a proxy moves before it is checked again (judgement)
 // Times that a path turns. Measured before surfaces barred paths whatever their sides: of 288 hands
 // in tilted tubes 1 to 4 R in radius, up to 20 R deep, smooth or rough by 0.1 R, 94 are let go with
 // 2, two with 6, none with 12.
 constexpr int kTurns = 12;
-constexpr double kLeastTurn = 0.2;  // sine (12 degrees) of what is left of a way (judgement)
-constexpr int kAround = 8;          // slanting directions, 45 degrees apart (judgement)
-constexpr int kWays = 1 + kAround;  // derived
+constexpr double kLeastTurn = 0.2;   // sine (12 degrees) of what is left of a path (judgement)
+constexpr int kAround = 8;           // slanting directions, 45 degrees apart (judgement)
+constexpr int kPaths = 1 + kAround;  // derived
 
 /// The k-th direction from a surface: along its normal, or slanting by 45 degrees.
 Eigen::Vector3d direction_from(const Eigen::Vector3d& normal, int k) noexcept {
@@ -49,8 +49,8 @@ EscapeSearch::Ray EscapeSearch::ray(const Eigen::Vector3d& from, const Eigen::Ve
 }
 
 /// May the path go on over this position? It leaves the surface that it begins at while the field
-/// does not fall again. Once it is in air, every surface is in its way, whatever its sides: one
-/// that let the proxy pass would let the way pass, too.
+/// does not fall again. Once it is in air, every surface blocks it, whatever its sides: one that
+/// let the proxy pass would let the path pass, too.
 bool EscapeSearch::Ray::passes(const Sample& here) noexcept {
   const double least = std::max(0.0, highest - kClear * radius);
   if (!(here.value > 0) || !(here.support < kSurfaceEnds || here.value > least)) return false;
@@ -64,8 +64,8 @@ void EscapeSearch::Ray::go(double stride) noexcept {
   if (turns == 0) room = gone;
 }
 
-/// Goes on along the surface that is in the way, from the last position before it; false where that
-/// is no way on.
+/// Goes on along the surface that is in its path, from the last position before it; false where
+/// that leads no further.
 bool EscapeSearch::Ray::turn(const Eigen::Vector3d& gradient) noexcept {
   const Eigen::Vector3d normal = gradient.normalized();
   const Eigen::Vector3d next = along - std::min(0.0, along.dot(normal)) * normal;
@@ -110,8 +110,8 @@ void EscapeSearch::wander(Probe& probe, const Eigen::Vector3d& position) noexcep
   state_ = State::free;
   if (was_out_) return;
   const double radius = probe.radius();
-  if (direction_ == kWays) {
-    if ((position - known_).norm() < kElsewhere * radius) return;
+  if (direction_ == kPaths) {
+    if ((position - last_).norm() < kElsewhere * radius) return;
     search(position);
   }
   if (!ray_.any()) {
@@ -130,11 +130,11 @@ void EscapeSearch::search(const Eigen::Vector3d& position) noexcept {
   state_ = State::searching;
   direction_ = 0;
   has_room_ = false;
-  known_ = position;
+  last_ = position;
   ray_ = {};
 }
 
-/// Looks on for the way of a proxy that touches.
+/// Looks on for the path of a proxy that touches.
 void EscapeSearch::look_around(Probe& probe, const Eigen::Vector3d& position,
                                const Eigen::Vector3d& normal) noexcept {
   const double radius = probe.radius();
@@ -146,11 +146,11 @@ void EscapeSearch::look_around(Probe& probe, const Eigen::Vector3d& position,
   const End end = walk(probe, effort);
   if (end == End::none) return;
   has_room_ = has_room_ || ray_.room >= kStride * radius;
-  known_ = position;
+  last_ = position;
   ray_ = {};
   if (end == End::open) {
     state_ = State::open;
-  } else if (++direction_ == kWays) {
+  } else if (++direction_ == kPaths) {
     state_ = has_room_ ? State::trapped : State::open;
   }
 }
@@ -158,8 +158,7 @@ void EscapeSearch::look_around(Probe& probe, const Eigen::Vector3d& position,
 bool EscapeSearch::is_trapped(Probe& probe, const Eigen::Vector3d& position,
                               const Eigen::Vector3d& normal, const Eigen::Vector3d& hip) noexcept {
   const double radius = probe.radius();
-  const bool moved =
-      state_ != State::searching && (position - known_).norm() >= kElsewhere * radius;
+  const bool moved = state_ != State::searching && (position - last_).norm() >= kElsewhere * radius;
   if (state_ == State::free || moved) search(position);
   if (!was_out_ || state_ == State::open || (position - hip).norm() < kDeep * radius) return false;
   if (state_ != State::trapped) {

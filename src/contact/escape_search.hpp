@@ -9,7 +9,7 @@ namespace palpate {
 /// Finds, by a few evaluations a step, that a proxy is trapped by a surface that it passed through.
 ///
 /// A position has an escape if a path leads from it to open air, 256 R away: straight, or along
-/// what is in the way. A proxy that has been in open air hardly comes to a position without an
+/// what is in its path. A proxy that has been in open air hardly comes to a position without an
 /// escape, unless a surface let it pass; that surface traps it within. The sides of points count
 /// only near where a path begins. Real-time.
 class EscapeSearch {
@@ -53,7 +53,7 @@ class EscapeSearch {
                    // free for certain ends the ray
   };
   enum class End { none, open, blocked };
-  /// The proxy is free; its escape is searched for, is known, or there is none.
+  /// The proxy is free; its escape is searched for, is found, or there is none.
   enum class State { free, searching, open, trapped };
 
   [[nodiscard]] static Ray ray(const Eigen::Vector3d& from, const Eigen::Vector3d& along,
@@ -65,10 +65,10 @@ class EscapeSearch {
 
   Ray ray_;
   State state_ = State::free;
-  int direction_ = 0;                                // of the ray
-  bool has_room_ = false;                            // is there any beside the proxy?
-  Eigen::Vector3d known_ = Eigen::Vector3d::Zero();  // the proxy at the last search, m
-  bool was_out_ = false;                             // since the last reset
+  int direction_ = 0;                               // of the ray
+  bool has_room_ = false;                           // is there any beside the proxy?
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();  // the proxy at the last search, m
+  bool was_out_ = false;                            // since the last reset
 };
 
 }  // namespace palpate

@@ -15,23 +15,24 @@ constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneFi
 
 // Waits where a contact's surface vanished: a sensor that does not see what the hand presses takes
 // it away and brings it back. Until then the proxy keeps its side, on the plane that it touched
-// (`place`, `normal`), without force. The tank keeps what the spring held, which pays for the
+// (`position`, `normal`), without force. The tank keeps what the spring held, which pays for the
 // stiffness that comes back. A hand that moves on is free.
-void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
-                          const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept {
-  const double depth = normal.dot(place - hip);
+void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& position,
+                          const Eigen::Vector3d& normal, const Eigen::Vector3d& pressed,
+                          const Eigen::Vector3d& hip) noexcept {
+  const double depth = normal.dot(position - hip);
   if (touch_.touching || !(depth > 0) || (hip - pressed).norm() > kWaits * radius_) return;
-  if (touch_.surface.presence > kFaded && probe.sample(place).support > 0) return;
+  if (touch_.surface.presence > kFaded && probe.sample(position).support > 0) return;
   release(hip + depth * normal);
   touch_.touching = touch_.waiting = true;
   touch_.normal = touch_.side = normal;
   touch_.pressed = pressed;
-  spring_.wait(place - hip);
+  spring_.wait(position - hip);
 }
 
-// Keeps the spring of a contact whose surface was not found in this step, at the place to which the
-// proxy came. It fades once the surface is lost for long, unless a sweep had only run out of its
-// budget.
+// Keeps the spring of a contact whose surface was not found in this step, at the position to which
+// the proxy came. It fades once the surface is lost for long, unless a sweep had only run out of
+// its budget.
 void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   contact.normal = touch_.normal;
@@ -69,8 +70,8 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
 }
 
 // Ends a contact that is lost, and never takes the proxy through what cannot be found. From a free
-// place it goes to the first contact; from inside only when the hand has come out again in front of
-// where it went in. Until then the proxy waits there, without force.
+// position it goes to the first contact; from inside only when the hand has come out again in front
+// of where it went in. Until then the proxy waits there, without force.
 void Proxy::Inside::let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept {
   if (!spring_.is_lost()) return;
   if (!probe.inside(position_)) return release(first_contact(probe, position_, hip).position);

@@ -1,4 +1,5 @@
-// Friction's law, the relief, Newton's way onto the surface and the sweep through free space.
+// Friction's law, the relief, Newton's projection onto the surface and the sweep through free
+// space.
 #include "contact/probe.hpp"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   Sample sample = field_.sample(x);
   if (sample.radius > 0) radius_ = sample.radius;
-  if (sample.support <= 0 && sample.value <= 0) sample.value = radius_;  // nothing known
+  if (sample.support <= 0 && sample.value <= 0) sample.value = radius_;  // no points here
   if (texture_.amplitude > 0) {
     const Relief relief = relief_at(texture_, x);
     sample.value -= relief.height;
@@ -101,7 +102,7 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noex
 
 std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
                                     const Sample& first) noexcept {
-  Eigen::Vector3d place = x;
+  Eigen::Vector3d position = x;
   Sample here = first;
   for (int step = 0;; ++step) {
     const std::optional<double> distance = first_order_distance(here);
@@ -110,13 +111,13 @@ std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
     const Eigen::Vector3d normal = here.gradient.normalized();
     const double tolerance = (step < kSteps ? kTolerance : kAccept) * radius;
     const bool arrived = std::abs(*distance) < tolerance;
-    if (arrived && !here.averted) return SurfacePoint{place, normal, radius};
+    if (arrived && !here.averted) return SurfacePoint{position, normal, radius};
     if (arrived || step == kSteps) return std::nullopt;
     if (!here.averted && std::abs(*distance) < kLastStep * radius) {
-      return SurfacePoint{place - *distance * normal, normal, radius};
+      return SurfacePoint{position - *distance * normal, normal, radius};
     }
-    place -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;
-    here = probe.sample(place);
+    position -= std::clamp(*distance, -kClamp * radius, kClamp * radius) * normal;
+    here = probe.sample(position);
   }
 }
 
@@ -159,8 +160,8 @@ class Sweeper {
           Standing standing) noexcept
       : probe_(probe),
         from_(from),
-        way_(to - from),
-        length_(way_.norm()),
+        path_(to - from),
+        length_(path_.norm()),
         leaf_(probe.traits().resolution > 0 ? probe.traits().resolution
                                             : kBracket * probe.radius()),
         spent_before_(probe.work()),
@@ -174,7 +175,7 @@ class Sweeper {
   }
 
  private:
-  [[nodiscard]] Eigen::Vector3d at(double t) const noexcept { return from_ + t * way_; }
+  [[nodiscard]] Eigen::Vector3d at(double t) const noexcept { return from_ + t * path_; }
   [[nodiscard]] double half_length(const Interval& i) const noexcept {
     return 0.5 * (i.end - i.begin) * length_;
   }
@@ -182,17 +183,17 @@ class Sweeper {
     return probe_.swept + probe_.work() - spent_before_ >= kSweepWork;
   }
 
-  // The first interval is the whole way, whose ball is not free, as the caller has found.
+  // The first interval is the whole path, whose ball is not free, as the caller has found.
   [[nodiscard]] Sweep search() noexcept {
     Pending pending{{0, 1}};
-    bool known_busy = true;
+    bool busy = true;
     double free_until = 0;
     while (!pending.empty()) {
       if (spent()) return {Sweep::End::truncated, at(free_until)};
       const Interval interval = pending.pop();
-      const bool certain = !known_busy && ball_is_free(interval);
+      const bool certain = !busy && ball_is_free(interval);
       if (certain) standing_ = Standing::front;
-      known_busy = false;
+      busy = false;
       if (!certain && half_length(interval) >= leaf_ && !pending.full()) {
         pending.push_halves(interval);
         continue;
@@ -215,13 +216,13 @@ class Sweeper {
     return -1;
   }
 
-  [[nodiscard]] bool stops(const Eigen::Vector3d& place) noexcept {
-    const Sample here = probe_.sample(place);
+  [[nodiscard]] bool stops(const Eigen::Vector3d& position) noexcept {
+    const Sample here = probe_.sample(position);
     if (here.value > 0) {
       standing_ = here.behind ? Standing::behind : Standing::front;
       return false;
     }
-    if (standing_ == Standing::behind && here.gradient.dot(way_) > 0) standing_ = Standing::within;
+    if (standing_ == Standing::behind && here.gradient.dot(path_) > 0) standing_ = Standing::within;
     return standing_ != Standing::within;
   }
 
@@ -236,11 +237,11 @@ class Sweeper {
 
   Probe& probe_;
   Eigen::Vector3d from_;
-  Eigen::Vector3d way_;
+  Eigen::Vector3d path_;
   double length_;
   double leaf_;
   int spent_before_;
-  Standing standing_;  // of the last place
+  Standing standing_;  // of the last position
 };
 
 }  // namespace
@@ -250,7 +251,7 @@ std::optional<SurfacePoint> land(Probe& probe, const Sweep& hit) noexcept {
   return found ? found : project(probe, hit.solid);
 }
 
-bool way_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
+bool path_is_free(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
   const int before = probe.work();
   const bool free = probe.is_free({0.5 * (from + to), 0.5 * (to - from).norm()});
   probe.swept += probe.work() - before;
@@ -263,7 +264,7 @@ Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to
 }
 
 Sweep first_contact(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to) noexcept {
-  if (way_is_free(probe, from, to)) return {Sweep::End::clear, to};
+  if (path_is_free(probe, from, to)) return {Sweep::End::clear, to};
   return sweep(probe, from, to);
 }
 

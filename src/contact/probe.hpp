@@ -60,7 +60,7 @@ class Probe {
   [[nodiscard]] const Field& field() const noexcept { return field_; }
   [[nodiscard]] const Field::Traits& traits() const noexcept { return traits_; }
 
-  /// The support radius R where it was last known, m: what steps are measured in.
+  /// The support radius R where it was last sampled, m: what steps are measured in.
   [[nodiscard]] double radius() const noexcept { return radius_; }
   [[nodiscard]] int evaluations() const noexcept { return evaluations_; }
 
@@ -79,7 +79,7 @@ class Probe {
   int evaluations_ = 0;
 };
 
-/// A place on the surface.
+/// A position on the surface.
 struct SurfacePoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, unit
@@ -92,54 +92,54 @@ struct SurfacePoint {
 
 /// Brings x onto the surface along the gradient (docs/method.md 3.2): at most 11 samples. A
 /// last step below 2e-4 R is taken without another sample: what it leaves is of the order of its
-/// square, about 4e-8 R, and the normal is that of the place before it.
+/// square, about 4e-8 R, and the normal is that of the position before it.
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x) noexcept;
 
-/// The same where the first sample is known already: at most 10 more.
+/// The same where the first sample is taken already: at most 10 more.
 [[nodiscard]] std::optional<SurfacePoint> project(Probe& probe, const Eigen::Vector3d& x,
                                                   const Sample& first) noexcept;
 
 /// The most that all sweeps of one step spend, in Probe::work() (docs/method.md 3.6).
 inline constexpr int kSweepWork = 1000 * kEvaluationWork;
 
-/// How a free place lies to a surface near it that holds towards its eye alone.
+/// How a free position lies to a surface near it that holds towards its eye alone.
 enum class Standing {
   front,   ///< not behind it
   behind,  ///< behind it, where it is solid for its eye
   within,  ///< in its solid front half, which was entered from behind
 };
 
-/// Where the way from one place to another ends.
+/// Where the path from one position to another ends.
 struct Sweep {
   enum class End {
-    clear,      ///< free all the way
-    hit,        ///< something solid: `position` is the last free place before it
+    clear,      ///< free all along
+    hit,        ///< something solid: `position` is the last free position before it
     truncated,  ///< the step's budget ran out: free as far as `position`
   };
   End end = End::clear;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
-  Eigen::Vector3d solid = Eigen::Vector3d::Zero();     ///< the solid place of a hit, m
+  Eigen::Vector3d solid = Eigen::Vector3d::Zero();     ///< the solid position of a hit, m
   Standing standing = Standing::front;                 ///< of its end
 };
 
-/// Brings the end of a hit onto the surface: from its free place or, where that is behind a surface
-/// that holds towards the other side alone and has no gradient, from the solid one.
+/// Brings the end of a hit onto the surface: from its free position or, where that is behind a
+/// surface that holds towards the other side alone and has no gradient, from the solid one.
 [[nodiscard]] std::optional<SurfacePoint> land(Probe& probe, const Sweep& hit) noexcept;
 
-/// One ball around the whole way: true if it is certainly free.
-[[nodiscard]] bool way_is_free(Probe& probe, const Eigen::Vector3d& from,
-                               const Eigen::Vector3d& to) noexcept;
+/// One ball around the whole path: true if it is certainly free.
+[[nodiscard]] bool path_is_free(Probe& probe, const Eigen::Vector3d& from,
+                                const Eigen::Vector3d& to) noexcept;
 
-/// First contact on the way (docs/method.md 3.1): bisection into balls that are free for certain
+/// First contact on the path (docs/method.md 3.1): bisection into balls that are free for certain
 /// and leaves shorter than the field's resolution, whose ends are sampled. No solid chord longer
 /// than the resolution is missed. `from` is taken to be free.
 ///
-/// What holds towards its eye alone stops nobody who comes out of it from behind: a way that enters
-/// it where the field rises passes, until it is free again. `standing`: of where it begins.
+/// What holds towards its eye alone stops nobody who comes out of it from behind: a path that
+/// enters it where the field rises passes, until it is free again. `standing`: of where it begins.
 [[nodiscard]] Sweep sweep(Probe& probe, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                           Standing standing = Standing::front) noexcept;
 
-/// way_is_free(), and sweep() if it is not.
+/// path_is_free(), and sweep() if it is not.
 [[nodiscard]] Sweep first_contact(Probe& probe, const Eigen::Vector3d& from,
                                   const Eigen::Vector3d& to) noexcept;
 

@@ -18,8 +18,8 @@ constexpr double kFastest = 1;  // m/s: a surface that moves faster has jumped (
 constexpr double kFall = 0.5;   // of the stretch, the least that is noted as a fall (judgement)
 constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
-bool in_range(const Eigen::Vector3d& place) {
-  return place.allFinite() && place.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
+bool in_range(const Eigen::Vector3d& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
 }
 
 // Clamps a share that a field gives: rounding or a wrong field may leave 0 to 1.
@@ -104,35 +104,35 @@ void Proxy::Inside::take_over(const EnergyTank& before, const Eigen::Vector3d& h
                 touch_.waiting ? 0 : touch_.softened(options_), position_ - hip, contact);
 }
 
-// Free space: to the hand, or to the first contact on the way.
+// Free space: to the hand, or to the first contact on the path.
 void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept {
-  if (way_is_free(probe, position_, hip)) return release(hip);
+  if (path_is_free(probe, position_, hip)) return release(hip);
   if (standing_ == Standing::front && probe.inside(position_)) return touch(probe, position_, hip);
-  const Sweep way = sweep(probe, position_, hip, standing_);
-  if (way.end == Sweep::End::hit) return touch(probe, way.position, hip);
-  if (way.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
-  release(way.position, way.standing);
+  const Sweep path = sweep(probe, position_, hip, standing_);
+  if (path.end == Sweep::End::hit) return touch(probe, path.position, hip);
+  if (path.end == Sweep::End::truncated) contact.notes |= ContactNote::sweep_truncated;
+  release(path.position, path.standing);
 }
 
 // A spring that is stretched by more than the hand has moved begins as much softer.
-double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& place,
+double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& position,
                                         const Eigen::Vector3d& hip) const noexcept {
-  const double stretch = (place - hip).norm();
+  const double stretch = (position - hip).norm();
   const double moved = (hip - hand_).norm() + kLeastFall * radius_;
   return spring_.wanted(touch_.softened(options_)) * (stretch > moved ? moved / stretch : 1);
 }
 
-void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& place,
+void Proxy::Inside::touch(Probe& probe, const Eigen::Vector3d& position,
                           const Eigen::Vector3d& hip) noexcept {
-  release(place);
+  release(position);
   touch_.touching = true;
-  touch_.surface = probe.field().surface(place);
+  touch_.surface = probe.field().surface(position);
   radius_ = probe.radius();
-  spring_.begin(initial_stiffness(place, hip));
+  spring_.begin(initial_stiffness(position, hip));
 }
 
-void Proxy::Inside::release(const Eigen::Vector3d& place, Standing standing) noexcept {
-  position_ = place;
+void Proxy::Inside::release(const Eigen::Vector3d& position, Standing standing) noexcept {
+  position_ = position;
   standing_ = standing;
   touch_.normal.setZero();
   touch_.side.setZero();
@@ -189,7 +189,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   std::optional<SurfacePoint> at = project(probe, position_, here);
   const bool turned = changed && at && is_turned(*at, touch_.side);
   if (moved || turned) {
-    const bool same = at && is_same_place(*at, position_, touch_.side);
+    const bool same = at && is_same_contact(*at, position_, touch_.side);
     bool cut = false;
     const auto found = same ? at : reanchor(probe, position_, touch_.side, radius, cut);
     // Else it may be the underside of something nearer, not yet swept, or a fold of the surface.
@@ -206,16 +206,16 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   }
   search_.cut_short = false;
   if (at || !(here.value > 0) || here.averted) return at;
-  const Sweep way = first_contact(probe, position_, hip);
-  if (way.end == Sweep::End::hit) {
+  const Sweep path = first_contact(probe, position_, hip);
+  if (path.end == Sweep::End::hit) {
     touch_.side.setZero();  // another contact
-    return land(probe, way);
+    return land(probe, path);
   }
-  if (way.end == Sweep::End::clear) {
-    release(hip, way.standing);
+  if (path.end == Sweep::End::clear) {
+    release(hip, path.standing);
   } else {
     cut_short(contact);
-    position_ = way.position;
+    position_ = path.position;
   }
   return std::nullopt;
 }

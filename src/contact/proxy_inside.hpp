@@ -41,7 +41,7 @@ class Proxy::Inside {
     bool waiting = false;  // for a surface that has vanished
 
     [[nodiscard]] bool is_held() const noexcept { return touching && !waiting; }
-    // Turns the side as a slide from a place with this normal to here turned the normal.
+    // Turns the side as a slide from a position with this normal to here turned the normal.
     void carry_side(const Eigen::Vector3d& from) noexcept;
     // What the surface leaves of the stiffness. A hand that no motor moves feels it whole until the
     // surface is gone: a press of constant force would sink into what fades.
@@ -51,25 +51,25 @@ class Proxy::Inside {
   /// What the budget left of the last step's search.
   struct Search {
     bool cut_short = false;
-    int looked = 0;  // places that recover() has looked at
+    int looked = 0;  // positions that recover() has looked at
   };
 
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
-  void touch(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& hip) noexcept;
-  void release(const Eigen::Vector3d& place, Standing standing = Standing::front) noexcept;
+  void touch(Probe& probe, const Eigen::Vector3d& position, const Eigen::Vector3d& hip) noexcept;
+  void release(const Eigen::Vector3d& position, Standing standing = Standing::front) noexcept;
   void hold(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   [[nodiscard]] std::optional<SurfacePoint> find_surface(Probe& probe, const Eigen::Vector3d& hip,
                                                          Contact& contact) noexcept;
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
   void cut_short(Contact& contact) noexcept;
-  void await(Probe& probe, const Eigen::Vector3d& place, const Eigen::Vector3d& normal,
+  void await(Probe& probe, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;
   void free_hand(Probe& probe, const Eigen::Vector3d& before, const Eigen::Vector3d& hip, double dt,
                  Contact& contact, bool changed) noexcept;
   void pull(const Eigen::Vector3d& hip, double dissipated, double dt, Contact& contact) noexcept;
-  [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& place,
+  [[nodiscard]] double initial_stiffness(const Eigen::Vector3d& position,
                                          const Eigen::Vector3d& hip) const noexcept;
   [[nodiscard]] double unexplained_jump(const Eigen::Vector3d& before, const Eigen::Vector3d& hip,
                                         double dt) const noexcept;
@@ -81,7 +81,7 @@ class Proxy::Inside {
   Touch touch_;
   Eigen::Vector3d position_{0, 0, 0};
   Eigen::Vector3d hand_{0, 0, 0};  // that the proxy last caught up with
-  double radius_ = 0;              // R where it was last known, m
+  double radius_ = 0;              // R where it was last sampled, m
   Search search_;
   std::optional<std::uint64_t> revision_;  // of the field in the last step
   Standing standing_ = Standing::front;    // of a free proxy

@@ -1,5 +1,5 @@
-// The way along the surface to the place nearest the hand (docs/method.md 3.3), and how a surface
-// that moved is found again (3.4).
+// The path along the surface to the position nearest the hand (docs/method.md 3.3), and how a
+// surface that moved is found again (3.4).
 #include "contact/slide.hpp"
 
 #include <algorithm>
@@ -66,15 +66,15 @@ class Slider {
     return result_;
   }
 
-  // The hand is above the tangent plane: free to go, unless something else is in the way.
+  // The hand is above the tangent plane: free to go, unless something else is in its path.
   [[nodiscard]] Turn try_release() noexcept {
     const double radius = result_.at.radius;
     const Eigen::Vector3d from = result_.at.position + kLift * radius * result_.at.normal;
     const int swept = probe_.swept;
-    const Sweep way = first_contact(probe_, from, hip_);
-    if (way.end != Sweep::End::hit) return leave(way, swept);
-    if ((way.position - from).norm() < kStay * radius) return Turn::stop;
-    const std::optional<SurfacePoint> next = land(probe_, way);
+    const Sweep path = first_contact(probe_, from, hip_);
+    if (path.end != Sweep::End::hit) return leave(path, swept);
+    if ((path.position - from).norm() < kStay * radius) return Turn::stop;
+    const std::optional<SurfacePoint> next = land(probe_, path);
     if (!next) return Turn::stop;
     result_.at = *next;
     return Turn::go_on;
@@ -83,21 +83,22 @@ class Slider {
   // A sweep that only had what others left of the budget proves nothing when it is truncated: the
   // proxy stays, so that the force does not drop for one step, and the next step looks again. One
   // that had most of the budget goes on from where it ended. `swept`: what was spent before it.
-  [[nodiscard]] Turn leave(const Sweep& way, int swept) noexcept {
-    const bool clear = way.end == Sweep::End::clear;
+  [[nodiscard]] Turn leave(const Sweep& path, int swept) noexcept {
+    const bool clear = path.end == Sweep::End::clear;
     // A fold of what moves is no rim.
-    const bool behind = options_.moved && probe_.sample(clear ? hip_ : way.position).behind;
+    const bool behind = options_.moved && probe_.sample(clear ? hip_ : path.position).behind;
     if (behind || (!clear && swept >= kSweepWork / 2)) {
       result_.end = Slide::End::postponed;
       return Turn::stop;
     }
     result_.end = clear ? Slide::End::released : Slide::End::interrupted;
-    result_.at.position = clear ? hip_ : way.position;
-    result_.standing = way.standing;
+    result_.at.position = clear ? hip_ : path.position;
+    result_.standing = path.standing;
     return Turn::stop;
   }
 
-  // One sub-step along the surface. `tangent` and `depth`: the way to the hand along and into it.
+  // One sub-step along the surface. `tangent` and `depth`: the displacement to the hand along and
+  // into it.
   [[nodiscard]] Turn advance(const Eigen::Vector3d& tangent, double depth) noexcept {
     const double length = tangent.norm();
     if (sticks(options_.friction, result_.sliding, depth, length)) {
@@ -145,9 +146,9 @@ class Slider {
     if (probe_.inside(over)) return Turn::stop;
     if (first_contact(probe_, from, over).end != Sweep::End::clear) return Turn::stop;
     const int swept = probe_.swept;
-    const Sweep way = first_contact(probe_, over, hip_);
-    if (way.end != Sweep::End::hit) return leave(way, swept);
-    const std::optional<SurfacePoint> next = land(probe_, way);
+    const Sweep path = first_contact(probe_, over, hip_);
+    if (path.end != Sweep::End::hit) return leave(path, swept);
+    const std::optional<SurfacePoint> next = land(probe_, path);
     if (!next || (hip_ - next->position).squaredNorm() >
                      (hip_ - at.position).squaredNorm() - kArmijo * step.squaredNorm()) {
       return Turn::stop;
@@ -197,7 +198,7 @@ class Slider {
   const SlideOptions& options_;
   Slide result_;
   Eigen::Vector3d last_position_ = Eigen::Vector3d::Zero();  // before the last sub-step
-  Eigen::Vector3d last_tangent_ = Eigen::Vector3d::Zero();   // of the way to the hand, there, m
+  Eigen::Vector3d last_tangent_ = Eigen::Vector3d::Zero();   // of the displacement to the hand, m
   double moved_ = 0;                                         // in this step, m
 };
 
@@ -211,7 +212,7 @@ Slide slide(Probe& probe, const SurfacePoint& start, const Eigen::Vector3d& hip,
 namespace {
 
 constexpr double kLeastNormal = 0.5;    // a unit normal is there; zero means that none is
-constexpr double kSameWay = 0.5;        // cosine between the old and the new normal: 60 degrees
+constexpr double kSameSide = 0.5;       // cosine between the old and the new normal: 60 degrees
 constexpr double kLifted = 0.02;        // of R: the surface left the proxy
 constexpr double kSunk = 1e-3;          // of R: beyond Newton's rounding, the surface rose over it
 constexpr double kLeastReach = 0.5;     // of R
@@ -231,12 +232,12 @@ bool surface_moved(const Probe& probe, const Sample& here, const Eigen::Vector3d
 }
 
 bool is_turned(const SurfacePoint& found, const Eigen::Vector3d& side) noexcept {
-  return side.norm() > kLeastNormal && !(found.normal.dot(side) > kSameWay);
+  return side.norm() > kLeastNormal && !(found.normal.dot(side) > kSameSide);
 }
 
-bool is_same_place(const SurfacePoint& found, const Eigen::Vector3d& position,
-                   const Eigen::Vector3d& normal) noexcept {
-  return found.normal.dot(normal) > kSameWay &&
+bool is_same_contact(const SurfacePoint& found, const Eigen::Vector3d& position,
+                     const Eigen::Vector3d& normal) noexcept {
+  return found.normal.dot(normal) > kSameSide &&
          (found.position - position).norm() <= kStep * found.radius;
 }
 
@@ -247,11 +248,11 @@ std::optional<SurfacePoint> reanchor(Probe& probe, const Eigen::Vector3d& positi
   const Eigen::Vector3d top = position + reach * normal;
   const Sample above = probe.sample(top);
   if (!(above.value > 0) || above.behind) return std::nullopt;
-  const Sweep way = first_contact(probe, top, position);
-  cut = way.end == Sweep::End::truncated;
-  if (way.end != Sweep::End::hit) return std::nullopt;
-  const std::optional<SurfacePoint> found = land(probe, way);
-  return found && found->normal.dot(normal) > kSameWay ? found : std::nullopt;
+  const Sweep path = first_contact(probe, top, position);
+  cut = path.end == Sweep::End::truncated;
+  if (path.end != Sweep::End::hit) return std::nullopt;
+  const std::optional<SurfacePoint> found = land(probe, path);
+  return found && found->normal.dot(normal) > kSameSide ? found : std::nullopt;
 }
 
 std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& position,
@@ -264,11 +265,11 @@ std::optional<SurfacePoint> recover(Probe& probe, const Eigen::Vector3d& positio
       looked = k - 1;
       return std::nullopt;
     }
-    const Eigen::Vector3d place = position + k * kRecoveryStep * radius * normal;
+    const Eigen::Vector3d trial = position + k * kRecoveryStep * radius * normal;
     const int before = probe.work();
-    const Sample here = probe.sample(place);
+    const Sample here = probe.sample(trial);
     probe.swept += probe.work() - before;
-    if (here.value > 0 && !here.behind) return project(probe, place, here);
+    if (here.value > 0 && !here.behind) return project(probe, trial, here);
   }
   return std::nullopt;
 }

@@ -53,16 +53,16 @@ void EnergyTank::fill(double energy) noexcept {
   energy_ = std::min(kCapacity, energy_ + energy);
 }
 
-void FadingSpring::take(const Eigen::Vector3d& place, double stiffness) noexcept {
+void FadingSpring::take(const Eigen::Vector3d& anchor, double stiffness) noexcept {
   const double both = stiffness_ + stiffness;
-  if (both > 0) place_ += stiffness / both * (place - place_);
+  if (both > 0) anchor_ += stiffness / both * (anchor - anchor_);
   stiffness_ = both;
   gone_ = kGone * both;
 }
 
 double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
   const double left = stiffness_ * std::exp(-dt / EnergyTank::kTime);
-  const double energy = 0.5 * (stiffness_ - left) * (place_ - hip).squaredNorm();
+  const double energy = 0.5 * (stiffness_ - left) * (anchor_ - hip).squaredNorm();
   stiffness_ = left > gone_ ? left : 0;
   return energy;
 }

@@ -9,7 +9,7 @@ namespace palpate {
 /// Lets the stiffness of a contact change without ever giving energy to the hand.
 ///
 /// A spring of stiffness K stretched by d holds K d^2 / 2. When K rises by dK during contact,
-/// dK d^2 / 2 is created from nothing and the hand gets it back on its way out: a ramp of 30 ms was
+/// dK d^2 / 2 is created from nothing and the hand gets it back as it leaves: a ramp of 30 ms was
 /// measured to turn a rebound of 1.05 into 1.49 (docs/method.md 3.5). So a rise is paid for out
 /// of a tank, and only what a fall of K or sliding friction took away goes into it. A fall costs
 /// nothing; it takes kTime only to spare the hand a step of force. Rises take that time as well.
@@ -52,19 +52,19 @@ class EnergyTank {
 /// loses its stiffness as a contact does, in EnergyTank::kTime. Rests at 0 N/m.
 class FadingSpring {
  public:
-  /// Takes over a spring from `place` (m) of this stiffness (N/m). Two springs pull like one.
-  void take(const Eigen::Vector3d& place, double stiffness) noexcept;
+  /// Takes over a spring from `anchor` (m) of this stiffness (N/m). Two springs pull like one.
+  void take(const Eigen::Vector3d& anchor, double stiffness) noexcept;
 
   /// A step of `dt` (s) with the hand at `hip` (m). Returns the energy that it gave up, J.
   double fade(const Eigen::Vector3d& hip, double dt) noexcept;
 
   [[nodiscard]] Eigen::Vector3d force(const Eigen::Vector3d& hip) const noexcept {
-    return stiffness_ * (place_ - hip);
+    return stiffness_ * (anchor_ - hip);
   }
   [[nodiscard]] double stiffness() const noexcept { return stiffness_; }  ///< N/m
 
  private:
-  Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
   double stiffness_ = 0;
   double gone_ = 0;  // stiffness at which it ends
 };
@@ -104,9 +104,9 @@ class Spring {
   /// A contact waits without force; its tank keeps what the spring held.
   void wait(const Eigen::Vector3d& stretch) noexcept;
 
-  /// A contact ended at `place` (m) though no hand let it go: its spring (N/m) fades there.
-  void leave(const Eigen::Vector3d& place, double stiffness) noexcept {
-    fading_.take(place, stiffness);
+  /// A contact ended at `anchor` (m) though no hand let it go: its spring (N/m) fades there.
+  void leave(const Eigen::Vector3d& anchor, double stiffness) noexcept {
+    fading_.take(anchor, stiffness);
   }
 
   /// Time of a step.

@@ -20,7 +20,7 @@ enum class ContactNote : std::uint32_t {
   softer = 1u << 5,  ///< stiffness is much below what is wanted: the energy tank lets it grow
                      ///< only as motion pays for it
   fell =
-      1u << 6,  ///< what held the proxy gave way: it went, in contact or out of it, farther than
+      1u << 6,  ///< what held the proxy yielded: it went, in contact or out of it, farther than
                 ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
   freed = 1u << 7,  ///< the hand was held in free air, and the proxy came to it: at once where the
                     ///< proxy had passed through a surface and is trapped behind it; with more
@@ -47,7 +47,7 @@ struct Contact {
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< velocity of the touched surface, m/s
   double stiffness = 0;                              ///< of all springs in the force, N/m
   bool touching = false;  ///< held by a surface; not while it waits for one that vanished
-  bool sliding = false;   ///< friction gave way in this step
+  bool sliding = false;   ///< friction yielded in this step
   int iterations = 0;     ///< constrained sub-steps taken
   int evaluations = 0;    ///< field samples and ball tests spent
   int source = -1;        ///< index of the touched source; -1: none
@@ -120,8 +120,8 @@ class Proxy {
   [[nodiscard]] const ProxyOptions& options() const noexcept;
 
   /// What a step spends at most: 1000 in sweeps (and what the last interval of one takes), 20 for
-  /// each constrained sub-step allowed (and what a Newton takes), recovery, and 16 looks for a way
-  /// out.
+  /// each constrained sub-step allowed (and what a Newton takes), recovery, and 16 looks for an
+  /// escape.
   [[nodiscard]] int max_evaluations() const noexcept;
 
   /// Sets stiffness (N/m), friction and texture from the next step on; in contact,
