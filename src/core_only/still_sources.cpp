@@ -1,4 +1,4 @@
-// Says what sources do in a core by itself: they hold still. Nothing is pushed into them, and no
+// Defines what sources do in a core by itself: they hold still. Nothing is pushed into them, and no
 // cloud is a depth frame or has an eye.
 #include "scene/source_inside.hpp"
 

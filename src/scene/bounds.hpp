@@ -1,4 +1,4 @@
-// Says where a source has points.
+// Finds where a source has points.
 #pragma once
 
 #include <memory>

@@ -3,7 +3,7 @@
 #include "base/description.hpp"
 #include "palpate/scene/source.hpp"
 
-/// What is said of the options of sources.
+/// The descriptions of the options of sources.
 namespace palpate {
 
 // In the order in which help and errors list them.

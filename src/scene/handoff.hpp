@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Hands immutable values from preparing threads to several real-time readers without locks: the
-/// one place where threads meet. A reader marks what it looks at in a slot of its own (a hazard
+/// one point where threads meet. A reader marks what it looks at in a slot of its own (a hazard
 /// pointer); a value is let go by the next publish() or leave() that finds no slot naming it, on
 /// that thread and never on a reader's.
 ///
@@ -43,11 +43,11 @@ class Handoff {
   [[nodiscard]] std::size_t join(std::string name = {}) {
     const std::lock_guard lock(mutex_);
     const auto free = std::ranges::find(taken_, false);
-    const auto place = static_cast<std::size_t>(std::distance(taken_.begin(), free));
-    if (place == kReaders) return kReaders;
-    taken_[place] = true;
-    names_[place] = std::move(name);
-    return place;
+    const auto reader = static_cast<std::size_t>(std::distance(taken_.begin(), free));
+    if (reader == kReaders) return kReaders;
+    taken_[reader] = true;
+    names_[reader] = std::move(name);
+    return reader;
   }
 
   /// Ends a registration. Not real-time; the reader must no longer use what it held.
@@ -67,9 +67,9 @@ class Handoff {
     const std::lock_guard lock(mutex_);
     const T* newest = value.get();
     const auto end = values_.begin() + static_cast<std::ptrdiff_t>(count_);
-    const bool known =
+    const bool listed =
         std::any_of(values_.begin(), end, [&](const auto& other) { return other.get() == newest; });
-    if (newest && !known) values_[count_++] = std::move(value);
+    if (newest && !listed) values_[count_++] = std::move(value);
     newest_.store(newest);
     take_unused(unused);
   }
@@ -163,8 +163,8 @@ class Handoff {
       const bool needed = value == newest || std::ranges::any_of(readers_, [&](const auto& reader) {
                             return holds(reader, value);
                           });
-      auto& place = needed ? values_[kept++] : unused[v];
-      if (&place != &values_[v]) place = std::move(values_[v]);
+      auto& target = needed ? values_[kept++] : unused[v];
+      if (&target != &values_[v]) target = std::move(values_[v]);
     }
     count_ = kept;
   }

@@ -55,7 +55,7 @@ class PatchCache {
   [[nodiscard]] bool near_covers(std::span<const Ball> balls, double extra) noexcept;
 
   /// A patch that covers the ball; `margin`, m: the least reach of one that is gathered for it.
-  /// nullptr: the visits did not suffice, so nothing is known.
+  /// nullptr: the visits did not suffice, so nothing is decided.
   [[nodiscard]] const Patch* patch_for(const Ball& ball, double margin) const noexcept;
 
   /// Does a patch cover it already?
@@ -86,7 +86,7 @@ class PatchCache {
   };
 
   /// All that const calls change: what is left of a step's work, what was done, and the patches for
-  /// samples away from the path, which are rare. A search that fails looks at the same places in
+  /// samples away from the path, which are rare. A search that fails looks at the same positions in
   /// every step, and mostly at two that no single patch covers.
   struct Step {
     std::array<Slot, 2> far;

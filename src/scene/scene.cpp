@@ -89,15 +89,15 @@ std::optional<double> disagreement(const SurfacePoints& a, const SurfacePoints& 
   std::vector<float> distances;
   for (std::size_t i = 0; i < a.size(); i += step) {
     if (!counts(a, i)) continue;
-    const Eigen::Vector3f place = end_of(a, i) + shift;
-    b.grid.nearest(place, 1, near);
+    const Eigen::Vector3f position = end_of(a, i) + shift;
+    b.grid.nearest(position, 1, near);
     if (near.empty()) continue;
     const std::size_t k = near.front().index;
     const Eigen::Vector3f& normal = normal_of(b, k);
-    const Eigen::Vector3f way = place - end_of(b, k);
-    const bool same =
-        counts(b, k) && way.norm() <= kReach * b.radii[k] && normal.dot(normal_of(a, i)) > kAlike;
-    if (same) distances.push_back(std::abs(normal.dot(way)));
+    const Eigen::Vector3f offset = position - end_of(b, k);
+    const bool same = counts(b, k) && offset.norm() <= kReach * b.radii[k] &&
+                      normal.dot(normal_of(a, i)) > kAlike;
+    if (same) distances.push_back(std::abs(normal.dot(offset)));
   }
   if (distances.size() < kEnough) return std::nullopt;
   return median(distances);
@@ -124,14 +124,14 @@ double common_radius(const Source& one, const Source& other, double before) {
 
 }  // namespace
 
-void Seams::compare(std::size_t place, const Source& source) {
+void Seams::compare(std::size_t index, const Source& source) {
   const std::lock_guard lock(mutex_);
-  sources_[place] = &source;
+  sources_[index] = &source;
   for (std::size_t k = 0; k < sources_.size(); ++k) {
-    if (k == place || sources_[k] == nullptr) continue;
-    const auto [first, second] = std::minmax(k, place);  // one order: noise is the same both ways
-    common_[k][place] = common_[place][k] =
-        common_radius(*sources_[first], *sources_[second], common_[k][place]);
+    if (k == index || sources_[k] == nullptr) continue;
+    const auto [first, second] = std::minmax(k, index);  // one order: noise is the same in both
+    common_[k][index] = common_[index][k] =
+        common_radius(*sources_[first], *sources_[second], common_[k][index]);
   }
   for (std::size_t k = 0; k < sources_.size(); ++k) {
     least_radii_[k].store(*std::ranges::max_element(common_[k]));

@@ -130,13 +130,13 @@ FieldNote SceneField::State::standing_notes() const noexcept {
   return found;
 }
 
-/// Points around the proxy and the first stretch of its way to the hand.
+/// Points around the proxy and the first stretch of its path to the hand.
 void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept {
   const double r = radius();
-  const Vector3d way = hip - proxy;
-  const double length = way.norm();
+  const Vector3d offset = hip - proxy;
+  const double length = offset.norm();
   const double stretch = std::min(length, r);
-  const Vector3d end = length > 0 ? Vector3d(proxy + way * (stretch / length)) : proxy;
+  const Vector3d end = length > 0 ? Vector3d(proxy + offset * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
   const bool wide = std::ranges::any_of(layers.active(), moves);
   const double extra = 0.5 * stretch + (wide ? kWideMargin : kMargin) * r;
@@ -228,10 +228,10 @@ Surface SceneField::surface(const Vector3d& x) const noexcept {
   if (state.plain()) return {.source = 0};
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (!patch) return {};
-  std::array<double, Scene::kMaxSources> sure{};
+  std::array<double, Scene::kMaxSources> present{};
   const auto presence = [](const State::FollowedSource& source) { return source.view.presence(); };
-  std::ranges::transform(state.sources, sure.begin(), presence);
-  const auto presences = std::span(sure).first(state.sources.size());
+  std::ranges::transform(state.sources, present.begin(), presence);
+  const auto presences = std::span(present).first(state.sources.size());
   const PatchSurface mean = mean_surface(state.surface, *patch, x, presences);
   if (mean.source < 0) return {};
   return felt_surface(mean, state.sources[static_cast<std::size_t>(mean.source)].soft);

@@ -23,8 +23,8 @@ namespace palpate {
 
 /// How far apart two surfaces are where both are there: the median distance, along the normal of
 /// `b`, from points of `a` to the nearest point of `b`, m, where they are going. Points count that
-/// have a neighbour within three radii whose normal points the same way within 45 degrees; nothing
-/// when fewer than 30 of about a thousand that are tried do.
+/// have a neighbour within three radii whose normal agrees within 45 degrees; nothing when fewer
+/// than 30 of about a thousand that are tried do.
 [[nodiscard]] std::optional<double> disagreement(const SurfacePoints& a, const SurfacePoints& b);
 
 /// How wide supports have to be for the surfaces of sources that disagree to be one.
@@ -35,18 +35,18 @@ namespace palpate {
 /// distance. What lies further apart stays two.
 class Seams {
  public:
-  /// Compares the newest points of the source at `place` with those of the others that have called
+  /// Compares the newest points of the source at `index` with those of the others that have called
   /// this. The source outlives it. Takes milliseconds, and memory; any thread but a servo's.
-  void compare(std::size_t place, const Source& source);
+  void compare(std::size_t index, const Source& source);
 
   /// No support radius of that source is to be below this, m. Changes; may be read by any thread.
-  [[nodiscard]] const std::atomic<double>& least_radius(std::size_t place) const noexcept {
-    return least_radii_[place];
+  [[nodiscard]] const std::atomic<double>& least_radius(std::size_t index) const noexcept {
+    return least_radii_[index];
   }
 
   /// Sets it until the next compare(), for a replay that has recorded it.
-  void set_least_radius(std::size_t place, double radius) noexcept {
-    least_radii_[place].store(radius);
+  void set_least_radius(std::size_t index, double radius) noexcept {
+    least_radii_[index].store(radius);
   }
 
  private:
@@ -63,7 +63,7 @@ struct Streaming;
 /// @throws Error when an option is out of its range.
 [[nodiscard]] std::shared_ptr<Streaming> make_streaming(const SourceOptions& options);
 
-/// Forgets what frames showed of places that are free. `streaming`: what make_streaming() made.
+/// Forgets what frames showed of free space. `streaming`: what make_streaming() made.
 void forget_frames(Streaming* streaming);
 
 /// Makes an organised cloud the source's surface as the depth frame that it was made of. False: it
@@ -71,7 +71,7 @@ void forget_frames(Streaming* streaming);
 /// @throws Error as Source::set() of a frame does.
 [[nodiscard]] bool set_as_frame(Source& source, const PointCloud& cloud);
 
-/// The eye of a cloud, if all of it was seen from one place. `T_world_sensor`: of its frame.
+/// The eye of a cloud, if all of it was seen from one position. `T_world_sensor`: of its frame.
 [[nodiscard]] std::optional<SurfaceEye> eye_of(const PointCloud& cloud,
                                                const PrepareOptions& options,
                                                const Eigen::Isometry3d& T_world_sensor);

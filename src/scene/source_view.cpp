@@ -28,21 +28,21 @@ constexpr double kCatchUpMore = 0.5;  // judgement, both
 }  // namespace
 
 SnapshotReader::SnapshotReader(Handoff<Snapshot>& handoff, const std::string& name)
-    : handoff_(&handoff), place_(handoff.join(name)) {
-  if (place_ == Handoff<Snapshot>::kReaders) {
+    : handoff_(&handoff), reader_(handoff.join(name)) {
+  if (reader_ == Handoff<Snapshot>::kReaders) {
     throw Error(fmt::format("the scene already has {} fields; destroy one before creating another",
                             Handoff<Snapshot>::kReaders));
   }
 }
 
 SnapshotReader::~SnapshotReader() {
-  handoff_->leave(place_);
+  handoff_->leave(reader_);
 }
 
 bool SnapshotReader::advance(double now) noexcept {
   look(now);
   if (!next_ || (current_ && now < next_->start)) return false;
-  handoff_->release(place_, slot_);
+  handoff_->release(reader_, slot_);
   slot_ = 1 - slot_;
   current_ = next_;
   next_ = nullptr;
@@ -54,13 +54,13 @@ void SnapshotReader::look(double now) noexcept {
   if (newest == current_ && !next_) return;
   if (newest && (newest == current_ || newest == next_)) return;
   if (!newest) {
-    handoff_->release(place_, slot_);
-    handoff_->release(place_, 1 - slot_);
+    handoff_->release(reader_, slot_);
+    handoff_->release(reader_, 1 - slot_);
     current_ = next_ = nullptr;
     return;
   }
   if (next_ && next_->start - now <= kPatience) return;
-  next_ = handoff_->acquire(place_, 1 - slot_);
+  next_ = handoff_->acquire(reader_, 1 - slot_);
   if (next_) taken_ = next_->publication;
 }
 
@@ -99,8 +99,8 @@ void SourceView::fade(double now, double dt) noexcept {
   const double duration = shown ? shown->end - shown->start : 0;
   const double rise = duration > 0 ? (shown->presence_end - shown->presence_start) / duration : 0;
   const bool rises = shown && share_ > 0 && wanted > presence_ && shown->fade > 0;
-  // A step from one snapshot to the next is made as slowly as a surface fades; what a snapshot
-  // says of itself is followed.
+  // A step from one snapshot to the next is made as slowly as a surface fades; the presence
+  // within a snapshot is followed.
   const double rate = rises ? std::max(1 / shown->fade, rise) : 0;
   presence_ = rises ? std::min(wanted, presence_ + std::max(dt, 0.0) * rate) : wanted;
   faded_ = presence_ > 0 ? 0 : share_ > 0 ? faded_ + std::max(dt, 0.0) : faded_;

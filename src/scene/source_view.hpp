@@ -18,11 +18,11 @@
 
 namespace palpate {
 
-/// A reader's place at a source: it keeps the current snapshot and, while its start lies ahead, the
-/// next. Everything but construction and destruction is real-time.
+/// A reader's registration at a source: it keeps the current snapshot and, while its start lies
+/// ahead, the next. Everything but construction and destruction is real-time.
 class SnapshotReader {
  public:
-  /// @throws Error when the source has no reader's place left.
+  /// @throws Error when the source has no room for another reader.
   SnapshotReader(Handoff<Snapshot>& handoff, const std::string& name);
   ~SnapshotReader();
   SnapshotReader(const SnapshotReader&) = delete;
@@ -36,13 +36,13 @@ class SnapshotReader {
   [[nodiscard]] const Snapshot* current() const noexcept { return current_; }  ///< or nullptr
   /// Snapshot::publication of the newest one that it took; 0: none yet.
   [[nodiscard]] std::uint64_t taken() const noexcept { return taken_; }
-  [[nodiscard]] std::size_t place() const noexcept { return place_; }  ///< at the source
+  [[nodiscard]] std::size_t reader() const noexcept { return reader_; }  ///< its number
 
  private:
   void look(double now) noexcept;
 
   Handoff<Snapshot>* handoff_;
-  std::size_t place_;
+  std::size_t reader_;
   std::size_t slot_ = 0;  // that holds `current_`; the other holds `next_`
   const Snapshot* current_ = nullptr;
   const Snapshot* next_ = nullptr;
@@ -54,7 +54,7 @@ class SnapshotReader {
 class SourceView {
  public:
   /// `least_radius`: of all its layers' points, m; may change. `name`: of the reader.
-  /// @throws Error when the source has no reader's place left.
+  /// @throws Error when the source has no room for another reader.
   SourceView(Handoff<Snapshot>& handoff, const std::atomic<double>& least_radius,
              const std::string& name)
       : snapshots_(handoff, name), wanted_radius_(&least_radius) {}
@@ -84,8 +84,8 @@ class SourceView {
   /// The radius to which all supports are widened now, m.
   [[nodiscard]] double least_radius() const noexcept { return least_radius_; }
 
-  /// The reader's place at the source.
-  [[nodiscard]] std::size_t reader() const noexcept { return snapshots_.place(); }
+  /// The reader's number at the source.
+  [[nodiscard]] std::size_t reader() const noexcept { return snapshots_.reader(); }
 
  private:
   /// What is remembered of a snapshot that is released.

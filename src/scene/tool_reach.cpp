@@ -6,12 +6,12 @@
 namespace palpate {
 namespace {
 
-constexpr int kTries = 8;  // reads of one place; bounds the wait (judgement)
+constexpr int kTries = 8;  // reads of one slot; bounds the wait (judgement)
 
 }  // namespace
 
-void ReachTable::write(std::size_t place, const Reach& reach) noexcept {
-  Place& p = places_[place];
+void ReachTable::write(std::size_t slot, const Reach& reach) noexcept {
+  Slot& p = slots_[slot];
   const std::array<double, 4> values{reach.center.x(), reach.center.y(), reach.center.z(),
                                      reach.radius};
   // Each value's release puts the odd version before it: who sees a new value sees that version.
@@ -25,7 +25,7 @@ void ReachTable::write(std::size_t place, const Reach& reach) noexcept {
 
 void ReachTable::read(std::vector<Reach>& found) const {
   found.clear();
-  for (const Place& p : places_) {
+  for (const Slot& p : slots_) {
     for (int i = 0; i < kTries; ++i) {
       const std::uint32_t before = p.version.load(std::memory_order_acquire);
       std::array<double, 4> values{};
@@ -70,8 +70,8 @@ Reach ToolReach::update(double now, const Eigen::Vector3d& hip, const Eigen::Vec
   last_time_ = now;
   last_hip_ = hip;
   const double horizon = kFrames * frame + kLatency;
-  const double way = std::max(scale_ * kStartSpeed, kSpeedUp * speed_) * horizon;
-  return {0.5 * (hip + proxy), 0.5 * (hip - proxy).norm() + way + margin};
+  const double travel = std::max(scale_ * kStartSpeed, kSpeedUp * speed_) * horizon;
+  return {0.5 * (hip + proxy), 0.5 * (hip - proxy).norm() + travel + margin};
 }
 
 }  // namespace palpate

@@ -17,7 +17,7 @@ namespace palpate {
 /// it, preparation clips to it and runs the costly fit in it.
 using Reach = Ball;
 
-/// Where fields write their reach, each in a place of its own, and preparation reads it. Without
+/// Where fields write their reach, each in a slot of its own, and preparation reads it. Without
 /// locks: a version that is odd while a position is being written makes readers look again.
 class ReachTable {
  public:
@@ -27,25 +27,25 @@ class ReachTable {
     for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
   }
 
-  /// One thread a place. Wait-free.
-  void write(std::size_t place, const Reach& reach) noexcept;
+  /// One thread a slot. Wait-free.
+  void write(std::size_t slot, const Reach& reach) noexcept;
 
   /// The position is not valid from now on.
-  void clear(std::size_t place) noexcept { write(place, {Eigen::Vector3d::Zero(), -1}); }
+  void clear(std::size_t slot) noexcept { write(slot, {Eigen::Vector3d::Zero(), -1}); }
 
-  /// Replaces `found` by all that is known. Not real-time; allocates only to grow. A place that is
+  /// Replaces `found` by all that is valid. Not real-time; allocates only to grow. A slot that is
   /// written faster than it can be read is left out.
   void read(std::vector<Reach>& found) const;
 
  private:
   static constexpr std::size_t kCacheLine = 64;  // bytes, on x86-64 and most Arm cores
 
-  struct alignas(kCacheLine) Place {
+  struct alignas(kCacheLine) Slot {
     std::atomic<std::uint32_t> version{0};
     std::array<std::atomic<double>, 4> values{};  // center, radius
   };
 
-  std::array<Place, kPlaces> places_;
+  std::array<Slot, kPlaces> slots_;
 };
 
 /// Foresees where a tool can be until the next frames have become a surface. Real-time.

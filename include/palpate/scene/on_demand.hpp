@@ -25,7 +25,8 @@ namespace palpate {
 /// fast it is: runs that are to repeat use Source::set().
 class OnDemand {
  public:
-  /// Is the cloud so large that a person would wait for it, and prepared in a way that allows it?
+  /// Is the cloud so large that a person would wait for it, and prepared with options that allow
+  /// it?
   [[nodiscard]] static bool suits(const PointCloud& cloud, const PrepareOptions& options);
 
   /// Measures the cloud's facts and divides it, which takes about a second for 10 million points.

@@ -49,7 +49,7 @@ struct PolicyOptions {
 
 struct SourceOptions {
   /// What points of material 0 feel like. Material 1 is as stiff and rough as the proxy's options
-  /// say, and between the two it goes in a straight line.
+  /// set, and between the two it goes in a straight line.
   struct SoftMaterial {
     double stiffness_factor = 1;  ///< 0-1
     double friction_factor = 1;   ///< 0-1
@@ -62,8 +62,8 @@ struct SourceOptions {
   DepthFilterOptions depth = {};  ///< for depth frames
   /// Does set() treat an organised cloud as the depth frame that it was made of? Not where that
   /// camera cannot be found (depth_frame_of()), half of its depths are out of the filter's range,
-  /// or `prepare` asks for what loose points alone have: voxel, clip, viewpoint, materials, the
-  /// paper's way.
+  /// or `prepare` requires what loose points alone have: voxel, clip, viewpoint, materials, the
+  /// paper's method.
   bool organised = true;
 };
 
@@ -183,8 +183,8 @@ class Source {
   /// @throws Error when the pose is not rigid.
   void set_pose(const Eigen::Isometry3d& T_world_sensor);
 
-  /// Prepares what comes from the next push() or set() on in another way; the surface begins again
-  /// with it. Pose and soft material stay as they are. Any thread but a servo's.
+  /// Prepares what comes from the next push() or set() on with other options; the surface begins
+  /// again with it. Pose and soft material stay as they are. Any thread but a servo's.
   /// @throws Error when an option is out of its range.
   void change(const SourceOptions& options);
 
@@ -197,9 +197,9 @@ class Source {
   void set(const DepthFrame& frame);
 
   /// Takes the next frame of a depth camera: filters it, brings it into the surface as the policy
-  /// says, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of one
-  /// size have come for a while, nothing is allocated, but where sources are compared, once in 32
-  /// frames. Not real-time; one thread pushes.
+  /// requires, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of
+  /// one size have come for a while, nothing is allocated, but where sources are compared, once in
+  /// 32 frames. Not real-time; one thread pushes.
   ///
   /// False when the frame was dropped, because fields that stand still (their threads call no
   /// update()) hold all snapshots that there may be; state() names one of them.
