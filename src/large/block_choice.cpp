@@ -21,7 +21,7 @@ constexpr std::size_t kMostMissing = 1024;
 constexpr double kOfBlocks = 0.5;
 
 /// Ranks a block where there is no room for all: first what tools can reach, then what is near.
-/// What is shown already comes before others of its kind, or a hand's way would change what is
+/// What is shown already comes before others of its kind, or a hand's path would change what is
 /// shown all the time.
 int rank(const CloudBlock& block, double near) {
   if (block.distance <= 0) return 0;
@@ -100,12 +100,12 @@ std::vector<Box> missing_boxes(std::span<const CloudBlock> blocks,
 
 bool has_filled(std::span<const Box> missing, std::span<CloudBlock> blocks,
                 const std::vector<Box>& unlisted, std::span<const Ball> tools, double near) {
-  std::vector<Box> told;
-  std::ranges::copy_if(missing, std::back_inserter(told),
+  std::vector<Box> reported;
+  std::ranges::copy_if(missing, std::back_inserter(reported),
                        [&](const Box& box) { return distance(box, tools) <= near; });
-  if (told.empty()) return false;
+  if (reported.empty()) return false;
   const std::vector<Box> now = missing_boxes(blocks, choose_shown(blocks, near), unlisted);
-  return std::ranges::any_of(told, [&](const Box& box) {
+  return std::ranges::any_of(reported, [&](const Box& box) {
     return std::ranges::none_of(now, [&](const Box& other) {
       return other.lower == box.lower && other.upper == box.upper;
     });

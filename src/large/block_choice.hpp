@@ -32,13 +32,13 @@ struct BlocksAround {
 /// not count: nobody is to wait for it.
 [[nodiscard]] bool shows_more(std::span<CloudBlock> blocks, double near);
 
-/// Where nothing is known (`unlisted`) or shown, the nearest blocks first.
+/// Where nothing is listed (`unlisted`) or shown, the nearest blocks first.
 [[nodiscard]] std::vector<Box> missing_boxes(std::span<const CloudBlock> blocks,
                                              std::span<CloudBlock* const> shown,
                                              std::vector<Box> unlisted);
 
-/// Was a place near `tools` shown as one of which nothing is known (`missing`), and is it not so
-/// any more? A block may turn out to have no points there.
+/// Was a box near `tools` reported as not loaded (`missing`), and is it not so any more? A block
+/// may turn out to have no points there.
 [[nodiscard]] bool has_filled(std::span<const Box> missing, std::span<CloudBlock> blocks,
                               const std::vector<Box>& unlisted, std::span<const Ball> tools,
                               double near);

@@ -23,13 +23,13 @@ struct CloudBlock {
   enum class State : std::uint8_t { missing, failed, prepared, shown };
 
   Division::Key key;
-  Box box;    ///< that holds its points, world frame, m
-  Box place;  ///< of a store: it is needed while a tool is near this box, which holds `box`
+  Box box;     ///< that holds its points, world frame, m
+  Box region;  ///< of a store: it is needed while a tool is near this box, which holds `box`
   State state = State::missing;
   double retry = 0;     ///< of one that failed: from when on it is tried again, s
   double presence = 0;  ///< at the start of what was shown last; 1 at its end
   double distance = 0;  ///< from what tools can reach, m; negative within
-  Box sparser;          ///< around points in its cube that belong to further levels, where known
+  Box sparser;          ///< around points in its cube that belong to further levels, once read
   Piece piece;          ///< once it is prepared
 };
 
@@ -64,7 +64,7 @@ class BlockSupply {
 
   /// Adds the blocks that tools may need soon, and takes out others, farther away than `near` (m),
   /// where memory is short.
-  /// @return boxes without a block: what is there is not known.
+  /// @return boxes without a block: what is there is not loaded.
   [[nodiscard]] virtual std::vector<Box> list(std::span<const Ball> tools, double near,
                                               std::vector<CloudBlock>& blocks) = 0;
 

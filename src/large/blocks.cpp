@@ -68,9 +68,9 @@ std::vector<std::uint32_t> renumber(std::vector<std::uint32_t>& numbers) {
   std::vector<std::uint32_t> old;
   for (std::uint32_t& number : numbers) {
     if (number == SurfacePoints::Segments::kNone) continue;
-    const auto [known, is_new] = fresh.try_emplace(number, static_cast<std::uint32_t>(old.size()));
+    const auto [entry, is_new] = fresh.try_emplace(number, static_cast<std::uint32_t>(old.size()));
     if (is_new) old.push_back(number);
-    number = known->second;
+    number = entry->second;
   }
   return old;
 }
@@ -180,7 +180,7 @@ Piece Blocks::prepare(std::size_t number) const {
   piece.report = all.report;
   piece.report.points_in = division_.points(number);
   piece.report.points_out = piece.report.speckle = piece.report.duplicates = 0;
-  std::vector<std::uint8_t> first(points.size());  // a second plane is at its point's place
+  std::vector<std::uint8_t> first(points.size());  // a second plane is at its point's position
   for (const std::uint32_t i : distinct_points(points.grid)) first[i] = 1;
   for (const std::uint32_t i : kept) {
     if (first[points.grid.order()[i]] == 0) continue;

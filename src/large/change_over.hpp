@@ -17,8 +17,8 @@ namespace palpate {
   return snapshot;
 }
 
-/// Lets all of a cloud prepared together take the place of its blocks, which differ from it a
-/// little: two layers while it fades in, then one.
+/// Replaces the blocks of a cloud by all of it prepared together, which differs from them a little:
+/// two layers while it fades in, then one.
 class ChangeOver {
  public:
   ChangeOver(Prepared blocks, Prepared together)

@@ -1,4 +1,4 @@
-// Draws places of a cloud and measures there what is one for all of it.
+// Draws positions in a cloud and measures there what is one for all of it.
 
 #include "palpate/prepare/cloud_facts.hpp"
 
@@ -24,24 +24,24 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t kDrawnPlaces = 32;  // places; judgement
+constexpr std::size_t kDrawn = 32;  // positions; judgement
 constexpr std::size_t kPointsAround =
-    4096;                                // points around each: windows of 20 s fit in; judgement
-constexpr std::size_t kRun = 256;        // points that are passed over together; judgement
-constexpr std::size_t kAsked = 1 << 17;  // points whose distance is measured; judgement
+    4096;                                  // points around each: windows of 20 s fit in; judgement
+constexpr std::size_t kRun = 256;          // points that are passed over together; judgement
+constexpr std::size_t kSampled = 1 << 17;  // points whose distance is measured; judgement
 constexpr std::size_t kOneOutlierOf = 1000;  // points, one an outlier, at either end; judgement
 
-/// How far from a place `share` of the sampled points lie, m^2.
-float reach(std::span<const Vector3f> sample, const Vector3f& place, double share) {
+/// How far from a `center` the `share` of the sampled points lie, m^2.
+float reach(std::span<const Vector3f> sample, const Vector3f& center, double share) {
   std::vector<float> squares;
-  for (const Vector3f& p : sample) squares.push_back((p - place).squaredNorm());
+  for (const Vector3f& p : sample) squares.push_back((p - center).squaredNorm());
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(squares.size() - 1));
   std::nth_element(squares.begin(), squares.begin() + rank, squares.end());
   return squares[static_cast<std::size_t>(rank)];
 }
 
 std::vector<Vector3f> sample_of(const std::vector<Vector3f>& points) {
-  const std::size_t step = points.size() / kAsked + 1;
+  const std::size_t step = points.size() / kSampled + 1;
   std::vector<Vector3f> sample;
   for (std::size_t i = step / 2; i < points.size(); i += step) sample.push_back(points[i]);
   return sample;
@@ -54,7 +54,7 @@ struct Bounds {
 };
 
 /// The box of each run of kRun points. Scanners write down together what lies together, so most
-/// runs are far from most places and are passed over whole.
+/// runs are far from most positions and are passed over whole.
 std::vector<Bounds> boxes_of_runs(std::span<const Vector3f> points) {
   std::vector<Bounds> boxes((points.size() + kRun - 1) / kRun);
   detail::parallel_each(boxes.size(), 64, [&](std::size_t r) {
@@ -67,21 +67,21 @@ std::vector<Bounds> boxes_of_runs(std::span<const Vector3f> points) {
   return boxes;
 }
 
-/// The points around the drawn places; all of a cloud that has no more.
+/// The points around the drawn positions; all of a cloud that has no more.
 PointCloud draw(const PointCloud& cloud, const std::vector<Vector3f>& sample) {
-  if (cloud.size() <= kDrawnPlaces * kPointsAround) return cloud;
+  if (cloud.size() <= kDrawn * kPointsAround) return cloud;
   const double share = static_cast<double>(kPointsAround) / static_cast<double>(cloud.size());
   const std::vector<Bounds> boxes = boxes_of_runs(cloud.positions);
-  std::vector<std::vector<std::uint32_t>> found(kDrawnPlaces);
-  detail::parallel_each(kDrawnPlaces, 1, [&](std::size_t k) {
-    const Vector3f& place = sample[(2 * k + 1) * sample.size() / (2 * kDrawnPlaces)];
-    const float squared = reach(sample, place, share);
+  std::vector<std::vector<std::uint32_t>> found(kDrawn);
+  detail::parallel_each(kDrawn, 1, [&](std::size_t k) {
+    const Vector3f& center = sample[(2 * k + 1) * sample.size() / (2 * kDrawn)];
+    const float squared = reach(sample, center, share);
     for (std::size_t r = 0; r < boxes.size(); ++r) {
-      const Vector3f nearest = place.cwiseMax(boxes[r].lower).cwiseMin(boxes[r].upper);
-      if ((place - nearest).squaredNorm() > squared) continue;
+      const Vector3f nearest = center.cwiseMax(boxes[r].lower).cwiseMin(boxes[r].upper);
+      if ((center - nearest).squaredNorm() > squared) continue;
       const std::size_t end = std::min(cloud.size(), (r + 1) * kRun);
       for (std::size_t i = r * kRun; i < end; ++i) {
-        if ((cloud.positions[i] - place).squaredNorm() > squared) continue;
+        if ((cloud.positions[i] - center).squaredNorm() > squared) continue;
         found[k].push_back(static_cast<std::uint32_t>(i));
       }
     }
@@ -133,7 +133,7 @@ CloudFacts measure_facts(const StoreSample& sample, const PrepareOptions& option
   PrepareOptions whole = without_facts(options);
   whole.clip.reset();
   const Placed all = place(sample.all, whole, T_world_sensor);
-  const Placed drawn = place(sample.places, whole, T_world_sensor);
+  const Placed drawn = place(sample.around, whole, T_world_sensor);
   detail::require_finite(all.cloud().positions);
   detail::require_finite(drawn.cloud().positions);
   return facts_of(drawn, whole, all.cloud().positions);

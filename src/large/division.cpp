@@ -26,8 +26,8 @@ constexpr std::uint32_t kEnoughAround = 60;
 constexpr int kPartShift = 2;
 constexpr int kParts = 1 << kPartShift;  // derived
 
-// Parts along an axis either way; derived: 21 bits each. Points farther out, 1.6 million R, count
-// as if they were in the outermost ones.
+// Parts along an axis in either direction; derived: 21 bits each. Points farther out, 1.6 million
+// R, count as if they were in the outermost ones.
 constexpr double kMostParts = 1 << 20;
 
 /// Calls visit(index) for an index and the 26 around it, itself first.
@@ -193,8 +193,8 @@ Division::Index Division::index_of(const Vector3d& point, double edge) const {
   const Vector3d at = (point - extent_.lower) / edge;
   // Not negative, so that a conversion rounds down; that is faster than std::floor().
   const Vector3d counted = at.cwiseMax(-kMostParts).cwiseMin(kMostParts - 1).array() + kMostParts;
-  const Eigen::Vector3i place = counted.cast<int>().array() - static_cast<int>(kMostParts);
-  return {place.x(), place.y(), place.z()};
+  const Eigen::Vector3i index = counted.cast<int>().array() - static_cast<int>(kMostParts);
+  return {index.x(), index.y(), index.z()};
 }
 
 const Division::Cube& Division::cube(std::size_t block) const {
@@ -212,9 +212,9 @@ bool Division::Level::is_settled(const Index& part) const {
   return found != nullptr ? found->settled : has_enough(at);
 }
 
-bool Division::owns(std::size_t block, const Vector3d& place) const {
+bool Division::owns(std::size_t block, const Vector3d& position) const {
   std::size_t k = 0;
-  const auto part = [&] { return index_of(place, levels_[k].cell / kParts); };
+  const auto part = [&] { return index_of(position, levels_[k].cell / kParts); };
   while (k + 1 < levels_.size() && !levels_[k].is_settled(part())) ++k;
   return k == blocks_[block].level && coarser(part(), kPartShift + cube_shift_) == cube(block).at;
 }

@@ -58,8 +58,8 @@ class Division {
   [[nodiscard]] std::size_t points(std::size_t block) const { return cube(block).own; }
   /// Their tight box, world frame, m.
   [[nodiscard]] const Box& box(std::size_t block) const { return cube(block).box; }
-  /// Do points at this place (world frame, m) belong to the block?
-  [[nodiscard]] bool owns(std::size_t block, const Eigen::Vector3d& place) const;
+  /// Do points at this position (world frame, m) belong to the block?
+  [[nodiscard]] bool owns(std::size_t block, const Eigen::Vector3d& position) const;
   /// The points of the block's level up to `reach` (m, at most an edge of its cube) around its box.
   /// Rising.
   [[nodiscard]] std::vector<std::uint32_t> around(std::size_t block, double reach) const;

@@ -19,7 +19,7 @@ namespace {
 // on a survey with trees). A person waits for more.
 constexpr std::size_t kMostWaitedFor = std::size_t{1} << 16;
 
-// Blocks that serve until all is prepared together are cubes of 24 R in place of 96: the survey's
+// Blocks that serve until all is prepared together are cubes of 24 R instead of 96: the survey's
 // first block held half of its points, 270 000, and took 7.5 s on a busy machine.
 constexpr int kHalvings = 2;
 

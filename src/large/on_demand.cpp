@@ -39,7 +39,7 @@ constexpr double kRetry = 10;
 // What was shown last.
 struct ShownLast {
   const Source* source = nullptr;  // to which
-  std::vector<Box> missing;        // where nothing is known
+  std::vector<Box> missing;        // where nothing is loaded
   double start = 0;                // s
 };
 

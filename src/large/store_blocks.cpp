@@ -43,7 +43,7 @@ constexpr std::size_t kMostRead = std::size_t{1} << 22;
 // The same on level 0: beyond it R is so large that all memory would go into one block; judgement.
 constexpr std::size_t kMostReadAtOnce = std::size_t{1} << 24;
 
-// Cubes from the lower corner of the extent, either way; a Division has none farther out.
+// Cubes from the lower corner of the extent, in either direction; a Division has none farther out.
 constexpr double kMostCubes = 1 << 14;
 
 constexpr std::size_t kPieces = 4;       // one of so many bytes is for prepared blocks; judgement
@@ -140,10 +140,10 @@ class StoreBlocks final : public BlockSupply {
     ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
     drop_empty(ranges, blocks);
     make_room(tools, near, blocks);
-    std::set<Key> known;
-    for (const CloudBlock& block : blocks) known.insert(block.key);
-    for (const Range& range : ranges) add(range, known, blocks);
-    add_sparser(known, blocks);
+    std::set<Key> listed;
+    for (const CloudBlock& block : blocks) listed.insert(block.key);
+    for (const Range& range : ranges) add(range, listed, blocks);
+    add_sparser(listed, blocks);
     return unlisted(ranges);
   }
 
@@ -225,7 +225,7 @@ class StoreBlocks final : public BlockSupply {
   /// needs the cube all the same: taken out, it would be prepared again at once.
   void make_room(std::span<const Ball> tools, double near, std::vector<CloudBlock>& blocks) const {
     const auto away = [&](const CloudBlock& block) {
-      return block.piece.positions.empty() ? 0 : distance(block.place, tools);
+      return block.piece.positions.empty() ? 0 : distance(block.region, tools);
     };
     std::size_t points = points_of(blocks);
     while (points > most_prepared_) {
@@ -236,28 +236,28 @@ class StoreBlocks final : public BlockSupply {
     }
   }
 
-  void add(const Range& range, std::set<Key>& known, std::vector<CloudBlock>& blocks) const {
+  void add(const Range& range, std::set<Key>& listed, std::vector<CloudBlock>& blocks) const {
     for (std::int32_t x = range.first[0]; x <= range.last[0]; ++x) {
       for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
         for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
           const Key key{0, {x, y, z}};
-          if (!known.insert(key).second) continue;
+          if (!listed.insert(key).second) continue;
           blocks.emplace_back().key = key;
-          blocks.back().box = blocks.back().place = Division::cube(facts(), key);
+          blocks.back().box = blocks.back().region = Division::cube(facts(), key);
         }
       }
     }
   }
 
   /// Adds blocks of further levels for points that were found to be too sparse.
-  static void add_sparser(std::set<Key>& known, std::vector<CloudBlock>& blocks) {
+  static void add_sparser(std::set<Key>& listed, std::vector<CloudBlock>& blocks) {
     for (std::size_t k = 0; k < blocks.size(); ++k) {
       const Box sparser = blocks[k].sparser;
       if (sparser.empty()) continue;
       const Key key = Division::above(blocks[k].key);
-      if (known.insert(key).second) blocks.emplace_back().key = key;
+      if (listed.insert(key).second) blocks.emplace_back().key = key;
       CloudBlock& block = *std::ranges::find(blocks, key, &CloudBlock::key);
-      block.place.extend(sparser);
+      block.region.extend(sparser);
       if (block.state == CloudBlock::State::missing) block.box.extend(sparser);
     }
   }

@@ -1,4 +1,4 @@
-// Reads the upper nodes of a store, and the leaves at some places with all that lies over them.
+// Reads the upper nodes of a store, and the leaves at some positions with all that lies over them.
 
 #include "large/store_sample.hpp"
 
@@ -21,9 +21,9 @@ using Layout = PointStore::Layout;
 using StoreKey = detail::NodeKey;
 
 constexpr std::size_t kOfStore = 1 << 17;  // points, enough for a page; judgement
-// Measured on an airborne survey: R is 1 % less than with 256 places, with 32 places 12 % less.
-constexpr std::size_t kStorePlaces = 64;
-constexpr std::size_t kAtPlace = 4096;  // points at a place: windows of 20 s fit in; judgement
+// Measured on an airborne survey: R is 1 % less than with 256 positions, with 32 it is 12 % less.
+constexpr std::size_t kPositions = 64;
+constexpr std::size_t kInMiddle = 4096;  // at each: windows of 20 s fit in; judgement
 
 /// Nodes with points under which there are none, in the order of the store.
 std::vector<std::size_t> leaves_of(const Layout& layout) {
@@ -40,19 +40,19 @@ std::vector<std::size_t> leaves_of(const Layout& layout) {
   return leaves;
 }
 
-/// At most `places` of the leaves, spread over their points.
+/// At most `count` of the leaves, spread over their points.
 std::vector<std::size_t> drawn(const Layout& layout, const std::vector<std::size_t>& leaves,
-                               std::size_t places) {
+                               std::size_t count) {
   std::size_t all = 0;
   for (const std::size_t k : leaves) all += layout.nodes[k].points;
   std::vector<std::size_t> found;
   std::size_t before = 0;
-  std::size_t place = 0;
+  std::size_t index = 0;
   for (const std::size_t k : leaves) {
     before += layout.nodes[k].points;
-    const std::size_t first = place;
-    while (place < places && (2 * place + 1) * all < 2 * places * before) ++place;
-    if (place > first) found.push_back(k);
+    const std::size_t first = index;
+    while (index < count && (2 * index + 1) * all < 2 * count * before) ++index;
+    if (index > first) found.push_back(k);
   }
   return found;
 }
@@ -67,34 +67,34 @@ std::vector<std::size_t> chain(const std::map<StoreKey, std::size_t>& numbers, S
   return nodes;
 }
 
-/// Keeps the points in the box; of more than kAtPlace, those around the one nearest to their
+/// Keeps the points in the box; of more than kInMiddle, those around the one nearest to their
 /// middle.
 void keep_middle(const Box& box, PointCloud& cloud) {
-  PointCloud places;
-  places.origin = cloud.origin;
-  places.positions = std::move(cloud.positions);
-  cloud = clip(places, box);
-  if (cloud.size() <= kAtPlace) return;
-  const auto nearest_to = [](const Vector3f& place) {
-    return [place](const Vector3f& p) { return (p - place).squaredNorm(); };
+  PointCloud bare;
+  bare.origin = cloud.origin;
+  bare.positions = std::move(cloud.positions);
+  cloud = clip(bare, box);
+  if (cloud.size() <= kInMiddle) return;
+  const auto nearest_to = [](const Vector3f& position) {
+    return [position](const Vector3f& p) { return (p - position).squaredNorm(); };
   };
   Vector3f middle = Vector3f::Zero();
   for (const Vector3f& p : cloud.positions) middle += p / static_cast<float>(cloud.size());
   const Vector3f start = *std::ranges::min_element(cloud.positions, {}, nearest_to(middle));
-  std::ranges::nth_element(cloud.positions, cloud.positions.begin() + static_cast<long>(kAtPlace),
+  std::ranges::nth_element(cloud.positions, cloud.positions.begin() + static_cast<long>(kInMiddle),
                            {}, nearest_to(start));
-  cloud.positions.resize(kAtPlace);
+  cloud.positions.resize(kInMiddle);
 }
 
-/// The nodes of the upper levels, the coarsest first: together they have at least `asked` points,
+/// The nodes of the upper levels, the coarsest first: together they have at least `least` points,
 /// if all have.
-std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t asked) {
+std::vector<std::size_t> upper_nodes(const Layout& layout, std::size_t least) {
   std::vector<std::size_t> order(layout.nodes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return layout.nodes[k].level; });
   std::size_t points = 0;
   std::size_t taken = 0;
-  while (taken < order.size() && points < asked) points += layout.nodes[order[taken++]].points;
+  while (taken < order.size() && points < least) points += layout.nodes[order[taken++]].points;
   order.resize(taken);
   return order;
 }
@@ -126,7 +126,7 @@ StoreSample sample_of(const PointStore& store) {
   for (std::size_t k = 0; k < layout.nodes.size(); ++k)
     numbers[detail::key_of(layout.nodes[k])] = k;
   const std::vector<std::size_t> upper = upper_nodes(layout, kOfStore);
-  const std::vector<std::size_t> leaves = drawn(layout, leaves_of(layout), kStorePlaces);
+  const std::vector<std::size_t> leaves = drawn(layout, leaves_of(layout), kPositions);
   std::vector<std::size_t> wanted = upper;
   for (const std::size_t leaf : leaves) {
     const auto over = chain(numbers, detail::key_of(layout.nodes[leaf]));
@@ -137,9 +137,9 @@ StoreSample sample_of(const PointStore& store) {
   for (const std::size_t leaf : leaves) {
     PointCloud there = nodes.join(chain(numbers, detail::key_of(layout.nodes[leaf])));
     keep_middle(layout.box(leaf), there);
-    detail::append(there, sample.places);
+    detail::append(there, sample.around);
   }
-  if (!sample.all.empty() && !sample.places.empty()) return sample;
+  if (!sample.all.empty() && !sample.around.empty()) return sample;
   if (nodes.error) std::rethrow_exception(nodes.error);
   throw Error("none of the store's points can be used: make it again");
 }

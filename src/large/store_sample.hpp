@@ -12,11 +12,11 @@ namespace palpate {
 /// Some points of a store, in its frame.
 struct StoreSample {
   PointCloud all;     ///< thinned: those of the upper nodes
-  PointCloud places;  ///< all that lie around some places
+  PointCloud around;  ///< all that lie around some positions
 };
 
 /// At least a hundred thousand points of all of the store, and some thousand nearest ones at each
-/// of 64 places, which are spread over its points. Always the same of the same store. Nodes that
+/// of 64 positions, which are spread over its points. Always the same of the same store. Nodes that
 /// cannot be read are left out.
 /// @throws Error when no point is left: the first that reading gave.
 [[nodiscard]] StoreSample sample_of(const PointStore& store);
