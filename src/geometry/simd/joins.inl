@@ -89,15 +89,15 @@ struct Joins {
       return std::array<Queries, kGroups>{Queries(join, join.query + kGroup * kLanes)...};
     }
     (std::make_index_sequence<kGroups>());
-    const std::uint32_t asked = (1u << join.count) - 1;
+    const std::uint32_t used = (1u << join.count) - 1;
     each_candidate(join, [&](std::size_t c) {
       std::uint32_t lanes = 0;
       for (std::size_t g = 0; g < kGroups; ++g) {
         const Offset offset = queries[g].to(join.points + 3 * c);
         lanes |= bits(near(g * kLanes, offset, c), bit_of_lane[g]);
       }
-      hits[count] = {static_cast<std::uint32_t>(c), lanes & asked};
-      count += (lanes & asked) != 0;
+      hits[count] = {static_cast<std::uint32_t>(c), lanes & used};
+      count += (lanes & used) != 0;
     });
     return count;
   }
