@@ -135,7 +135,7 @@ void check_copc(const io::Input& input) {
     points += node.node.points;
     if (node.node.points == 0 || node.node.points > 10'000) continue;  // correct, but slow
     try {
-      const auto bytes = input.bytes.subspan(node.place, node.bytes);
+      const auto bytes = input.bytes.subspan(node.offset, node.bytes);
       expect(io::decode_node(input, header, bytes, node).size() == node.node.points, "its points");
     } catch (const Error&) {
       continue;

@@ -30,15 +30,15 @@ struct Array {
 };
 
 CloudFile cloud_of_array(const Input& input, const Array& array, const std::string& format) {
-  constexpr std::size_t kSample = 100;  // rows that tell what the columns are (judgement)
+  constexpr std::size_t kSample = 100;  // rows that show what the columns are (judgement)
   const auto number = [&](std::size_t i, std::size_t k) {
     const std::size_t at = array.begin + i * array.row_step + k * array.column_step;
     return load_number(array.type, input.bytes.data() + at);
   };
   std::vector<FirstNumbers> first(std::min(array.rows, kSample));
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const std::size_t known = std::min(array.columns, first[i].size());
-    for (std::size_t k = 0; k < known; ++k) first[i][k] = number(i, k);
+    const std::size_t used = std::min(array.columns, first[i].size());
+    for (std::size_t k = 0; k < used; ++k) first[i][k] = number(i, k);
   }
   const Roles roles = guess_roles(array.columns, first);
   CloudBuilder builder(input, roles.columns(), ColorScale::guess, array.rows);

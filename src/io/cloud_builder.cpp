@@ -35,7 +35,7 @@ constexpr Triple kTriples[] = {
 };
 
 // Names of x, y and z that count where no columns are called so.
-constexpr Triple kPlaces[] = {
+constexpr Triple kFallbackTriples[] = {
     {Role::x, {"points:0", "points:1", "points:2"}},
     {Role::x, {"points_0", "points_1", "points_2"}},
     {Role::x, {"easting", "northing", "height"}},
@@ -63,9 +63,9 @@ std::optional<Role> role_of(std::string_view name) {
   return role_in(kTriples, name);
 }
 
-std::optional<Role> place_of(std::string_view name) {
-  const std::optional<Role> place = role_in(kPlaces, name);
-  return place ? place : role_of(name);
+std::optional<Role> fallback_role_of(std::string_view name) {
+  const std::optional<Role> role = role_in(kFallbackTriples, name);
+  return role ? role : role_of(name);
 }
 
 void Roles::add(std::optional<Role> role) {

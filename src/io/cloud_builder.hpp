@@ -38,7 +38,7 @@ struct Columns {
 [[nodiscard]] std::optional<Role> role_of(std::string_view name);
 
 /// The same where no columns are called x, y and z: easting, northing and height, Points:0 ...
-[[nodiscard]] std::optional<Role> place_of(std::string_view name);
+[[nodiscard]] std::optional<Role> fallback_role_of(std::string_view name);
 
 /// The roles of a file's columns, in their order.
 class Roles {
@@ -61,7 +61,7 @@ class Roles {
   std::array<bool, kRoleCount> has_{};
 };
 
-/// Coordinates beyond this many metres are no place on any survey, and their squares would leave
+/// Coordinates beyond this many metres occur in no survey, and their squares would leave
 /// the range of float; a point that has one is dropped like one that is not finite.
 inline constexpr double kLargestCoordinate = 1e12;
 
@@ -91,7 +91,7 @@ class CloudBuilder {
   CloudBuilder(const Input& input, const Columns& columns, ColorScale color_scale,
                std::size_t expected);
 
-  /// Says that rows are the pixels of an image. Before any is added.
+  /// Declares that rows are the pixels of an image. Before any is added.
   void organise(std::size_t width, std::size_t height);
 
   void add(const Row& row);
@@ -117,7 +117,7 @@ class CloudBuilder {
 };
 
 /// A normal made unit; zero where it is not finite or has no length. One that is unit to a few
-/// parts in a million stays as it is, bit for bit.
+/// millionths stays as it is, bit for bit.
 [[nodiscard]] Eigen::Vector3f unit_normal(const Eigen::Vector3d& normal);
 
 /// Colours brought to bytes; see ColorScale.
@@ -128,7 +128,7 @@ class CloudBuilder {
 /// mesh's spacing is one that is not below. A length and a spacing exclude each other.
 void check_options(const Input& input);
 
-/// @throws Error that says so when a file had points but none that can be used, or none at all.
+/// @throws Error when a file had points but none that can be used, or none at all.
 void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped);
 
 /// Multiplies all lengths of a cloud.

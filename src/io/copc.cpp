@@ -21,7 +21,7 @@ constexpr std::string_view kMakeAgain =
 // Offsets into the record "copc", and its bytes.
 constexpr std::size_t kHalfSize = 24;
 constexpr std::size_t kSpacing = 32;
-constexpr std::size_t kRootPlace = 40;
+constexpr std::size_t kRootOffset = 40;
 constexpr std::size_t kRootSize = 48;
 constexpr std::size_t kInfoSize = 160;
 
@@ -43,7 +43,7 @@ class CopcReader {
     const bool possible = std::isfinite(farthest) && copc_.half_size > 0 &&
                           std::isfinite(copc_.spacing) && copc_.spacing > 0;
     if (!possible) wrong(info_, "an octree without a finite size, center and spacing");
-    add_page(info_ + kRootPlace, load_as<std::uint64_t>(info + kRootPlace),
+    add_page(info_ + kRootOffset, load_as<std::uint64_t>(info + kRootOffset),
              load_as<std::uint64_t>(info + kRootSize));
     while (!pages_.empty()) read_page();
     check_nodes();
@@ -52,45 +52,45 @@ class CopcReader {
 
  private:
   struct Page {
-    std::size_t place = 0;
+    std::size_t offset = 0;
     std::size_t bytes = 0;
   };
 
-  // `at`: the byte that says where the page is.
-  void add_page(std::size_t at, std::uint64_t place, std::uint64_t bytes) {
+  // `at`: the byte that stores where the page is.
+  void add_page(std::size_t at, std::uint64_t offset, std::uint64_t bytes) {
     const std::size_t size = file_.size;
-    if (place > size || bytes > size - place || bytes % kEntrySize != 0) {
-      wrong(at, fmt::format("a page of {} bytes at byte {} of a file of {}", bytes, place, size));
+    if (offset > size || bytes > size - offset || bytes % kEntrySize != 0) {
+      wrong(at, fmt::format("a page of {} bytes at byte {} of a file of {}", bytes, offset, size));
     }
-    if (!known_pages_.insert(place).second) {
-      wrong(at, fmt::format("the page at byte {} is listed twice", place));
+    if (!known_pages_.insert(offset).second) {
+      wrong(at, fmt::format("the page at byte {} is listed twice", offset));
     }
     page_bytes_ += bytes;  // so pages that overlap cannot grow without end
     if (page_bytes_ > size) wrong(at, "more bytes in pages than in the file");
-    pages_.push_back({static_cast<std::size_t>(place), static_cast<std::size_t>(bytes)});
+    pages_.push_back({static_cast<std::size_t>(offset), static_cast<std::size_t>(bytes)});
   }
 
   void read_page() {
     const Page page = pages_.back();
     pages_.pop_back();
-    const Bytes entries = file_.read(page.place, page.bytes);
+    const Bytes entries = file_.read(page.offset, page.bytes);
     for (std::size_t offset = 0; offset < page.bytes; offset += kEntrySize) {
       const std::byte* entry = entries.span().data() + offset;
-      const std::size_t at = page.place + offset;
+      const std::size_t at = page.offset + offset;
       StoredNode node;
       node.node.level = load_as<std::int32_t>(entry);
       for (std::size_t k = 0; k < 3; ++k) {
         node.node.cell[k] = load_as<std::int32_t>(entry + 4 + 4 * k);
       }
-      const auto place = load_as<std::uint64_t>(entry + 16);
+      const auto begin = load_as<std::uint64_t>(entry + 16);
       const auto bytes = load_as<std::int32_t>(entry + 24);
       const auto points = load_as<std::int32_t>(entry + 28);
       if (bytes < 0 || points < -1) wrong(at, "a node of fewer than 0 bytes or points");
       node.bytes = static_cast<std::size_t>(bytes);
       if (points < 0) {
-        add_page(at, place, node.bytes);
+        add_page(at, begin, node.bytes);
       } else {
-        node.place = place;
+        node.offset = begin;
         node.node.points = static_cast<std::size_t>(points);
         add_node(at, node);
       }
@@ -106,10 +106,10 @@ class CopcReader {
             fmt::format("no cube of level {} is at {}, {}, {}", level, cell[0], cell[1], cell[2]));
     }
     const std::size_t size = file_.size;
-    const bool outside = node.place > size || node.bytes > size - node.place;
+    const bool outside = node.offset > size || node.bytes > size - node.offset;
     if (points > 0 && (outside || !laz::can_hold(header_, node.bytes, points))) {
       wrong(at, fmt::format("a node of {} points in {} bytes at byte {} of a file of {}", points,
-                            node.bytes, node.place, size));
+                            node.bytes, node.offset, size));
     }
     copc_.nodes.push_back(node);
   }
@@ -146,7 +146,7 @@ class CopcReader {
   const Input& head_;
   const LasHeader& header_;
   const Parts& file_;
-  std::size_t info_;  // place of the record "copc"
+  std::size_t info_;  // offset of the record "copc"
   Copc copc_;
   std::vector<Page> pages_;  // still to be read
   std::set<std::size_t> known_pages_;
@@ -161,7 +161,7 @@ std::optional<Copc> read_copc(const Input& head, const LasHeader& header, const 
     return std::nullopt;
   }
   (void)laz::read_chunk_size(head, header);  // throws for what is not read
-  return CopcReader(head, header, file, info->place).run();
+  return CopcReader(head, header, file, info->offset).run();
 }
 
 std::string name_of(const PointStore::Node& node) {
@@ -172,7 +172,7 @@ std::vector<LasPoint> decode_node(const Input& head, const LasHeader& header,
                                   std::span<const std::byte> bytes, const StoredNode& node) {
   std::vector<LasPoint> points(node.node.points);
   if (points.empty()) return points;
-  laz::require_whole(head, node.place, name_of(node.node),
+  laz::require_whole(head, node.offset, name_of(node.node),
                      laz::decode_points(header, bytes, points), points.size());
   return points;
 }

@@ -25,7 +25,7 @@ class CopcStore final : public PointStore {
     if (!copc) return;
     check_no_degrees(head_, header_);
     nodes_ = std::move(copc->nodes);
-    std::ranges::sort(nodes_, {}, &StoredNode::place);
+    std::ranges::sort(nodes_, {}, &StoredNode::offset);
     for (const StoredNode& each : nodes_) layout_.nodes.push_back(each.node);
     layout_.format = "COPC, " + header_.name() + std::string(stated_unit(head_, header_));
     layout_.lower = scale * (copc->center.array() - copc->half_size);
@@ -44,7 +44,7 @@ class CopcStore final : public PointStore {
     cloud.positions.reserve(points.size());
     if (has_intensities_) cloud.intensities.reserve(points.size());
     for (const LasPoint& point : points) {
-      const Eigen::Vector3d p = place(point);
+      const Eigen::Vector3d p = position(point);
       if (point.withheld || !is_usable(p)) continue;
       cloud.positions.emplace_back((p - layout_.origin).cast<float>());
       if (has_intensities_) cloud.intensities.push_back(point.intensity);
@@ -57,11 +57,11 @@ class CopcStore final : public PointStore {
   [[nodiscard]] std::vector<LasPoint> points_of(std::size_t node) const {
     const StoredNode& stored = nodes_[node];
     if (stored.node.points == 0) return {};
-    const Bytes bytes = file_.read(stored.place, stored.bytes, name_of(stored.node));
+    const Bytes bytes = file_.read(stored.offset, stored.bytes, name_of(stored.node));
     return decode_node(head_, header_, bytes.span(), stored);
   }
 
-  [[nodiscard]] Eigen::Vector3d place(const LasPoint& point) const {
+  [[nodiscard]] Eigen::Vector3d position(const LasPoint& point) const {
     const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
     return numbers.cwiseProduct(scale_) + offset_;
   }
@@ -69,7 +69,8 @@ class CopcStore final : public PointStore {
   void learn_from_sample() {
     if (layout_.points == 0) return;
     const std::vector<LasPoint> points = points_of(detail::coarsest_node(layout_));
-    layout_.origin = choose_origin(points.size(), [&](std::size_t i) { return place(points[i]); });
+    layout_.origin =
+        choose_origin(points.size(), [&](std::size_t i) { return position(points[i]); });
     for (const LasPoint& point : points) {
       has_intensities_ = has_intensities_ || point.intensity > 0;
       colors_.largest = std::max<double>(colors_.largest, std::ranges::max(point.color));
@@ -83,7 +84,7 @@ class CopcStore final : public PointStore {
   LasHeader header_;
   Eigen::Vector3d scale_;          // m
   Eigen::Vector3d offset_;         // m
-  std::vector<StoredNode> nodes_;  // by their places
+  std::vector<StoredNode> nodes_;  // by their offsets
   bool has_intensities_ = false;
   ColorRule colors_;  // 0: without
   Layout layout_;

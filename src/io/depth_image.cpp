@@ -133,7 +133,7 @@ bool looks_swapped(const DepthImage& image) {
       as_exchanged += step(exchanged(a), exchanged(b));
     }
   }
-  // Whole counts of 256 are coarse, and look smooth either way.
+  // Whole counts of 256 are coarse, and look smooth in either byte order.
   return steps >= kFewest && 2 * fine > steps && as_read > kRougher * as_exchanged;
 }
 

@@ -158,22 +158,22 @@ OpenFile::~OpenFile() {
   ::close(descriptor_);
 }
 
-Bytes OpenFile::read(std::size_t place, std::size_t size, std::string_view part) const {
+Bytes OpenFile::read(std::size_t offset, std::size_t size, std::string_view part) const {
   Bytes bytes(size);
   std::size_t done = 0;
   while (done < size) {
     const std::span<std::byte> rest = bytes.span().subspan(done);
     const ssize_t got =
-        ::pread(descriptor_, rest.data(), rest.size(), static_cast<off_t>(place + done));
+        ::pread(descriptor_, rest.data(), rest.size(), static_cast<off_t>(offset + done));
     if (got > 0) {
       done += static_cast<std::size_t>(got);
     } else if (got == 0) {
       throw Error(
           fmt::format("{}, byte {}: the file ends here{}{}, {} bytes too early. Copy it again.",
-                      name_, place + done, part.empty() ? "" : ", inside ", part, size - done));
+                      name_, offset + done, part.empty() ? "" : ", inside ", part, size - done));
     } else if (errno != EINTR) {
       fail_reading(
-          fmt::format("{}, byte {}{}{}", name_, place + done, part.empty() ? "" : ", ", part),
+          fmt::format("{}, byte {}{}{}", name_, offset + done, part.empty() ? "" : ", ", part),
           errno);
     }
   }
@@ -181,13 +181,14 @@ Bytes OpenFile::read(std::size_t place, std::size_t size, std::string_view part)
 }
 
 Parts parts_of(const OpenFile& file) {
-  return {file.size(), [&](std::size_t place, std::size_t size) { return file.read(place, size); }};
+  return {file.size(),
+          [&](std::size_t offset, std::size_t size) { return file.read(offset, size); }};
 }
 
 Parts parts_of(std::span<const std::byte> bytes) {
-  return {bytes.size(), [=](std::size_t place, std::size_t size) {
+  return {bytes.size(), [=](std::size_t offset, std::size_t size) {
             Bytes part(size);
-            std::ranges::copy(bytes.subspan(place, size), part.span().begin());
+            std::ranges::copy(bytes.subspan(offset, size), part.span().begin());
             return part;
           }};
 }
@@ -195,7 +196,7 @@ Parts parts_of(std::span<const std::byte> bytes) {
 namespace {
 
 constexpr std::size_t kAlwaysAllowed = std::size_t{64} << 20U, kLargestRatio = 250;
-constexpr int kGzipWindow = 15 + 16;  // zlib's way of saying "gzip header, largest window"
+constexpr int kGzipWindow = 15 + 16;  // zlib: gzip header, largest window
 
 // zlib's state, released whatever happens. A gzip member ends; the next one needs a reset.
 class Inflater {

@@ -37,7 +37,7 @@ class Bytes {
 /// @throws Error that names the path and the reason: absent, a folder, no permission, a device.
 [[nodiscard]] Bytes read_bytes(const std::filesystem::path& path);
 
-/// A file that is read in parts, by several threads at once.
+/// A file that is read piecewise, by several threads at once.
 class OpenFile {
  public:
   /// @throws Error as read_bytes() does; of standard input and pipes, too.
@@ -50,7 +50,7 @@ class OpenFile {
   [[nodiscard]] std::size_t size() const { return size_; }  ///< bytes, when it was opened
 
   /// @throws Error where the file ends before that, or reading fails: names the `part` of the file.
-  [[nodiscard]] Bytes read(std::size_t place, std::size_t size, std::string_view part = "") const;
+  [[nodiscard]] Bytes read(std::size_t offset, std::size_t size, std::string_view part = "") const;
 
  private:
   std::string name_;
@@ -58,10 +58,10 @@ class OpenFile {
   std::size_t size_ = 0;
 };
 
-/// Bytes that are read in parts, of a file or in memory.
+/// Bytes that are read piecewise, of a file or in memory.
 struct Parts {
   std::size_t size = 0;  ///< of all
-  std::function<Bytes(std::size_t place, std::size_t size)> read;
+  std::function<Bytes(std::size_t offset, std::size_t size)> read;
 };
 [[nodiscard]] Parts parts_of(const OpenFile& file);              ///< which outlives them
 [[nodiscard]] Parts parts_of(std::span<const std::byte> bytes);  ///< which outlive them

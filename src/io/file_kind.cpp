@@ -18,12 +18,12 @@ constexpr std::string_view kReadable =
     ".bin, "
     "SPZ, .splat, 16-bit depth PNG and PGM, optionally gzipped";
 
-struct Known {
+struct Signature {
   std::string_view start;
   FileKind kind;
 };
 
-constexpr Known kKnown[] = {
+constexpr Signature kSignatures[] = {
     {"ply\n", FileKind::ply},  {"ply\r", FileKind::ply},    {"ply ", FileKind::ply},
     {"LASF", FileKind::las},   {"ASTM-E57", FileKind::e57}, {"\x89PNG\r\n\x1a\n", FileKind::png},
     {"P5", FileKind::pgm},     {"NGSP", FileKind::spz},     {"\x1f\x8b", FileKind::gz},
@@ -96,7 +96,7 @@ std::string_view first_word(const Input& input) {
   return {};
 }
 
-// JSON that is named as glTF, or whose first words say so.
+// JSON that is named as glTF, or whose first words show it.
 bool is_gltf_json(const Input& input) {
   constexpr std::size_t kFirst = 4096;  // bytes in which "asset" is looked for (judgement)
   const std::string_view head = input.text().substr(0, kFirst);
@@ -112,7 +112,7 @@ FileKind text_kind(const Input& input, std::string_view word) {
   return is_ptx(input) ? FileKind::ptx : FileKind::xyz;
 }
 
-void refuse_known(const Input& input) {
+void refuse_unsupported(const Input& input) {
   if (is_utf16(input.text())) fail(input, "this is UTF-16 text", "Save it as UTF-8");
   if (extension(input.name) == ".toml") {
     fail(input, "this is a set-up file, not a point cloud",
@@ -152,12 +152,12 @@ FileKind kind_of(const Input& input) {
   const std::string ending = extension(input.name);
   if (ending == ".splat") return FileKind::splat;
   if (ending == ".bin" && !looks_like_text(input.text())) return FileKind::npy;
-  for (const Known& entry : kKnown) {
+  for (const Signature& entry : kSignatures) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
   if (is_stl(input)) return FileKind::stl;
   if (is_gltf_json(input)) return FileKind::gltf;
-  refuse_known(input);
+  refuse_unsupported(input);
   // The comment that begins a PCD may be missing, and its points may be no text.
   const std::string_view word = first_word(input);
   if (word == "VERSION" || word == "FIELDS" || word == "COLUMNS") return FileKind::pcd;

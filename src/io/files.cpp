@@ -73,7 +73,7 @@ Bytes unpack(const Input& input, const std::string& inside) {
   return gunzip(input);
 }
 
-// Makes the cloud as long as the caller says it is.
+// Makes the cloud as long as the caller states.
 void fit_length(const Input& input, CloudFile& file) {
   if (!input.options.length) return;
   constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)

@@ -44,7 +44,7 @@ struct PlyHeader {
 
 /// PLY: ascii, binary little and big endian; any order and type of properties. Points are the
 /// first element that has x, y and z. Kept of a point: its normal, colour and the first scalar
-/// whose name says intensity or quality. Faces are "vertex_indices" (or "vertex_index") of the
+/// whose name contains intensity or quality. Faces are "vertex_indices" (or "vertex_index") of the
 /// element "face"; other elements and lists are skipped.
 [[nodiscard]] CloudFile read_ply(const Input& input);
 
@@ -122,7 +122,7 @@ struct LasHeader {
 
 /// The contents of a variable length record: where they are in the file, and their bytes.
 struct LasRecord {
-  std::size_t place = 0;
+  std::size_t offset = 0;
   std::size_t size = 0;
 };
 
@@ -158,7 +158,7 @@ inline constexpr std::size_t kDecodingShare = 4;
 
 }  // namespace laz
 
-/// E57: the scans that hold points, or one that the name asks for ("house.e57#2"), in the file's
+/// E57: the scans that hold points, or one that the name selects ("house.e57#2"), in the file's
 /// frame. Points marked invalid are dropped; of several scans the columns are kept that all have.
 /// The viewpoint is kept of a single scan that a scanner made.
 [[nodiscard]] CloudFile read_e57(const Input& input);
@@ -171,10 +171,10 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// is skipped.
 [[nodiscard]] CloudFile read_obj(const Input& input);
 
-/// STL, as text or bytes: the faces; what it says of normals and colours is not used.
+/// STL, as text or bytes: the faces; its normals and colours are not used.
 [[nodiscard]] CloudFile read_stl(const Input& input);
 
-/// Is it an STL file? One of bytes has no mark, but the size that its count of triangles asks for.
+/// Is it an STL file? One of bytes has no mark, but the size that its count of triangles requires.
 [[nodiscard]] bool is_stl(const Input& input);
 
 /// glTF 2.0, as JSON or in one binary file (GLB): the triangles of its scene or, without any, its
@@ -188,7 +188,7 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// one whole number announce as many points each (PTS, scan by scan).
 ///
 /// A header line, or a comment, names the columns; easting, northing and height mean x, y and z
-/// where no columns are called so. Without names guess_roles() tells them, but for a first column
+/// where no columns are called so. Without names guess_roles() decides, but for a first column
 /// that counts the rows.
 /// @throws Error for columns of longitude and latitude, too.
 [[nodiscard]] CloudFile read_xyz(const Input& input);
@@ -201,7 +201,7 @@ inline constexpr std::size_t kDecodingShare = 4;
 /// Is it named as PTX, or do its first lines have the numbers of values that those of PTX have?
 [[nodiscard]] bool is_ptx(const Input& input);
 
-/// NumPy's .npy, an array of numbers in rows of x y z and what guess_roles() tells; or points of
+/// NumPy's .npy, an array of numbers in rows of x y z and what guess_roles() finds; or points of
 /// four floats without a header, as KITTI's scanner has them: x y z and an intensity.
 /// @throws Error for bytes that cannot be such.
 [[nodiscard]] CloudFile read_array(const Input& input);

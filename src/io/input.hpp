@@ -56,8 +56,8 @@ struct ScanName {
 };
 [[nodiscard]] ScanName split_scan(const std::string& name);
 
-/// Tells the caller's callback how far a read has come, about a hundred times in all, so that it
-/// costs a comparison a point.
+/// Reports to the caller's callback how far a read has come, about a hundred times in all, so that
+/// it costs a comparison a point.
 class Progress {
  public:
   /// `total`: whatever is counted (bytes, points). `options` must outlive this.
@@ -90,8 +90,8 @@ class Progress {
 enum class FileKind { ply, pcd, las, e57, obj, stl, gltf, xyz, ptx, npy, png, pgm, spz, splat, gz };
 
 /// Kind of the file: by its first bytes, for text also by its first words, and by the name last.
-/// @throws Error that says what to do about kinds that we know but do not read (xz, JPEG, JSON,
-///   a web page, ...) and about bytes that are nothing we know.
+/// @throws Error with the remedy for kinds that are recognised but not read (xz, JPEG, JSON,
+///   a web page, ...) and for bytes of no recognised kind.
 [[nodiscard]] FileKind kind_of(const Input& input);
 
 }  // namespace palpate::io

@@ -31,7 +31,7 @@ LasPoint las_point(const LasHeader& header, const std::byte* record) {
 
 namespace {
 
-// Does the header say that other things follow the points: waveforms, or more records?
+// Does the header declare that other things follow the points: waveforms, or more records?
 bool has_more_behind(const Input& input, const LasHeader& header) {
   constexpr std::size_t kWaveforms = 227;  // bytes into the header: where they begin, from 1.3 on
   constexpr std::size_t kRecords14 = 243;  // and how many records follow the points, from 1.4 on
@@ -73,7 +73,7 @@ class LasReader {
                               unused(points_behind(input_, header_)));
     file.declared = header_.points;
     file.cloud.origin =
-        choose_origin(header_.points, [&](std::size_t i) { return place(point_at_(i)); });
+        choose_origin(header_.points, [&](std::size_t i) { return position(point_at_(i)); });
     read_points(file.cloud);
     file.dropped = header_.points - file.cloud.size();
     check_not_empty(input_, file.cloud.size(), file.dropped);
@@ -81,7 +81,7 @@ class LasReader {
   }
 
  private:
-  Eigen::Vector3d place(const LasPoint& point) const {
+  Eigen::Vector3d position(const LasPoint& point) const {
     const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
     return numbers.cwiseProduct(scale_) + offset_;
   }
@@ -98,7 +98,7 @@ class LasReader {
     for (std::size_t i = 0; i < header_.points; ++i) {
       progress.at(before_ + i);
       const LasPoint point = point_at_(i);
-      const Eigen::Vector3d p = place(point);
+      const Eigen::Vector3d p = position(point);
       if (point.withheld || !is_usable(p)) continue;
       cloud.positions.emplace_back((p - cloud.origin).template cast<float>());
       cloud.intensities.push_back(point.intensity);

@@ -29,9 +29,9 @@ std::optional<unsigned> geo_key(const Input& input, const LasHeader& header, uns
   constexpr std::size_t kEntry = 8;  // bytes of the head and of each key: four numbers (format)
   const auto record = find_record(input, header, kProjection, kGeoKeys);
   if (!record) return {};
-  const std::byte* data = input.bytes.data() + record->place;
+  const std::byte* data = input.bytes.data() + record->offset;
   for (std::size_t at = kEntry; at + kEntry <= record->size; at += kEntry) {
-    const bool is_value = load_as<std::uint16_t>(data + at + 2) == 0;  // not a place elsewhere
+    const bool is_value = load_as<std::uint16_t>(data + at + 2) == 0;  // not an offset
     if (is_value && load_as<std::uint16_t>(data + at) == wanted) {
       return load_as<std::uint16_t>(data + at + 6);
     }
@@ -41,7 +41,7 @@ std::optional<unsigned> geo_key(const Input& input, const LasHeader& header, uns
 
 std::string_view wkt_of(const Input& input, const LasHeader& header) {
   const auto record = find_record(input, header, kProjection, kWkt);
-  return record ? input.text().substr(record->place, record->size) : std::string_view();
+  return record ? input.text().substr(record->offset, record->size) : std::string_view();
 }
 
 bool has(std::string_view text, std::string_view word) {

@@ -7,7 +7,7 @@
 
 namespace palpate::io {
 
-/// @throws Error for a LAS file that says that its coordinates are degrees, in which nothing has a
+/// @throws Error for a LAS file that declares its coordinates as degrees, in which nothing has a
 /// shape.
 void check_no_degrees(const Input& input, const LasHeader& header);
 

@@ -102,7 +102,7 @@ class LasHeaderParser {
     if (header_.minor_version < 4) return;
     const std::uint64_t count = load_as<std::uint64_t>(data_ + kCount14);
     if (count == 0) return;  // some writers of 1.4 fill in the old field alone
-    // More than memory addresses: too many for any file's bytes, which is told later.
+    // More than memory addresses: too many for any file's bytes, which is reported later.
     constexpr std::uint64_t kMost = std::numeric_limits<std::size_t>::max();
     header_.points = static_cast<std::size_t>(std::min(count, kMost));
   }

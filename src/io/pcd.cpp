@@ -77,13 +77,13 @@ class PcdReader {
 
   CloudBuilder read_ascii() {
     CloudBuilder result = builder((data_.size() + 1) / (2 * header_.fields.size()) + 1);
-    const std::vector<std::optional<std::size_t>> places = ascii_places();
+    const std::vector<std::optional<std::size_t>> slots = ascii_slots();
     Progress progress(input_.options, input_.bytes.size());
     TableRows rows(input_, header_.size);
     std::array<double, kRoleCount + 1> values{};
     Row row{};
     for (std::size_t i = 0; i < header_.points; ++i) {
-      if (!rows.next() || !rows.read(places, values)) fail_cut(i);
+      if (!rows.next() || !rows.read(slots, values)) fail_cut(i);
       std::copy_n(values.begin(), kRoleCount, row.begin());
       if (uses_.rgb) {
         set_packed_color(row, color_bits(header_.fields[*uses_.rgb].type, values[kRoleCount]));
@@ -96,18 +96,18 @@ class PcdReader {
   }
 
   // Where each number of a row of text goes; a packed colour goes behind the roles.
-  std::vector<std::optional<std::size_t>> ascii_places() const {
-    std::vector<std::optional<std::size_t>> places;
+  std::vector<std::optional<std::size_t>> ascii_slots() const {
+    std::vector<std::optional<std::size_t>> slots;
     for (std::size_t k = 0; header_.points > 0 && k < header_.fields.size(); ++k) {
       const std::size_t count = header_.fields[k].count;
-      if (count > data_.size() - places.size()) fail_cut(0);
-      places.resize(places.size() + count);
+      if (count > data_.size() - slots.size()) fail_cut(0);
+      slots.resize(slots.size() + count);
       if (count == 0) continue;
-      std::optional<std::size_t>& first = places[places.size() - count];
+      std::optional<std::size_t>& first = slots[slots.size() - count];
       if (const auto role = uses_.roles[k]) first = index_of(*role);
       if (uses_.rgb == k) first = kRoleCount;
     }
-    return places;
+    return slots;
   }
 
   CloudBuilder read_binary() {

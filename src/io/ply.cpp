@@ -35,7 +35,7 @@ bool has_faces(const PlyElement& element) {
 
 PlyTable table_of_faces(const PlyElement& element) {
   PlyTable table{.element = &element};
-  table.places.resize(element.properties.size());
+  table.slots.resize(element.properties.size());
   const auto list = std::ranges::find_if(element.properties, is_corner_list);
   table.list = static_cast<std::size_t>(list - element.properties.begin());
   return table;
@@ -58,7 +58,7 @@ void add_face(const Input& input, const PlyTable& table, std::size_t vertices, M
   mesh.close_face();
 }
 
-// Every other triangle of a strip goes round the other way. Those with a corner twice only lead on.
+// Every other triangle of a strip is reversed. Those with a corner twice only lead on.
 void add_strips(const Input& input, const PlyTable& table, std::size_t vertices, Mesh& mesh) {
   std::array<std::size_t, 2> last{};
   std::size_t length = 0;
@@ -83,7 +83,7 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
   CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
                        most_rows(input, header, points));
   Mesh mesh{.columns = columns.roles.columns(), .color_scale = columns.color_scale};
-  // In the file's order from the start: the face table's `take` refers to its place.
+  // In the file's order from the start: the face table's `take` refers to its index.
   const bool faces_first = faces && faces < &points;
   std::vector<PlyTable> tables(faces ? 2 : 1);
   PlyTable& vertex_table = tables[faces_first ? 1 : 0];

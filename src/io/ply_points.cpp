@@ -35,7 +35,7 @@ const PlyElement& points_of(const Input& input, const PlyHeader& header) {
 PlyTable table_of_points(const PlyElement& element, const Roles& roles) {
   PlyTable table{.element = &element, .row = std::vector<double>(kRoleCount, 0)};
   for (std::size_t k = 0; k < roles.size(); ++k) {
-    table.places.push_back(roles[k] ? std::optional(index_of(*roles[k])) : std::nullopt);
+    table.slots.push_back(roles[k] ? std::optional(index_of(*roles[k])) : std::nullopt);
   }
   return table;
 }

@@ -13,7 +13,7 @@
 namespace palpate::io {
 namespace {
 
-// The two ways to get the next number of an element; false at the end of the bytes.
+// Two variants that get the next number of an element; false at the end of the bytes.
 class AsciiCursor {
  public:
   AsciiCursor(const Input& input, std::size_t offset) : input_(input), scanner_(input, offset) {}
@@ -143,10 +143,10 @@ class PlyReader {
       double value = 0;
       if (property.list_count) {
         if (!(table.list == k ? read_list(property, table) : skip_list(property))) return false;
-      } else if (!table.places[k]) {
+      } else if (!table.slots[k]) {
         if (!cursor_.skip(property.type, 1)) return false;
       } else if (cursor_.next(property.type, value)) {
-        table.row[*table.places[k]] = value;
+        table.row[*table.slots[k]] = value;
       } else {
         return false;
       }
@@ -218,8 +218,8 @@ PlyTable table_of(const PlyElement& element, std::span<const std::string_view> n
   for (const PlyProperty& property : element.properties) {
     const auto found = std::ranges::find(names, property.name);
     const bool wanted = found != names.end() && !property.list_count;
-    table.places.push_back(wanted ? std::optional<std::size_t>(found - names.begin())
-                                  : std::nullopt);
+    table.slots.push_back(wanted ? std::optional<std::size_t>(found - names.begin())
+                                 : std::nullopt);
   }
   return table;
 }

@@ -17,7 +17,7 @@ namespace palpate::io {
 struct PlyTable {
   const PlyElement* element = nullptr;
   std::vector<std::optional<std::size_t>>
-      places{};               ///< of each property's value in `row`, if wanted
+      slots{};                ///< of each property's value in `row`, if wanted
   std::vector<double> row{};  ///< values as they are where the file has no such property
   std::function<void(std::span<const double>)> take{};  ///< gets each row in turn
   std::optional<std::size_t> list{};                    ///< the property whose lists are wanted

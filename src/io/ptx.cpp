@@ -17,8 +17,8 @@
 namespace palpate::io {
 namespace {
 
-// Values in the lines before a scan's points: columns, rows, the scanner's place and axes, and the
-// matrix that leads from its frame to the world.
+// Values in the lines before a scan's points: columns, rows, the scanner's position and axes, and
+// the matrix that leads from its frame to the world.
 constexpr std::array<std::size_t, 10> kPtxHead{1, 1, 3, 3, 3, 3, 4, 4, 4, 4};
 constexpr std::size_t kMatrixBegin = 6;  // lines before those of the matrix
 
@@ -75,10 +75,10 @@ class PtxReader {
     if (!there || !rows_.read(std::span(kInOrder).first(values_), values)) {
       fail_cut("the points that it declares", scan);
     }
-    const Eigen::RowVector4d place(values[0], values[1], values[2], 1);
+    const Eigen::RowVector4d local(values[0], values[1], values[2], 1);
     // A scanner writes zeros where nothing came back.
-    const bool seen = !place.head<3>().isZero(0);
-    const Eigen::RowVector4d world = place * matrix_;
+    const bool seen = !local.head<3>().isZero(0);
+    const Eigen::RowVector4d world = local * matrix_;
     Row row{};
     for (std::size_t k = 0; k < 3; ++k) {
       row[k] = seen ? world[static_cast<int>(k)] : std::numeric_limits<double>::quiet_NaN();
@@ -89,7 +89,7 @@ class PtxReader {
     progress_.at(rows_.offset());
   }
 
-  // The first point tells whether there are colours.
+  // The first point shows whether there are colours.
   void begin_points() {
     const bool colors = count_cells(rows_.line()) == kColored;
     values_ = colors ? kColored : kPlain;

@@ -12,7 +12,7 @@ namespace palpate::io {
 
 struct StoredNode {
   PointStore::Node node;
-  std::uint64_t place = 0;  ///< bytes from the start of the file, as that says it
+  std::uint64_t offset = 0;  ///< bytes from the start of the file, as that stores it
   std::uint64_t bytes = 0;
 };
 

@@ -91,8 +91,8 @@ class Builder {
       const double angle = i * kPi * (3 - std::sqrt(5.0));
       const double r = std::sqrt(1 - z * z);
       const Vector3d unit(r * std::cos(angle), r * std::sin(angle), z);
-      const Vector3d place = shape.center + shape.turn * a.cwiseProduct(unit);
-      if (!hidden(place)) add({place, (shape.turn * unit.cwiseQuotient(a)).normalized()});
+      const Vector3d position = shape.center + shape.turn * a.cwiseProduct(unit);
+      if (!hidden(position)) add({position, (shape.turn * unit.cwiseQuotient(a)).normalized()});
     }
   }
 
@@ -112,8 +112,8 @@ class Builder {
 
  private:
   void add(const Oriented& point) {
-    const Vector3d place = point.position + options_.noise * random_.normal() * point.normal;
-    cloud_.positions.push_back(place.cast<float>());
+    const Vector3d position = point.position + options_.noise * random_.normal() * point.normal;
+    cloud_.positions.push_back(position.cast<float>());
     cloud_.normals.push_back(point.normal.cast<float>().normalized());
   }
 
@@ -291,9 +291,9 @@ PointCloud synthetic_cloud(std::string_view name, const SyntheticOptions& option
   if (name == "table") return table(builder);
   if (name == "rabbit") return rabbit(builder);
   if (name == "room") return room(options);
-  std::string known;
-  for (const SyntheticName& each : kNames) known += fmt::format(" {}", each.name);
-  throw Error(fmt::format("unknown synthetic cloud '{}': choose one of{}", name, known));
+  std::string choices;
+  for (const SyntheticName& each : kNames) choices += fmt::format(" {}", each.name);
+  throw Error(fmt::format("unknown synthetic cloud '{}': choose one of{}", name, choices));
 }
 
 }  // namespace palpate

@@ -93,25 +93,25 @@ bool TableRows::next() {
   return false;
 }
 
-bool TableRows::read(std::span<const std::optional<std::size_t>> places,
+bool TableRows::read(std::span<const std::optional<std::size_t>> slots,
                      std::span<double> row) const {
   std::string_view rest = line_;
-  for (const std::optional<std::size_t>& place : places) {
+  for (const std::optional<std::size_t>& slot : slots) {
     const std::optional<std::string_view> cell = take_cell(rest, dialect_.separator);
     if (!cell && scanner_.at_end()) return false;
-    if (!cell) fail_at_row(input_, {begin_, places.size()}, dialect_);
-    if (!place) continue;
+    if (!cell) fail_at_row(input_, {begin_, slots.size()}, dialect_);
+    if (!slot) continue;
     const std::optional<double> number = parse_cell(*cell, dialect_.decimal);
-    if (!number && count_cells(line_, dialect_.separator) != places.size()) {
-      fail_at_row(input_, {begin_, places.size()}, dialect_);
+    if (!number && count_cells(line_, dialect_.separator) != slots.size()) {
+      fail_at_row(input_, {begin_, slots.size()}, dialect_);
     }
     if (!number) {
       fail_at_line(input_, begin_, fmt::format("\"{}\" is not a number", excerpt(*cell)),
                    "Correct this line, or export the file again");
     }
-    row[*place] = *number;
+    row[*slot] = *number;
   }
-  if (take_cell(rest, dialect_.separator)) fail_at_row(input_, {begin_, places.size()}, dialect_);
+  if (take_cell(rest, dialect_.separator)) fail_at_row(input_, {begin_, slots.size()}, dialect_);
   return true;
 }
 
@@ -144,7 +144,7 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
   if (begin > 0 && colon != std::string_view::npos) line.remove_prefix(colon + 2);
   for (const std::string_view separator : kSeparators) {
     ColumnNames plain;
-    ColumnNames places;
+    ColumnNames fallback;
     std::string_view rest = line;
     while (plain.roles.size() <= kMostTextColumns) {
       const auto cell = take_cell(rest, separator);
@@ -152,11 +152,11 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
       if (separator == " " && (cell->starts_with('[') || cell->starts_with('('))) continue;  // unit
       const std::string name = bare_name(*cell);
       plain.roles.add(role_of(name));
-      places.roles.add(place_of(name));
-      const auto place = places.roles[places.roles.size() - 1];
-      places.degrees = places.degrees || (name.starts_with("lat") && place == Role::y);
+      fallback.roles.add(fallback_role_of(name));
+      const auto role = fallback.roles[fallback.roles.size() - 1];
+      fallback.degrees = fallback.degrees || (name.starts_with("lat") && role == Role::y);
     }
-    const ColumnNames& names = plain.roles.has_point() ? plain : places;
+    const ColumnNames& names = plain.roles.has_point() ? plain : fallback;
     if (!names.roles.has_point() || (begin > 0 && is_prose(names.roles))) continue;
     if (columns == 0 || names.roles.size() == columns) return names;
   }

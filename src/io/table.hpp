@@ -20,7 +20,7 @@ struct Dialect {
   std::string_view separator = " ";
   char decimal = '.';  ///< or a comma
   bool comments = false;
-  std::string_view declarer = "the header declares";  ///< what tells the number of cells
+  std::string_view declarer = "the header declares";  ///< what sets the number of cells
 };
 
 /// Takes the next cell off a line, without blanks and double quotes around it; nothing at the end
@@ -45,10 +45,10 @@ class TableRows {
   /// On to the next row; false at the end of the text.
   bool next();
 
-  /// Reads the row: the k-th cell to row[places[k]], where it has a place.
+  /// Reads the row: the k-th cell to row[slots[k]], where it has a slot.
   /// @return false where the text ends before the row is complete.
   /// @throws Error for a line with another number of cells, and for a cell that is no number.
-  [[nodiscard]] bool read(std::span<const std::optional<std::size_t>> places,
+  [[nodiscard]] bool read(std::span<const std::optional<std::size_t>> slots,
                           std::span<double> row) const;
 
   [[nodiscard]] std::string_view line() const { return line_; }
@@ -81,7 +81,7 @@ struct ColumnNames {
 /// The first numbers of a row: all that guess_roles() looks at.
 using FirstNumbers = std::array<double, 9>;
 
-/// What the columns of a table without names hold, told by their number and some of its rows: 3
+/// What the columns of a table without names hold, judged by their number and some of its rows: 3
 /// are x y z; 4 and an intensity; 6 and a normal if the last three have unit length in most rows,
 /// else a colour; 7 an intensity and a colour; 9 a normal and a colour, in the order in which unit
 /// length is found. Of any other number the first three are used.

@@ -67,7 +67,7 @@ std::from_chars_result number_at_start(std::string_view text, Number& value) {
   }
 }
 
-// from_chars says only "out of range"; the sign of the exponent tells which way.
+// from_chars reports only "out of range"; the sign of the exponent shows which end.
 double out_of_range_value(std::string_view token) {
   const bool tiny = token.find("e-") != std::string_view::npos ||
                     token.find("E-") != std::string_view::npos || token.find("0.") == 0;
@@ -76,7 +76,7 @@ double out_of_range_value(std::string_view token) {
                               : std::numeric_limits<double>::infinity();
 }
 
-// How Microsoft's older runtimes write what is not finite, with zeros up to the digits asked for.
+// How Microsoft's older runtimes write what is not finite, with zeros up to the requested digits.
 bool is_not_finite(std::string_view token) {
   if (token.starts_with('-')) token.remove_prefix(1);
   token = token.substr(0, token.find_last_not_of('0') + 1);

@@ -115,7 +115,7 @@ class TextScanner {
 /// The lines from `offset` on that hold values.
 [[nodiscard]] std::size_t rows_from(const Input& input, std::size_t offset);
 
-/// What a file's format says of so many rows or records behind the last declared one: nothing of
+/// What a file's format reports of so many rows or records behind the last declared one: nothing of
 /// none.
 [[nodiscard]] std::string unused(std::size_t count);
 

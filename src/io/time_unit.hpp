@@ -14,7 +14,7 @@ struct TimeUnit {
   double per_second;
 };
 
-/// What a time since 1970 counts, told by its size: of the years from 1973 to 5138 one in seconds
+/// What a time since 1970 counts, judged by its size: of the years from 1973 to 5138 one in seconds
 /// has up to 11 digits, and one in smaller units more. What has more than 20 is no time.
 [[nodiscard]] constexpr TimeUnit unit_of_time(double time) {
   if (time > 1e20) return {"seconds", 1};

@@ -79,7 +79,7 @@ class Reader {
       take_line(line);
     }
     if (stream.bad()) fail("could not be read completely");
-    if (places_.empty()) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
+    if (slots_.empty()) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
     if (rows_.empty()) fail("has no rows: give at least one step");
     return std::move(rows_);
   }
@@ -101,7 +101,7 @@ class Reader {
     }
     const std::string_view text = io::trim(line);
     if (text.empty() || text.front() == '#') return;
-    if (places_.empty()) {
+    if (slots_.empty()) {
       separator_ = separator_of(text);
       take_columns(split(text, separator_));
     } else {
@@ -113,7 +113,7 @@ class Reader {
     for (std::size_t wanted = 0; wanted < (options_.forces ? kColumns.size() : kNeeded); ++wanted) {
       const auto found = std::ranges::find(names, kColumns[wanted]);
       if (found != names.end()) {
-        places_.push_back(static_cast<std::size_t>(found - names.begin()));
+        slots_.push_back(static_cast<std::size_t>(found - names.begin()));
         continue;
       }
       if (wanted >= kNeeded) break;
@@ -121,7 +121,7 @@ class Reader {
                        kColumns[wanted], named() ? "the list of columns" : "the header line",
                        fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
     }
-    if (places_.size() < kColumns.size()) places_.resize(kNeeded);
+    if (slots_.size() < kColumns.size()) slots_.resize(kNeeded);
   }
 
   void row(const std::vector<std::string_view>& cells) {
@@ -130,7 +130,7 @@ class Reader {
                        options_.columns.size()));
     }
     std::array<double, kColumns.size()> values{};
-    for (std::size_t i = 0; i < places_.size(); ++i) values[i] = value(cells, i);
+    for (std::size_t i = 0; i < slots_.size(); ++i) values[i] = value(cells, i);
     if (const auto wrong = io::not_in_seconds(values[0])) {
       fail(fmt::format("{}. {}.", wrong->what, wrong->remedy));
     }
@@ -141,19 +141,19 @@ class Reader {
     TrajectoryRow& added = rows_.emplace_back();
     added.time = values[0];
     added.position = {values[1], values[2], values[3]};
-    if (places_.size() > kNeeded) added.force = {values[4], values[5], values[6]};
+    if (slots_.size() > kNeeded) added.force = {values[4], values[5], values[6]};
   }
 
   double value(const std::vector<std::string_view>& cells, std::size_t column) {
-    const std::size_t place = places_[column];
-    if (place >= cells.size()) {
+    const std::size_t slot = slots_[column];
+    if (slot >= cells.size()) {
       fail(fmt::format("the row ends before column '{}'; a row of this file has at least {} values",
-                       kColumns[column], place + 1));
+                       kColumns[column], slot + 1));
     }
-    const std::optional<double> found = number(cells[place]);
+    const std::optional<double> found = number(cells[slot]);
     if (!found) {
       fail(fmt::format("'{}' in column '{}' is not a finite number: correct or remove the row",
-                       cells[place].substr(0, 40), kColumns[column]));
+                       cells[slot].substr(0, 40), kColumns[column]));
     }
     return *found;
   }
@@ -163,7 +163,7 @@ class Reader {
   const TrajectoryOptions& options_;
   std::string_view separator_ = ",";
   std::vector<std::size_t>
-      places_;  // of kColumns, in a row; without those of a force if it has none
+      slots_;  // of kColumns, in a row; without those of a force if it has none
   Trajectory rows_;
 };
 

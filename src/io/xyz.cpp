@@ -20,7 +20,7 @@ namespace {
 struct TextTable {
   Dialect dialect{};
   Roles roles{};
-  std::vector<std::optional<std::size_t>> places{};  // of each column's value in a Row
+  std::vector<std::optional<std::size_t>> slots{};  // of each column's value in a Row
   bool named = false;
   bool degrees = false;
   bool counted = false;  // the first column counts the rows
@@ -49,15 +49,15 @@ class XyzReader {
     if (fitting_ == 0) refuse();
     TableRows rows(input_, begin_, table_.dialect);
     // A row is about as long as the first one; a column takes two characters at least.
-    const std::size_t least = std::max(2 * table_.places.size(), sample_[0].size() / 2);
+    const std::size_t least = std::max(2 * table_.slots.size(), sample_[0].size() / 2);
     CloudBuilder builder(input_, table_.roles.columns(), ColorScale::guess,
                          (input_.bytes.size() - begin_) / least + 1);
     Progress progress(input_.options, input_.bytes.size());
     Row row{};
     while (rows.next()) {
       if (scans_ && begins_scan(rows)) continue;
-      if (!rows.read(table_.places, row)) {
-        fail_at_row(input_, {rows.begin(), table_.places.size()}, table_.dialect);
+      if (!rows.read(table_.slots, row)) {
+        fail_at_row(input_, {rows.begin(), table_.slots.size()}, table_.dialect);
       }
       if (table_.degrees) to_metres(rows, row);
       builder.add(row);
@@ -91,7 +91,7 @@ class XyzReader {
   }
 
   void take_sample() {
-    constexpr std::size_t kSample = 100;  // rows that tell what a table is (judgement)
+    constexpr std::size_t kSample = 100;  // rows that show what a table is (judgement)
     TableRows rows(input_, begin_, {.comments = true});
     while (sample_.size() < kSample && rows.next()) {
       const bool count = parse_count(trim(rows.line())).has_value();
@@ -119,9 +119,9 @@ class XyzReader {
       guess(table, columns);
     }
     if (!table.roles.has_point()) return;
-    table.places.resize(columns);
+    table.slots.resize(columns);
     for (std::size_t k = 0; k < table.roles.size(); ++k) {
-      if (table.roles[k]) table.places[k] = index_of(*table.roles[k]);
+      if (table.roles[k]) table.slots[k] = index_of(*table.roles[k]);
     }
     const auto odd =
         std::ranges::find_if_not(sample_, [&](std::string_view line) { return fits(line, table); });
@@ -144,9 +144,9 @@ class XyzReader {
   }
 
   static bool fits(std::string_view line, const TextTable& table) {
-    for (const auto& place : table.places) {
+    for (const auto& slot : table.slots) {
       const auto cell = take_cell(line, table.dialect.separator);
-      if (!cell || (place && !parse_cell(*cell, table.dialect.decimal))) return false;
+      if (!cell || (slot && !parse_cell(*cell, table.dialect.decimal))) return false;
       // Commas may be in numbers, too: no whole number begins with a zero.
       const bool zero = cell->size() > 1 && cell->starts_with('0') && parse_count(*cell);
       if (zero && table.dialect.separator == ",") return false;
@@ -154,8 +154,8 @@ class XyzReader {
     return !take_cell(line, table.dialect.separator);
   }
 
-  // Tells the roles of columns without names. All but the last one have to hold something, or tabs
-  // that line columns up would make empty ones.
+  // Decides the roles of columns without names. All but the last one have to hold something, or
+  // tabs that line columns up would make empty ones.
   void guess(TextTable& table, std::size_t columns) const {
     table.counted = columns > 3 && first_counts(table.dialect);
     if (table.counted) table.roles.add(std::nullopt);
@@ -193,7 +193,7 @@ class XyzReader {
     return count >= kFewestRows;
   }
 
-  // Says why not even the first row is one.
+  // Reports why not even the first row is one.
   [[noreturn]] void refuse() const {
     const std::string_view line = sample_[0];
     const auto* separator = std::ranges::find_if(

@@ -20,7 +20,7 @@ std::string described(const io::Copc& copc) {
                                  upper.x(), upper.y(), upper.z(), copc.spacing);
   for (const io::StoredNode& node : copc.nodes) {
     const auto& [x, y, z] = node.node.cell;
-    text += fmt::format("{} {} {} {} {} {} {}\n", node.node.level, x, y, z, node.place, node.bytes,
+    text += fmt::format("{} {} {} {} {} {} {}\n", node.node.level, x, y, z, node.offset, node.bytes,
                         node.node.points);
   }
   return text;
@@ -43,7 +43,7 @@ class CopcPeer : public test::PeerTest {
     const std::byte* record = std::as_bytes(std::span(records)).data();
     for (const io::StoredNode& node : copc->nodes) {
       const std::vector<io::LasPoint> points =
-          io::decode_node(input, header, input.bytes.subspan(node.place, node.bytes), node);
+          io::decode_node(input, header, input.bytes.subspan(node.offset, node.bytes), node);
       ASSERT_EQ(points.size(), node.node.points);
       for (const io::LasPoint& point : points) {
         const io::LasPoint theirs = io::las_point(header, record);

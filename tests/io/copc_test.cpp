@@ -44,11 +44,11 @@ void expect_all_points(const std::string& bytes, const io::Copc& copc) {
   const auto all = io::laz::read_points(input, header);
   std::size_t points = 0;
   for (const io::laz::Chunk& chunk : io::laz::read_chunk_table(input, header)) {
-    const auto node = std::ranges::find(copc.nodes, chunk.place, &io::StoredNode::place);
+    const auto node = std::ranges::find(copc.nodes, chunk.place, &io::StoredNode::offset);
     ASSERT_NE(node, copc.nodes.end());
     EXPECT_EQ(node->bytes, chunk.bytes);
     const std::vector<io::LasPoint> own =
-        io::decode_node(input, header, input.bytes.subspan(node->place, node->bytes), *node);
+        io::decode_node(input, header, input.bytes.subspan(node->offset, node->bytes), *node);
     ASSERT_EQ(own.size(), chunk.points);
     for (std::size_t i = 0; i < own.size(); ++i) {
       ASSERT_EQ(own[i].number, all[chunk.first + i].number);
@@ -135,11 +135,11 @@ TEST(Copc, NamesTheNodeThatIsDamaged) {
   const io::Input input = input_of(bytes, options);
   try {
     (void)io::decode_node(input, io::read_las_header(input),
-                          input.bytes.subspan(node.place, node.bytes), node);
+                          input.bytes.subspan(node.offset, node.bytes), node);
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("byte " + std::to_string(node.place) + ": node 1-0-1-1 ends"));
+                HasSubstr("byte " + std::to_string(node.offset) + ": node 1-0-1-1 ends"));
   }
 }
 

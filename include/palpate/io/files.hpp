@@ -47,7 +47,7 @@ struct MeshFacts {
   double spacing = 0;          ///< m, of points sampled from the faces; 0: the vertices are felt
 };
 
-/// A cloud and what its file said of itself.
+/// A cloud and what its file stated about itself.
 struct CloudFile {
   PointCloud cloud;
   std::string format;        ///< such as "PLY, binary little endian"
@@ -72,8 +72,8 @@ struct CloudFile {
 ///
 /// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
 /// a round point near the median of the cloud.
-/// @throws Error that names the file, the place in it (byte or line) and a remedy: also for a file
-///   that is cut, holds no usable point, or announces more than its bytes can hold.
+/// @throws Error that names the file, the position in it (byte or line) and a remedy: also for a
+///   file that is cut, holds no usable point, or announces more than its bytes can hold.
 [[nodiscard]] CloudFile read_cloud_file(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
@@ -101,7 +101,7 @@ struct WriteOptions {
 
 /// Writes positions in metres, and normals, colours and intensities where the cloud has them, as
 /// PLY or PCD by the path's extension. Coordinates are float where the origin is zero, else double.
-/// PCD keeps the viewpoint, PLY has no place for one. What was under `path` is replaced only once
+/// PCD keeps the viewpoint, PLY cannot store one. What was under `path` is replaced only once
 /// the new file is complete.
 /// @throws Error for another extension, columns of unequal length, or a path that cannot be
 /// written.
@@ -117,9 +117,9 @@ struct ReadDepthOptions {
 };
 
 /// Reads a 16-bit grey PNG or PGM (gzip around it too) as the image of a depth camera, whatever its
-/// name says. Stamp, pose and colours stay for the caller to set.
+/// name is. Stamp, pose and colours stay for the caller to set.
 /// @throws Error that names the file and a remedy: for anything else, for images that are cut or of
-///   another size than options.camera says, and for such whose bytes look swapped and
+///   another size than options.camera has, and for such whose bytes look swapped and
 ///   options.swapped is not set.
 [[nodiscard]] DepthFrame read_depth_frame(const std::filesystem::path& path,
                                           const ReadDepthOptions& options);

@@ -71,7 +71,7 @@ class E57XmlParser {
     const pugi::xml_node points = node.child("points");
     if (!points) return result;
     result.points = count(points, "recordCount");
-    result.section = E57Pages::place_of(count(points, "fileOffset"));
+    result.section = E57Pages::logical_of(count(points, "fileOffset"));
     for (const pugi::xml_node& column : points.child("prototype").children()) {
       if (column.type() == pugi::node_element) result.fields.push_back(field(column));
     }
@@ -150,14 +150,14 @@ class E57XmlParser {
   const Input& input_;
 };
 
-// Reads the XML's bytes, whose place and size the header names (ASTM E2807).
+// Reads the XML's bytes, whose offset and size the header states (ASTM E2807).
 std::vector<std::byte> read_e57_xml(const Input& input, E57Pages& pages) {
   constexpr std::uint64_t kHeaderSize = 48;
   constexpr std::uint64_t kLongest = std::uint64_t{64}
                                      << 20U;  // bytes; a scan takes 4 kB (judgement)
   std::vector<std::byte> bytes;
   pages.read(0, kHeaderSize, bytes, "its header");
-  const auto at = [&](std::size_t place) { return load_as<std::uint64_t>(bytes.data() + place); };
+  const auto at = [&](std::size_t offset) { return load_as<std::uint64_t>(bytes.data() + offset); };
   if (const auto version = load_as<std::uint32_t>(bytes.data() + 8); version != 1) {
     fail_at_byte(input, 8, fmt::format("E57 version {} is not supported", version), kExportAgain);
   }
@@ -173,7 +173,7 @@ std::vector<std::byte> read_e57_xml(const Input& input, E57Pages& pages) {
   if (size > kLongest) {
     fail_at_byte(input, 32, fmt::format("XML of {} bytes, more than 64 MiB", size), kExportAgain);
   }
-  pages.read(E57Pages::place_of(at(24)), size, bytes, "its XML");
+  pages.read(E57Pages::logical_of(at(24)), size, bytes, "its XML");
   return bytes;
 }
 

@@ -1,4 +1,4 @@
-// Declares what the XML of an E57 file says of its scans.
+// Declares what the XML of an E57 file contains about its scans.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,7 +29,7 @@ struct E57Field {
 struct E57Scan {
   std::string name;
   Eigen::Isometry3d T_file_scan = Eigen::Isometry3d::Identity();  ///< in the file's units
-  std::uint64_t section = 0;                                      ///< place of its points
+  std::uint64_t section = 0;                                      ///< logical offset of its points
   std::uint64_t points = 0;
   std::vector<E57Field> fields;
 };
@@ -39,7 +39,7 @@ struct E57Contents {
   std::size_t images = 0;
 };
 
-/// @throws Error that says what is wrong with the header or the XML.
+/// @throws Error that describes what is wrong with the header or the XML.
 [[nodiscard]] E57Contents read_e57_contents(const Input& input, E57Pages& pages);
 
 }  // namespace palpate::io

@@ -1,4 +1,4 @@
-// Reads E57 files: the scans of laser scanners, put where the file's poses say.
+// Reads E57 files: the scans of laser scanners, placed by the file's poses.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ bool seen_from_origin(const E57Scan& scan) {
          !scan.T_file_scan.linear().isIdentity();
 }
 
-// Says which columns of a scan become points, and how.
+// Decides which columns of a scan become points, and how.
 struct E57Layout {
   Roles roles;  // one a field
   bool spherical = false;
@@ -142,7 +142,7 @@ class E57ScanReader {
   E57Packets packets_;
 };
 
-// The scan that the input's name asks for, otherwise all that hold points.
+// The scan that the input's name selects, otherwise all that hold points.
 std::vector<const E57Scan*> choose_scans(const Input& input, const E57Contents& contents) {
   std::vector<const E57Scan*> chosen;
   const std::size_t count = contents.scans.size();

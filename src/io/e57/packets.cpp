@@ -41,9 +41,9 @@ void E57Column::take(std::size_t count) {
   }
 }
 
-std::uint64_t E57Column::bits_at(std::uint64_t place) const {
-  const std::byte* at = bytes_.data() + place / 8;
-  const std::uint64_t skipped = place % 8;
+std::uint64_t E57Column::bits_at(std::uint64_t bit) const {
+  const std::byte* at = bytes_.data() + bit / 8;
+  const std::uint64_t skipped = bit % 8;
   std::uint64_t bits = load_as<std::uint64_t>(at) >> skipped;
   if (skipped > 0) bits |= std::to_integer<std::uint64_t>(at[8]) << (64 - skipped);
   return field_.bits == 64 ? bits : bits & ((std::uint64_t{1} << field_.bits) - 1);
@@ -70,9 +70,9 @@ E57Packets::E57Packets(const Input& input, E57Pages& pages, const E57Scan& scan,
         fmt::format("no section of points, or one that leaves the file ({} bytes)", length),
         kFetchAgain);
   }
-  place_ = E57Pages::place_of(load_as<std::uint64_t>(packet_.data() + 16));
+  offset_ = E57Pages::logical_of(load_as<std::uint64_t>(packet_.data() + 16));
   end_ = scan.section + length;
-  if (place_ < scan.section || place_ > end_) {
+  if (offset_ < scan.section || offset_ > end_) {
     fail_at_byte(input, E57Pages::byte_of(scan.section + 16), "points outside their section",
                  kFetchAgain);
   }
@@ -112,24 +112,24 @@ std::size_t E57Packets::take() {
 
 void E57Packets::read_packet() {
   constexpr std::uint64_t kPacketHeader = 4;  // bytes: type, flags, length - 1 (format)
-  if (place_ + kPacketHeader > end_) {
-    fail_at_byte(input_, E57Pages::byte_of(place_),
+  if (offset_ + kPacketHeader > end_) {
+    fail_at_byte(input_, E57Pages::byte_of(offset_),
                  fmt::format("a scan ends after {} of {} points", done_, scan_.points),
                  kFetchAgain);
   }
-  pages_.read(place_, kPacketHeader, packet_, "a packet of points");
+  pages_.read(offset_, kPacketHeader, packet_, "a packet of points");
   const auto type = std::to_integer<int>(packet_[0]);
   const std::uint64_t length = load_as<std::uint16_t>(packet_.data() + 2) + std::uint64_t{1};
-  if (type > 2 || length < kPacketHeader || length > end_ - place_) {  // index, data, empty
-    fail_at_byte(input_, E57Pages::byte_of(place_),
+  if (type > 2 || length < kPacketHeader || length > end_ - offset_) {  // index, data, empty
+    fail_at_byte(input_, E57Pages::byte_of(offset_),
                  fmt::format("a packet of type {} and {} bytes cannot be here", type, length),
                  kFetchAgain);
   }
   if (type == 1) {
-    pages_.read(place_, length, packet_, "a packet of points");
+    pages_.read(offset_, length, packet_, "a packet of points");
     split_packet();
   }
-  place_ += length;
+  offset_ += length;
 }
 
 // A data packet: the number of columns, the bytes of each, and these bytes one column after
@@ -149,7 +149,7 @@ void E57Packets::split_packet() {
     at += size;
   }
   if (whole) return;
-  fail_at_byte(input_, E57Pages::byte_of(place_),
+  fail_at_byte(input_, E57Pages::byte_of(offset_),
                fmt::format("a packet of {} bytes does not hold what it announces", packet.size()),
                kFetchAgain);
 }

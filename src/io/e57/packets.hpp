@@ -28,7 +28,7 @@ class E57Column {
   [[nodiscard]] const std::vector<double>& values() const { return values_; }
 
  private:
-  [[nodiscard]] std::uint64_t bits_at(std::uint64_t place) const;
+  [[nodiscard]] std::uint64_t bits_at(std::uint64_t bit) const;
   [[nodiscard]] double number(std::uint64_t bits) const;
 
   E57Field field_;
@@ -44,7 +44,7 @@ class E57Packets {
   /// `used`: the scan's fields that are wanted, by rising index. All arguments must outlive this
   /// but `used`. The time for a point or a packet depends on these fields alone, not on how many
   /// the XML lists.
-  /// @throws Error unless there are points of that size where the scan says.
+  /// @throws Error unless there are points of that size where the scan declares them.
   E57Packets(const Input& input, E57Pages& pages, const E57Scan& scan,
              const std::vector<std::size_t>& used);
 
@@ -71,7 +71,7 @@ class E57Packets {
   const E57Scan& scan_;
   std::vector<std::size_t> used_;   // fields
   std::vector<E57Column> columns_;  // one for each used field
-  std::uint64_t place_ = 0;         // of the next packet
+  std::uint64_t offset_ = 0;        // of the next packet
   std::uint64_t end_ = 0;           // of the section
   std::uint64_t done_ = 0;          // points
   std::vector<std::byte> packet_;

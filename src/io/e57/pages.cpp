@@ -48,27 +48,27 @@ std::uint64_t E57Pages::size() const {
   return input_.bytes.size() / kE57Page * kE57PageData;
 }
 
-std::uint64_t E57Pages::place_of(std::uint64_t physical) {
+std::uint64_t E57Pages::logical_of(std::uint64_t physical) {
   return physical / kE57Page * kE57PageData + physical % kE57Page;
 }
 
-std::uint64_t E57Pages::byte_of(std::uint64_t place) {
-  return place / kE57PageData * kE57Page + place % kE57PageData;
+std::uint64_t E57Pages::byte_of(std::uint64_t logical) {
+  return logical / kE57PageData * kE57Page + logical % kE57PageData;
 }
 
-void E57Pages::read(std::uint64_t place, std::uint64_t size, std::vector<std::byte>& into,
+void E57Pages::read(std::uint64_t logical, std::uint64_t size, std::vector<std::byte>& into,
                     std::string_view what) {
-  if (place > this->size() || size > this->size() - place) {
+  if (logical > this->size() || size > this->size() - logical) {
     fail_at_byte(input_, input_.bytes.size(), fmt::format("the file ends before {} does", what),
                  "Download or copy it again");
   }
   into.resize(size);
   for (std::uint64_t done = 0; done < size;) {
-    const std::uint64_t page = (place + done) / kE57PageData;
-    const std::uint64_t left_in_page = kE57PageData - (place + done) % kE57PageData;
+    const std::uint64_t page = (logical + done) / kE57PageData;
+    const std::uint64_t left_in_page = kE57PageData - (logical + done) % kE57PageData;
     const std::uint64_t count = std::min(size - done, left_in_page);
     if (page != checked_) check(page);
-    std::memcpy(into.data() + done, input_.bytes.data() + byte_of(place + done), count);
+    std::memcpy(into.data() + done, input_.bytes.data() + byte_of(logical + done), count);
     done += count;
   }
 }

@@ -17,8 +17,8 @@ inline constexpr std::uint64_t kE57PageData = kE57Page - 4;  // bytes of data in
 /// The CRC-32C of a page's data.
 [[nodiscard]] std::uint32_t e57_crc(const std::byte* data);
 
-/// Reads the pages of an E57 file: 1020 bytes of data each and their CRC-32C, big endian. Places
-/// count data bytes alone ("logical" in ASTM E2807); those that the file itself names count the
+/// Reads the pages of an E57 file: 1020 bytes of data each and their CRC-32C, big endian. Offsets
+/// count data bytes alone ("logical" in ASTM E2807); those that the file itself stores count the
 /// CRCs, too ("physical").
 class E57Pages {
  public:
@@ -28,15 +28,15 @@ class E57Pages {
   /// Data bytes of all whole pages.
   [[nodiscard]] std::uint64_t size() const;
 
-  /// The place that the file calls `physical`.
-  [[nodiscard]] static std::uint64_t place_of(std::uint64_t physical);
-  /// The byte of the file at `place`, for messages.
-  [[nodiscard]] static std::uint64_t byte_of(std::uint64_t place);
+  /// The logical offset of the `physical` one that the file stores.
+  [[nodiscard]] static std::uint64_t logical_of(std::uint64_t physical);
+  /// The byte of the file at `logical`, for messages.
+  [[nodiscard]] static std::uint64_t byte_of(std::uint64_t logical);
 
-  /// Makes `into` the `size` bytes from `place` on, and checks the pages that hold them. `what`
+  /// Makes `into` the `size` bytes from `logical` on, and checks the pages that hold them. `what`
   /// names them for messages.
   /// @throws Error when they lie beyond the end of the file, or a page's CRC is wrong.
-  void read(std::uint64_t place, std::uint64_t size, std::vector<std::byte>& into,
+  void read(std::uint64_t logical, std::uint64_t size, std::vector<std::byte>& into,
             std::string_view what);
 
  private:

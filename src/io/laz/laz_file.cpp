@@ -1,4 +1,4 @@
-// Reads what leads to the chunks of a LAZ file: the record that says how they are compressed, and
+// Reads what leads to the chunks of a LAZ file: the record that states how they are compressed, and
 // the table of their sizes.
 #include "io/laz/laz_file.hpp"
 
@@ -87,10 +87,10 @@ bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points) {
   return bytes >= header.record_size && points <= largest_unpacked(bytes) / sizeof(LasPoint);
 }
 
-void require_whole(const Input& input, std::size_t place, std::string_view what,
+void require_whole(const Input& input, std::size_t offset, std::string_view what,
                    std::size_t decoded, std::size_t points) {
   if (decoded == points) return;
-  fail_at_byte(input, place,
+  fail_at_byte(input, offset,
                fmt::format("{} ends inside its point {} of {}", what, decoded + 1, points),
                "Download the file again; \"lasinfo\" or \"pdal info\" tests it");
 }
@@ -105,19 +105,19 @@ std::optional<std::size_t> read_chunk_size(const Input& input, const LasHeader& 
   if (!found || found->size < kItems) {
     fail(input, "marked as LAZ, but it does not say how it is compressed", kIncomplete);
   }
-  const std::byte* data = input.bytes.data() + found->place;
+  const std::byte* data = input.bytes.data() + found->offset;
   const int compressor = load_as<std::uint16_t>(data + kCompressor);
   if (compressor != (header.extended() ? 3 : 2)) {
-    fail_at_byte(input, found->place + kCompressor,
+    fail_at_byte(input, found->offset + kCompressor,
                  fmt::format("point format {} compressed by compressor {} of LASzip, which is not "
                              "read",
                              header.format, compressor),
                  kRewrite);
   }
-  check_items(input, header, found->place, found->size);
+  check_items(input, header, found->offset, found->size);
   const auto points = load_as<std::uint32_t>(data + kChunkPoints);
   if (points == 0) {
-    fail_at_byte(input, found->place + kChunkPoints, "chunks of 0 points", kIncomplete);
+    fail_at_byte(input, found->offset + kChunkPoints, "chunks of 0 points", kIncomplete);
   }
   if (points == kVaries) return std::nullopt;
   return points;
@@ -147,22 +147,22 @@ class ChunkTableReader {
   }
 
  private:
-  // Bytes before the first chunk: behind the place of the table.
+  // Bytes before the first chunk: behind the offset of the table.
   [[nodiscard]] std::size_t begin() const { return header_.points_offset + 8; }
 
   void find_table() {
     if (begin() > size_) fail_at_byte(head_, size_, "the file ends before its points", kIncomplete);
-    auto place = load_as<std::uint64_t>(file_.read(header_.points_offset, 8).span().data());
-    if (place == ~std::uint64_t{0}) {  // a writer that could not go back to write it
-      place = load_as<std::uint64_t>(file_.read(size_ - 8, 8).span().data());
+    auto offset = load_as<std::uint64_t>(file_.read(header_.points_offset, 8).span().data());
+    if (offset == ~std::uint64_t{0}) {  // a writer that could not go back to write it
+      offset = load_as<std::uint64_t>(file_.read(size_ - 8, 8).span().data());
     }
-    if (place < begin() || place > size_ - 8) {
+    if (offset < begin() || offset > size_ - 8) {
       fail_at_byte(
           head_, header_.points_offset,
-          fmt::format("the chunk table at byte {} is outside the file of {} bytes", place, size_),
+          fmt::format("the chunk table at byte {} is outside the file of {} bytes", offset, size_),
           kIncomplete);
     }
-    table_ = place;
+    table_ = offset;
   }
 
   void read_sizes(std::size_t count) {
@@ -217,7 +217,7 @@ class ChunkTableReader {
   std::size_t size_;  // of the file, bytes
   const Parts& file_;
   std::optional<std::size_t> chunk_size_;  // points
-  std::size_t table_ = 0;                  // its place, bytes
+  std::size_t table_ = 0;                  // its offset, bytes
   std::vector<Chunk> chunks_;
 };
 

@@ -20,7 +20,7 @@ struct Chunk {
   std::size_t points = 0;
 };
 
-/// Points of each chunk but the last; nothing: the chunk table says it of each.
+/// Points of each chunk but the last; nothing: the chunk table stores it of each.
 /// @throws Error for compressors, versions and point formats that are not read.
 [[nodiscard]] std::optional<std::size_t> read_chunk_size(const Input& input,
                                                          const LasHeader& header);
@@ -29,7 +29,7 @@ struct Chunk {
 [[nodiscard]] bool can_hold(const LasHeader& header, std::size_t bytes, std::size_t points);
 
 /// Refuses a chunk, which `what` names, of whose points fewer than `points` could be decoded.
-void require_whole(const Input& input, std::size_t place, std::string_view what,
+void require_whole(const Input& input, std::size_t offset, std::string_view what,
                    std::size_t decoded, std::size_t points);
 
 /// The chunks in the order of their points, all of them within the file. There are no more points

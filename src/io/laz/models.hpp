@@ -47,14 +47,14 @@ class SymbolModel {
   /// Share of the symbols before `symbol`, in steps of 2^-15.
   [[nodiscard]] std::uint32_t before(std::uint32_t symbol) const { return before_[symbol]; }
 
-  /// The symbol within whose share `place` lies, 0 - 2^15.
-  [[nodiscard]] std::uint32_t at(std::uint32_t place) const {
-    const std::uint32_t slot = std::min(place, kWhole - 1) >> slot_shift_;
+  /// The symbol within whose share `value` lies, 0 - 2^15.
+  [[nodiscard]] std::uint32_t at(std::uint32_t value) const {
+    const std::uint32_t slot = std::min(value, kWhole - 1) >> slot_shift_;
     std::uint32_t symbol = slots_[slot];
     std::uint32_t end = slots_[slot + 1] + 1U;
     while (symbol + 1 < end) {
       const std::uint32_t middle = (symbol + end) / 2;
-      (before_[middle] <= place ? symbol : end) = middle;
+      (before_[middle] <= value ? symbol : end) = middle;
     }
     return symbol;
   }
@@ -94,8 +94,8 @@ class RunningMedian {
  public:
   [[nodiscard]] std::int32_t value() const { return sorted_[2]; }
 
-  /// Puts a number in the place of the largest or of the smallest one; which of them changes when
-  /// the number lies on that side.
+  /// Replaces the largest or the smallest one by a number; which of them changes when the
+  /// number lies on that side.
   void add(std::int32_t number) {
     auto& v = sorted_;
     std::size_t k = 0;

@@ -8,7 +8,7 @@
 
 namespace palpate::io::laz {
 
-/// Decodes the points of one chunk, whose length says how many there are. `chunk` holds a whole
+/// Decodes the points of one chunk, whose length sets how many there are. `chunk` holds a whole
 /// record at least, unless there are no points.
 /// @return the points before the bytes ended, or stopped making sense: all of them for a chunk
 ///   that is whole.

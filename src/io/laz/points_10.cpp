@@ -22,7 +22,7 @@ constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnClass8{
      {8, 9, 10, 11, 12, 13, 14, 15}}};
 
 // Passes over GPS times. There are four interleaved sequences of them, and each codes its next time
-// in one way until it has a step that is not 0, and in another way from then on. How long that step
+// by one model until it has a step that is not 0, and by another from then on. How long that step
 // is, and the times, are of no use here.
 class TimeModel {
  public:

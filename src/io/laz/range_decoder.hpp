@@ -89,7 +89,7 @@ class RangeDecoder {
   std::size_t missing_ = 0;  // bytes read behind the end
 };
 
-/// Numbers of so many bits, each near a prediction. Contexts tell how far off it is likely to be.
+/// Numbers of so many bits, each near a prediction. Contexts model how far off it is likely to be.
 class NumberModel {
  public:
   NumberModel(unsigned bits, std::size_t contexts)

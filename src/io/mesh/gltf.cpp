@@ -204,7 +204,7 @@ class GltfReader {
   void add_faces(std::size_t mode) {
     const std::size_t count = corner_count();
     if (count < 3) return;
-    if (place_.size() < positions_.count) place_.resize(positions_.count, kNowhere);
+    if (index_.size() < positions_.count) index_.resize(positions_.count, kNowhere);
     const bool mirrored = transform_.linear().determinant() < 0;
     for (std::size_t i = 0; i + 2 < count; i += mode == kTriangles ? 3 : 1) {
       const bool swapped = mirrored != (mode == kStrip && i % 2 == 1);
@@ -215,8 +215,8 @@ class GltfReader {
         fail_too_large(fmt::format("{} million triangles", kMostCorners / 3'000'000));
       }
     }
-    for (const std::size_t vertex : placed_) place_[vertex] = kNowhere;
-    placed_.clear();
+    for (const std::size_t vertex : indexed_) index_[vertex] = kNowhere;
+    indexed_.clear();
   }
 
   [[noreturn]] void fail_too_large(std::string_view most) const {
@@ -254,12 +254,12 @@ class GltfReader {
   // The vertex in the mesh of a corner of the primitive.
   std::size_t corner(std::size_t i) {
     const std::size_t vertex = index_of_corner(i);
-    if (place_[vertex] == kNowhere) {
-      place_[vertex] = static_cast<std::uint32_t>(mesh_.vertices.size());
-      placed_.push_back(vertex);
+    if (index_[vertex] == kNowhere) {
+      index_[vertex] = static_cast<std::uint32_t>(mesh_.vertices.size());
+      indexed_.push_back(vertex);
       mesh_.vertices.push_back(vertex_at(vertex));
     }
-    return place_[vertex];
+    return index_[vertex];
   }
 
   MeshVertex vertex_at(std::size_t i) const {
@@ -285,8 +285,8 @@ class GltfReader {
   std::optional<GltfNumbers> colors_;
   std::array<double, 4> factor_{};
   Affine3d transform_;
-  std::vector<std::uint32_t> place_;  // of its vertices in the mesh; between primitives kNowhere
-  std::vector<std::size_t> placed_;   // those that have one
+  std::vector<std::uint32_t> index_;  // of its vertices in the mesh; between primitives kNowhere
+  std::vector<std::size_t> indexed_;  // those that have one
   std::size_t primitives_ = 0;        // of all instances so far
 };
 

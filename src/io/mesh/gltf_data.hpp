@@ -35,7 +35,7 @@ struct GltfNumbers {
 /// The JSON of a glTF or GLB file, and the data that it names.
 class GltfFile {
  public:
-  /// @throws Error for what is no glTF 2.0, and for extensions that are needed and not known.
+  /// @throws Error for what is no glTF 2.0, and for extensions that are required and not supported.
   explicit GltfFile(const Input& input);
 
   /// The list `name` of the file, such as "meshes"; empty without one.
@@ -65,7 +65,7 @@ class GltfFile {
   nlohmann::json root_;
   nlohmann::json no_list_ = nlohmann::json::array();
   std::span<const std::byte> chunk_;                                // of a GLB file
-  std::vector<std::optional<std::span<const std::byte>>> buffers_;  // once they were asked for
+  std::vector<std::optional<std::span<const std::byte>>> buffers_;  // once they were requested
   std::deque<Bytes> embedded_;                                      // of data URIs
   std::map<std::filesystem::path, Bytes> files_;                    // by their true paths
 };

@@ -27,7 +27,7 @@ constexpr double kMostAsked = 20'000'000;  // samples where the caller gives the
 constexpr double kFinestAsked = 1e5;       // spacings along the diagonal, then (judgement)
 // Spacings along the diagonal that thin rods may have; bounds the rows of a face (judgement)
 constexpr double kFinest = 2000;
-// Samples that faces may get, over those that their areas ask for, or over kMostSamples. Areas
+// Samples that faces may get, over those that their areas require, or over kMostSamples. Areas
 // foretell them unless faces cross themselves or many narrow ones lie on one line (judgement)
 constexpr double kSurplus = 4;
 // Comparisons to find and sort the crossings of lines and edges: so many, and some for each corner.
@@ -35,7 +35,7 @@ constexpr double kSurplus = 4;
 constexpr double kMostWork = 5e8;
 constexpr double kWorkPerCorner = 64;
 
-// The vertices of a mesh say all that its faces do where they lie as those of a scan: in spacings
+// The vertices of a mesh hold all that its faces do where they lie as those of a scan: in spacings
 // of vertices the diagonal is at least this long (judgement) ...
 constexpr double kScanned = 64;
 // ... and no edge is longer than this, in those spacings or in those of samples: R grows with the
@@ -78,16 +78,16 @@ std::uint64_t mixed(std::uint64_t x) {
   return Random(x).bits();
 }
 
-// A number that faces with the same corners share, whichever comes first and whichever way round.
+// A number that faces with the same corners share, in any order and either orientation.
 std::uint64_t key_of(const Mesh& mesh, std::span<const std::uint32_t> face) {
   std::uint64_t sum = face.size();
   for (const std::uint32_t corner : face) {
-    std::uint64_t place = 0;
+    std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double x = mesh.vertices[corner][axis] + 0.0;  // -0 becomes 0
-      place = mixed(place ^ std::bit_cast<std::uint64_t>(x));
+      hash = mixed(hash ^ std::bit_cast<std::uint64_t>(x));
     }
-    sum += place;
+    sum += hash;
   }
   return sum;
 }
@@ -144,27 +144,27 @@ bool vertices_suffice(const Mesh& mesh, const FaceSurvey& survey) {
   });
 }
 
-// The spacing asked for, or a fitting one. In the file's unit.
+// The requested spacing, or a fitting one. In the file's unit.
 double choose_spacing(const Input& input, const FaceSurvey& survey) {
-  const double asked = input.options.mesh_spacing / input.options.scale;
-  if (!(asked > 0)) return fitting_spacing(survey);
+  const double requested = input.options.mesh_spacing / input.options.scale;
+  if (!(requested > 0)) return fitting_spacing(survey);
   const double least =
       std::max(std::sqrt(survey.samples / kMostAsked), survey.box.size().norm() / kFinestAsked);
-  if (asked >= least) return asked;
+  if (requested >= least) return requested;
   fail(input,
        fmt::format("faces sampled every {:.3g} m would be more than {} million points",
                    input.options.mesh_spacing, kMostAsked / 1e6),
        fmt::format("Give a spacing of {:.2g} m or more", 1.1 * input.options.scale * least));
 }
 
-void check_bounds(const Input& input, const FaceSampler& sampler, double most, double asked) {
+void check_bounds(const Input& input, const FaceSampler& sampler, double most, double requested) {
   constexpr const char* kSimplify =
       "Simplify the mesh, or export the part that is to be felt alone";
   if (sampler.points_spent()) {
     fail(input,
          fmt::format("its faces cross themselves or lie on one another: more than {:.0f} million "
                      "points where their areas ask for {:.2g}",
-                     most / 1e6, asked),
+                     most / 1e6, requested),
          kSimplify);
   }
   if (sampler.work_spent()) fail(input, "its faces have too many corners in a row", kSimplify);
@@ -177,15 +177,15 @@ CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::
   columns.normals = true;
   const Lattice lattice(survey.box, spacing);
   CloudBuilder builder(input, columns, mesh.color_scale, lattice.room(survey.samples));
-  const double asked = survey.samples / (spacing * spacing);
-  const double most = kSurplus * std::max(asked, kMostSamples);
+  const double requested = survey.samples / (spacing * spacing);
+  const double most = kSurplus * std::max(requested, kMostSamples);
   FaceSampler sampler(
       mesh, lattice, builder,
       {most, kMostWork + kWorkPerCorner * static_cast<double>(mesh.corners.size())});
   Progress progress(input.options, survey.used.size());
   for (std::size_t i = 0; i < survey.used.size(); ++i) {
     sampler.add(mesh.face(survey.used[i]));
-    check_bounds(input, sampler, most, asked);
+    check_bounds(input, sampler, most, requested);
     progress.at(i);
   }
   if (builder.size() == 0) {
@@ -229,8 +229,8 @@ CloudFile sample_faces(const Input& input, const Mesh& mesh, std::string format)
 CloudFile choose_cloud(const Input& input, const Mesh& mesh, CloudFile vertices) {
   if (mesh.ends.empty()) return vertices;
   FaceSurvey survey = survey_faces(input, mesh);
-  const bool asked = input.options.mesh_spacing > 0;
-  if (!survey.used.empty() && (asked || !vertices_suffice(mesh, survey))) {
+  const bool requested = input.options.mesh_spacing > 0;
+  if (!survey.used.empty() && (requested || !vertices_suffice(mesh, survey))) {
     return sample(input, mesh, survey, std::move(vertices.format));
   }
   vertices.mesh = survey.facts;

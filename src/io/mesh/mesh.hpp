@@ -39,8 +39,8 @@ struct Mesh {
 /// @throws Error when no face has an area.
 [[nodiscard]] CloudFile sample_faces(const Input& input, const Mesh& mesh, std::string format);
 
-/// The cloud of a file that has points of its own: `vertices`, unless there are faces that say
-/// more.
+/// The cloud of a file that has points of its own: `vertices`, unless there are faces that
+/// describe more.
 [[nodiscard]] CloudFile choose_cloud(const Input& input, const Mesh& mesh, CloudFile vertices);
 
 }  // namespace palpate::io

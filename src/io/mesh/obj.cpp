@@ -154,7 +154,7 @@ class ObjReader {
   Mesh mesh_{.color_scale = ColorScale::guess};
 };
 
-// The text with blanks in place of each backslash before a line's end, and of that end, but not in
+// The text with blanks instead of each backslash before a line's end, and of that end, but not in
 // comments; nothing if there is none.
 std::string join_lines(std::string_view text) {
   std::string joined;

@@ -83,8 +83,8 @@ class StlTextReader {
   void take(const std::string& word, std::string_view line) {
     if (word == "vertex") return add_vertex(line);
     if (word == "endloop") return close_loop();
-    const auto known = {"", "solid", "facet", "outer", "endfacet", "endsolid", "color"};
-    if (std::ranges::find(known, word) != known.end()) return;
+    const auto ignored = {"", "solid", "facet", "outer", "endfacet", "endsolid", "color"};
+    if (std::ranges::find(ignored, word) != ignored.end()) return;
     wrong(fmt::format("unknown word \"{}\" in an STL file", excerpt(word)));
   }
 

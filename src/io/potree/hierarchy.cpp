@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::string_view kCopyAgain = "Copy it again, or make the store again";
 
-// Bytes of a node, offsets of its parts, and the types of nodes: the format's. Inner nodes and
-// leaves, 0 and 1, differ in nothing that their mask of children does not say.
+// Bytes of a node, offsets of its fields, and the types of nodes: the format's. Inner nodes and
+// leaves, 0 and 1, differ only in what their mask of children shows.
 constexpr std::size_t kNodeSize = 22;
 constexpr std::size_t kMask = 1;
 constexpr std::size_t kPoints = 2;
-constexpr std::size_t kPlace = 6;
+constexpr std::size_t kOffset = 6;
 constexpr std::size_t kBytes = 14;
 constexpr std::uint8_t kProxy = 2;
 
@@ -44,7 +44,7 @@ class HierarchyReader {
   std::vector<StoredNode> run(std::size_t first_chunk) {
     add_chunk(0, {}, 0, first_chunk);
     while (!chunks_.empty()) read_chunk();
-    std::ranges::stable_sort(nodes_, {}, &StoredNode::place);
+    std::ranges::stable_sort(nodes_, {}, &StoredNode::offset);
     return std::move(nodes_);
   }
 
@@ -52,24 +52,24 @@ class HierarchyReader {
   // Nodes below one, breadth first, the first of them that one itself.
   struct Chunk {
     PointStore::Node top;
-    std::size_t place = 0;
+    std::size_t offset = 0;
     std::size_t bytes = 0;
   };
 
-  // `at`: the byte that says where the chunk is.
-  void add_chunk(std::size_t at, const PointStore::Node& top, std::uint64_t place,
+  // `at`: the byte that stores where the chunk is.
+  void add_chunk(std::size_t at, const PointStore::Node& top, std::uint64_t offset,
                  std::uint64_t bytes) {
     const std::size_t size = input_.bytes.size();
-    if (place > size || bytes > size - place || bytes == 0 || bytes % kNodeSize != 0) {
+    if (offset > size || bytes > size - offset || bytes == 0 || bytes % kNodeSize != 0) {
       wrong(at, fmt::format("the nodes below {} are {} bytes at byte {} of a file of {}",
-                            name_of(top), bytes, place, size));
+                            name_of(top), bytes, offset, size));
     }
-    if (!known_chunks_.insert(place).second) {
-      wrong(at, fmt::format("the nodes at byte {} are below two nodes", place));
+    if (!known_chunks_.insert(offset).second) {
+      wrong(at, fmt::format("the nodes at byte {} are below two nodes", offset));
     }
     chunk_bytes_ += bytes;  // so chunks that overlap cannot grow without end
     if (chunk_bytes_ > size) wrong(at, "more bytes in chunks of nodes than in the file");
-    chunks_.push_back({top, static_cast<std::size_t>(place), static_cast<std::size_t>(bytes)});
+    chunks_.push_back({top, static_cast<std::size_t>(offset), static_cast<std::size_t>(bytes)});
   }
 
   void read_chunk() {
@@ -78,25 +78,25 @@ class HierarchyReader {
     std::vector<PointStore::Node> nodes{chunk.top};  // in their order, children behind all others
     const std::size_t count = chunk.bytes / kNodeSize;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at = chunk.place + i * kNodeSize;
+      const std::size_t at = chunk.offset + i * kNodeSize;
       if (i == nodes.size()) wrong(at, "a node that is no other's child");
       const std::byte* bytes = input_.bytes.data() + at;
       const auto type = load_as<std::uint8_t>(bytes);
       if (type > kProxy) wrong(at, fmt::format("a node of type {}", type));
-      const auto place = load_as<std::uint64_t>(bytes + kPlace);
+      const auto offset = load_as<std::uint64_t>(bytes + kOffset);
       const auto size = load_as<std::uint64_t>(bytes + kBytes);
       if (type == kProxy) {
         if (i == 0) wrong(at, "a proxy that stands for itself");
-        add_chunk(at, nodes[i], place, size);
+        add_chunk(at, nodes[i], offset, size);
         continue;
       }
       add_children(at, load_as<std::uint8_t>(bytes + kMask), nodes[i], nodes);
       nodes[i].points = size == 0 ? 0 : load_as<std::uint32_t>(bytes + kPoints);
-      nodes_.push_back({nodes[i], place, size});
+      nodes_.push_back({nodes[i], offset, size});
     }
     if (nodes.size() == count) return;
-    wrong(chunk.place + chunk.bytes, fmt::format("the nodes below {} end before {}",
-                                                 name_of(chunk.top), name_of(nodes[count])));
+    wrong(chunk.offset + chunk.bytes, fmt::format("the nodes below {} end before {}",
+                                                  name_of(chunk.top), name_of(nodes[count])));
   }
 
   void add_children(std::size_t at, std::uint8_t mask, const PointStore::Node& parent,
@@ -147,12 +147,12 @@ void check_nodes(const std::vector<StoredNode>& nodes, const Metadata& metadata,
   for (const StoredNode& each : nodes) {
     if (each.bytes == 0) continue;
     const std::string name = name_of(each.node);
-    if (each.place > size || each.bytes > size - each.place) {
+    if (each.offset > size || each.bytes > size - each.offset) {
       wrong(fmt::format("ends inside node {}: its {} bytes begin at byte {}, the file has {}", name,
-                        each.bytes, each.place, size));
+                        each.bytes, each.offset, size));
     }
-    if (each.place < end) wrong(fmt::format("node {} begins inside another one", name));
-    end = each.place + each.bytes;
+    if (each.offset < end) wrong(fmt::format("node {} begins inside another one", name));
+    end = each.offset + each.bytes;
     points += each.node.points;
     const std::size_t most = metadata.packed ? largest_unpacked(each.bytes) : each.bytes;
     if (std::uint64_t{each.node.points} * metadata.point_size > most) {
@@ -160,7 +160,7 @@ void check_nodes(const std::vector<StoredNode>& nodes, const Metadata& metadata,
                         each.node.points, each.bytes));
     }
   }
-  // PotreeConverter drops points at one place, but announces them.
+  // PotreeConverter drops points of equal position, but announces them.
   if (points > metadata.points) {
     wrong(fmt::format("the nodes have {} points, but metadata.json announces {}", points,
                       metadata.points));

@@ -87,7 +87,7 @@ class MetadataReader {
   void read_attributes() {
     const json* list = find("attributes");
     const std::size_t count = list != nullptr && list->is_array() ? list->size() : 0;
-    bool placed = false;
+    bool has_position = false;
     for (std::size_t i = 0; i < count; ++i) {
       const std::string path = fmt::format("attributes/{}/", i);
       const std::string name = lower_case(text(path + "name"));
@@ -97,7 +97,7 @@ class MetadataReader {
         expect(name, attribute, numbers, NumberType::int32);
         if (metadata_.packed) attribute.bytes = kPackedPosition;
         metadata_.position = attribute;
-        placed = true;
+        has_position = true;
       } else if (name == "rgb") {
         expect(name, attribute, numbers, NumberType::uint16);
         if (metadata_.packed) attribute.bytes = kPackedColor;
@@ -108,15 +108,15 @@ class MetadataReader {
       metadata_.point_size += attribute.bytes;
       if (metadata_.point_size > kLargestPoint) wrong("a point takes more than 65535 bytes");
     }
-    if (!placed) wrong("no attribute \"position\"");
+    if (!has_position) wrong("no attribute \"position\"");
   }
 
   Attribute read_attribute(const std::string& path, std::size_t numbers) const {
     const std::string type = text(path + "type");
-    const auto known = std::ranges::find(kTypes, type);
-    if (known == kTypes.end()) wrong(fmt::format("type \"{}\" is not known", excerpt(type)));
+    const auto found_type = std::ranges::find(kTypes, type);
+    if (found_type == kTypes.end()) wrong(fmt::format("type \"{}\" is not known", excerpt(type)));
     Attribute attribute;
-    attribute.type = static_cast<NumberType>(known - kTypes.begin());
+    attribute.type = static_cast<NumberType>(found_type - kTypes.begin());
     attribute.offset = metadata_.point_size;
     attribute.bytes = whole(path + "size");
     if (numbers > kLargestPoint || attribute.bytes != numbers * size_of(attribute.type)) {
@@ -130,7 +130,7 @@ class MetadataReader {
     return attribute;
   }
 
-  // Positions and colours are three numbers of one type; the packing knows no other.
+  // Positions and colours are three numbers of one type; the packing supports no other.
   void expect(const std::string& name, const Attribute& attribute, std::size_t numbers,
               NumberType type) const {
     if (attribute.type == type && numbers == 3) return;

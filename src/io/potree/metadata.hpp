@@ -1,4 +1,4 @@
-// Declares what the metadata.json of a Potree store says.
+// Declares what the metadata.json of a Potree store contains.
 #pragma once
 
 #include <Eigen/Core>

@@ -33,7 +33,7 @@ Bytes unpack(const StoredNode& node, std::span<const std::byte> bytes, std::size
     throw Error(
         fmt::format("{}, byte {}: node {} is damaged: its brotli data do not unpack to {} "
                     "bytes. Copy it again.",
-                    octree, node.place, name_of(node.node), size));
+                    octree, node.offset, name_of(node.node), size));
   }
   return unpacked;
 }

@@ -13,7 +13,7 @@
 namespace palpate::io::potree {
 
 struct RawPoint {
-  std::array<std::int32_t, 3> number{};  ///< place = number * scale + offset
+  std::array<std::int32_t, 3> number{};  ///< position = number * scale + offset
   std::array<std::uint16_t, 3> color{};  ///< red, green, blue
   float intensity = 0;                   ///< finite
 };

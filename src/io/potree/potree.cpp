@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 constexpr const char* kMetadata = "metadata.json";
 constexpr double kSmallestEdge = 1e-9;  // m: atoms are larger (judgement)
 
-// The largest number of an attribute: of all points, where the metadata says it, else of a sample.
+// The largest number of an attribute: of all points, where the metadata states it, else of a
+// sample.
 template <class NumberOf>
 double largest_of(const std::optional<potree::Attribute>& attribute,
                   const std::vector<potree::RawPoint>& sample, const NumberOf& number_of) {
@@ -86,7 +87,7 @@ class PotreeStore final : public PointStore {
   [[nodiscard]] std::vector<potree::RawPoint> raw(std::size_t node) const {
     const StoredNode& stored = nodes_[node];
     const Bytes bytes =
-        octree_.read(stored.place, stored.bytes, "node " + potree::name_of(stored.node));
+        octree_.read(stored.offset, stored.bytes, "node " + potree::name_of(stored.node));
     return decode(metadata_, stored, bytes.span(), octree_.name());
   }
 

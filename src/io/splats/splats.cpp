@@ -69,12 +69,12 @@ void move_origin(PointCloud& cloud) {
 CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   constexpr double kReading = 0.3;  // of the time, about (measured)
   ReadOptions part = input.options;
-  const auto& tell = input.options.progress;
-  if (tell) part.progress = [&](double done) { tell(kReading * done); };
+  const auto& report = input.options.progress;
+  if (report) part.progress = [&](double done) { report(kReading * done); };
   SplatFile rows = read({input.bytes, input.name, part});
   check_not_empty(input, rows.splats.size(), rows.dropped);
   SplatShell shell = shell_of(rows.splats, [&](double done) {
-    if (tell) tell(kReading + (1 - kReading) * done);
+    if (report) report(kReading + (1 - kReading) * done);
   });
   if (shell.cloud.empty()) {
     fail(input, "no splat of this scene is opaque, or all are too small a group for a surface",
