@@ -13,7 +13,7 @@ struct Packed {
 };
 [[nodiscard]] Packed pack(View records);
 
-/// The records in the content of a chunk (Op::chunk), their CRC checked where it is told.
+/// The records in the content of a chunk (Op::chunk), their CRC checked where it is stored.
 /// @throws Error when they are damaged or grow beyond reason: beyond kLargestChunk, or beyond 16
 /// MiB and 1000 times what they are packed in. No more than that is allocated.
 [[nodiscard]] Bytes unpack(View chunk);

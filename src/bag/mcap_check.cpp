@@ -26,14 +26,14 @@ std::uint32_t crc_in(const RandomFile& file, std::uint64_t begin, std::uint64_t 
   return static_cast<std::uint32_t>(crc);
 }
 
-// Walks through the data section of a file, which has to be as the format says.
+// Walks through the data section of a file, which has to follow the format.
 class DataCheck {
  public:
   DataCheck(const RandomFile& file, Contents& contents) : file_(file), contents_(contents) {}
   void run();
 
  private:
-  using Places = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // times, offsets
+  using Entries = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // times, offsets
 
   void take(Op op, std::uint64_t at, std::uint64_t length);
   void take_chunk(std::uint64_t at, View content);
@@ -52,7 +52,7 @@ class DataCheck {
   DataFacts data_;
   // The chunk before, while only its message indexes follow, and its messages without one.
   std::map<std::uint64_t, ChunkFacts>::iterator chunk_ = data_.chunks.end();
-  std::map<std::uint16_t, Places> unindexed_;
+  std::map<std::uint16_t, Entries> unindexed_;
 };
 
 void DataCheck::run() {
@@ -117,7 +117,7 @@ void DataCheck::take_chunk(std::uint64_t at, View content) {
   } catch (const Error& error) {
     chunk.lost = true;
     data_.whole = false;
-    tell_first(contents_, fmt::format("the chunk at byte {} is lost: {}", at, error.what()));
+    lose_first(contents_, fmt::format("the chunk at byte {} is lost: {}", at, error.what()));
   }
 }
 
@@ -146,19 +146,19 @@ void DataCheck::take_index(std::uint64_t at, View content) {
   }
   Fields fields(content);
   const auto channel = fields.number<std::uint16_t>();
-  Places said;
+  Entries stored;
   for (Fields list(fields.bytes(fields.number<std::uint32_t>())); !list.left().empty();) {
     const auto time = list.number<std::uint64_t>();
-    said.emplace_back(time, list.number<std::uint64_t>());
+    stored.emplace_back(time, list.number<std::uint64_t>());
   }
   chunk_->second.indexes += kRecordHead + content.size();
-  chunk_->second.places[channel] = at;
+  chunk_->second.offsets[channel] = at;
   if (chunk_->second.lost) return;
-  Places found = std::move(unindexed_[channel]);
+  Entries found = std::move(unindexed_[channel]);
   unindexed_.erase(channel);
-  std::ranges::sort(said);
+  std::ranges::sort(stored);
   std::ranges::sort(found);
-  if (said == found) return;
+  if (stored == found) return;
   contents_.lose(
       fmt::format("the message index at byte {} does not lead to the {} messages of "
                   "channel {} in its chunk",
@@ -167,12 +167,12 @@ void DataCheck::take_index(std::uint64_t at, View content) {
 
 // A chunk has no message indexes at all, or one of each channel in it.
 void DataCheck::end_chunk() {
-  if (chunk_ != data_.chunks.end() && !chunk_->second.places.empty() && !chunk_->second.lost) {
-    for (const auto& [channel, places] : unindexed_) {
+  if (chunk_ != data_.chunks.end() && !chunk_->second.offsets.empty() && !chunk_->second.lost) {
+    for (const auto& [channel, entries] : unindexed_) {
       contents_.lose(
           fmt::format("no index leads to the {} messages of channel {} in the chunk at "
                       "byte {}",
-                      places.size(), channel, chunk_->first));
+                      entries.size(), channel, chunk_->first));
     }
   }
   chunk_ = data_.chunks.end();
@@ -182,7 +182,7 @@ void DataCheck::end_chunk() {
 void DataCheck::take_message(View content) {
   const Message message = message_of(content);
   if (!data_.descriptions.contains({Op::channel, message.channel})) {
-    tell_first(contents_, fmt::format("nothing says what channel {} is before its first message",
+    lose_first(contents_, fmt::format("nothing says what channel {} is before its first message",
                                       message.channel));
   }
   ++data_.messages;
@@ -226,8 +226,8 @@ void DataCheck::take_attachment(std::uint64_t at, std::uint64_t length) {
     throw Error(fmt::format("byte {}: an attachment is shorter than it says", at));
   }
   const Bytes crc = file_.read(begin + checked, sizeof(std::uint32_t));
-  const auto said = Fields(crc).number<std::uint32_t>();
-  if (said != 0 && said != crc_in(file_, begin, begin + checked)) {
+  const auto stored = Fields(crc).number<std::uint32_t>();
+  if (stored != 0 && stored != crc_in(file_, begin, begin + checked)) {
     contents_.lose(fmt::format("the attachment {} is damaged: its CRC differs", name));
   }
 }
@@ -241,10 +241,10 @@ void DataCheck::take_metadata(std::uint64_t at, View content) {
       .text(name);
 }
 
-// The checksum of all data says nothing more where a part is known to be damaged.
+// The checksum of all data shows nothing more where a part is known to be damaged.
 void DataCheck::end_data(std::uint64_t at, View content) {
-  const auto said = Fields(content).number<std::uint32_t>();
-  if (said == 0 || !contents_.losses.empty() || said == crc_in(file_, 0, at)) return;
+  const auto stored = Fields(content).number<std::uint32_t>();
+  if (stored == 0 || !contents_.losses.empty() || stored == crc_in(file_, 0, at)) return;
   contents_.lose(
       fmt::format("bytes 0 to {} do not have the CRC that the end of the data says; "
                   "something in them changed that no other checksum covers",
@@ -273,7 +273,7 @@ void check(const RandomFile& file, Contents& contents) {
   try {
     DataCheck(file, contents).run();
   } catch (const Error& error) {
-    tell_first(contents, error.what());
+    lose_first(contents, error.what());
   }
 }
 

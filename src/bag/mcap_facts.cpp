@@ -91,13 +91,13 @@ void SummaryCheck::take_chunk_index(Fields fields) {
   compare(contents_, where, "that it begins at time", start, chunk.start);
   compare(contents_, where, "that it ends at time", end, chunk.end);
   compare(contents_, where, "how many bytes it has:", fields.number<std::uint64_t>(), chunk.length);
-  std::map<std::uint16_t, std::uint64_t> places;
+  std::map<std::uint16_t, std::uint64_t> offsets;
   for (Fields list(fields.bytes(fields.number<std::uint32_t>())); !list.left().empty();) {
     const auto channel = list.number<std::uint16_t>();
-    places[channel] = list.number<std::uint64_t>();
+    offsets[channel] = list.number<std::uint64_t>();
   }
-  // None: nothing is said of where they lie.
-  if (!places.empty() && places != chunk.places)
+  // None: the index does not store where they lie.
+  if (!offsets.empty() && offsets != chunk.offsets)
     contents_.lose(where + ": its message indexes lie elsewhere");
   compare(contents_, where,
           "how many bytes its message indexes have:", fields.number<std::uint64_t>(),
@@ -125,13 +125,14 @@ void SummaryCheck::take_note_index(Op op, View content) {
 // Channels without messages may stand in the summary alone.
 void SummaryCheck::take_statistics(Fields fields) {
   if (!data_.whole) return;
-  const auto count = [&](const char* what, std::uint64_t said, std::uint64_t found) {
-    compare(contents_, "the statistics", fmt::format("how many {} there are:", what), said, found);
+  const auto count = [&](const char* what, std::uint64_t stored, std::uint64_t found) {
+    compare(contents_, "the statistics", fmt::format("how many {} there are:", what), stored,
+            found);
   };
-  const auto described = [&](Op op, std::uint64_t said) {
+  const auto described = [&](Op op, std::uint64_t stored) {
     const auto found = static_cast<std::uint64_t>(std::ranges::count_if(
         data_.descriptions, [&](const auto& each) { return each.first.first == op; }));
-    return said == taken_[op] ? said : found;
+    return stored == taken_[op] ? stored : found;
   };
   count("messages", fields.number<std::uint64_t>(), data_.messages);
   const std::uint64_t schemas = fields.number<std::uint16_t>();
@@ -158,14 +159,14 @@ void SummaryCheck::take_statistics(Fields fields) {
 void SummaryCheck::take_offset(Fields fields) {
   const auto op = static_cast<Op>(fields.number<std::uint8_t>());
   const auto begin = fields.number<std::uint64_t>();
-  const Span said{begin, fields.number<std::uint64_t>()};
+  const Span stored{begin, fields.number<std::uint64_t>()};
   const auto group = groups_.find(op);
-  if (group == groups_.end() && said.second == 0) return;  // writers name empty groups, too
-  if (group != groups_.end() && group->second == said) return;
+  if (group == groups_.end() && stored.second == 0) return;  // writers name empty groups, too
+  if (group != groups_.end() && group->second == stored) return;
   contents_.lose(
       fmt::format("the summary says that its records of kind {} are the {} bytes from "
                   "byte {} on, where they are not",
-                  static_cast<int>(op), said.second, said.first));
+                  static_cast<int>(op), stored.second, stored.first));
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ struct ChunkFacts {
   std::uint64_t start = 0;  ///< ns
   std::uint64_t end = 0;    ///< ns
   std::uint64_t length = 0;
-  std::uint64_t indexes = 0;                      ///< bytes of the message indexes
-  std::map<std::uint16_t, std::uint64_t> places;  ///< of the message index of each channel
+  std::uint64_t indexes = 0;                       ///< bytes of the message indexes
+  std::map<std::uint16_t, std::uint64_t> offsets;  ///< of the message index of each channel
   std::string compression;
   std::uint64_t packed = 0;  ///< bytes
   std::uint64_t size = 0;    ///< bytes
@@ -31,7 +31,7 @@ struct ChunkFacts {
 
 struct DataFacts {
   std::map<std::uint64_t, ChunkFacts> chunks;  ///< by offset
-  /// What the summary should say of attachments and metadata: contents of their index records.
+  /// What the summary should store of attachments and metadata: contents of their index records.
   std::map<std::pair<Op, std::uint64_t>, Bytes> notes;
   std::map<std::pair<Op, std::uint16_t>, Bytes> descriptions;  ///< schemas and channels
   std::map<std::uint16_t, std::uint64_t> counts;               ///< messages of each channel
@@ -44,24 +44,24 @@ struct DataFacts {
 /// A schema or channel with its words in order, so that equal ones are equal bytes.
 [[nodiscard]] Bytes description_of(Op op, View content);
 
-/// Tells what may have been told already, in words that say more.
-inline void tell_first(Contents& contents, const std::string& what) {
+/// Adds a loss where there is none: an earlier one may be of the same cause, and more precise.
+inline void lose_first(Contents& contents, const std::string& what) {
   if (contents.losses.empty()) contents.lose(what);
 }
 
-/// Tells where `said` is not what was `found`.
-template <class Said, class Found>
-void compare(Contents& contents, std::string_view where, std::string_view what, const Said& said,
-             const Found& found) {
-  if (said == found) return;
-  contents.lose(fmt::format("{}: it says {} {}, and {} is there", where, what, said, found));
+/// Adds a loss where `stored` is not what was `found`.
+template <class Stored, class Found>
+void compare(Contents& contents, std::string_view where, std::string_view what,
+             const Stored& stored, const Found& found) {
+  if (stored == found) return;
+  contents.lose(fmt::format("{}: it says {} {}, and {} is there", where, what, stored, found));
 }
 
 /// The part of a file behind its data.
 struct SummaryPart {
   std::uint64_t at = 0;  ///< byte of the file where it begins
   View records;
-  std::uint64_t offsets = 0;  ///< byte of the file where the summary's offsets are said to begin
+  std::uint64_t offsets = 0;  ///< byte of the file where the summary's offsets should begin
 };
 
 /// @throws Error at a record that does not fit.

@@ -17,7 +17,7 @@
 
 /// MCAP files (mcap.dev/spec), as ROS 2's bags are: what writing and reading share. Times are
 /// nanoseconds since 1970. A file is a magic number, records, and the magic number again; a record
-/// is a byte that says what it is, the length of its content, and the content.
+/// is a byte that marks what it is, the length of its content, and the content.
 namespace palpate::bag {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -52,7 +52,7 @@ enum class Op : std::uint8_t {
 /// Type of a channel's messages.
 struct Schema {
   std::string name;      ///< "sensor_msgs/msg/Image"; empty: a channel without schema
-  std::string encoding;  ///< "ros2msg": `text` is what .msg files say
+  std::string encoding;  ///< "ros2msg": `text` is what .msg files contain
   std::string text;
 
   bool operator==(const Schema&) const = default;

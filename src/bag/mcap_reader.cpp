@@ -42,10 +42,10 @@ bool McapReader::next(Message& message) {
   std::erase_if(loaded_, [](const Loaded& chunk) { return chunk.next == chunk.entries.size(); });
   Loaded* chunk = soonest();
   while (upcoming_ < order_.size()) {
-    const ChunkPlace& place = contents_.chunks[order_[upcoming_]];
-    if (chunk != nullptr && chunk->entries[chunk->next].time < place.start) break;
+    const ChunkSpan& span = contents_.chunks[order_[upcoming_]];
+    if (chunk != nullptr && chunk->entries[chunk->next].time < span.start) break;
     ++upcoming_;
-    load(place);
+    load(span);
     chunk = soonest();
   }
   if (chunk == nullptr) return false;
@@ -57,24 +57,24 @@ bool McapReader::next(Message& message) {
 // Chunk with the earliest message; at equal times the one that comes first in the file.
 McapReader::Loaded* McapReader::soonest() {
   const auto time = [](const Loaded& chunk) {
-    return std::pair(chunk.entries[chunk.next].time, chunk.place);
+    return std::pair(chunk.entries[chunk.next].time, chunk.offset);
   };
   const auto found = std::ranges::min_element(loaded_, {}, time);
   return found == loaded_.end() ? nullptr : &*found;
 }
 
-void McapReader::load(const ChunkPlace& place) {
+void McapReader::load(const ChunkSpan& span) {
   const auto wanted = [&](std::uint16_t channel) { return wants(channel); };
-  if (place.end < from_) return;
-  if (!place.channels.empty() && std::ranges::none_of(place.channels, wanted)) return;
+  if (span.end < from_) return;
+  if (!span.channels.empty() && std::ranges::none_of(span.channels, wanted)) return;
   Loaded chunk;
-  chunk.place = place.offset;
+  chunk.offset = span.offset;
   try {
-    chunk.records = file_.read(place.offset, place.length);
-    if (!place.loose) {
+    chunk.records = file_.read(span.offset, span.length);
+    if (!span.loose) {
       Fields fields(chunk.records);
       const bool is_chunk = fields.number<std::uint8_t>() == static_cast<std::uint8_t>(Op::chunk) &&
-                            fields.number<std::uint64_t>() == place.length - kRecordHead;
+                            fields.number<std::uint64_t>() == span.length - kRecordHead;
       if (!is_chunk) throw Error("there should be a chunk");
       chunk.records = unpack(fields.left());
     }
@@ -82,8 +82,8 @@ void McapReader::load(const ChunkPlace& place) {
       if (op == Op::message) take(chunk, content, offset + kRecordHead);
     });
   } catch (const Error& error) {
-    contents_.lose(fmt::format("messages in bytes {} to {} are lost: {}", place.offset,
-                               place.offset + place.length - 1, error.what()));
+    contents_.lose(fmt::format("messages in bytes {} to {} are lost: {}", span.offset,
+                               span.offset + span.length - 1, error.what()));
   }
   if (chunk.entries.empty()) return;
   std::ranges::stable_sort(chunk.entries, {}, &Entry::time);
@@ -111,9 +111,9 @@ void McapReader::take(Loaded& chunk, View content, std::size_t begin) {
 }
 
 Attachment McapReader::attachment(std::size_t index) const {
-  const AttachmentPlace& place = contents_.attachments.at(index);
-  const Bytes content = file_.read(place.offset, place.length);
-  Attachment attachment = place.head;
+  const AttachmentSpan& span = contents_.attachments.at(index);
+  const Bytes content = file_.read(span.offset, span.length);
+  Attachment attachment = span.head;
   Fields fields(content);
   fields.bytes(2 * sizeof(std::uint64_t));
   fields.text();

@@ -10,7 +10,7 @@ namespace palpate::bag {
 
 /// Reads the messages of an MCAP file of anybody's in the order in which they were recorded, a few
 /// chunks at a time: those whose times overlap, at most 1 GiB of them. What is damaged is left out
-/// and told (Contents::losses). One thread at a time.
+/// and reported (Contents::losses). One thread at a time.
 class McapReader {
  public:
   /// @throws Error when the file cannot be read or is no MCAP file.
@@ -25,8 +25,8 @@ class McapReader {
   /// on. At first it gives all.
   void choose(const std::function<bool(const Channel&)>& wanted, std::uint64_t from = 0);
 
-  /// The next message by log time, by place in the file where that is the same; false: there are no
-  /// more. Its data are there until the next call. @throws Error when too many chunks overlap.
+  /// The next message by log time, by offset in the file where that is the same; false: there are
+  /// no more. Its data are there until the next call. @throws Error when too many chunks overlap.
   [[nodiscard]] bool next(Message& message);
 
   /// The channel of a message that next() gave.
@@ -47,10 +47,10 @@ class McapReader {
     Bytes records;
     std::vector<Entry> entries;  // by time
     std::size_t next = 0;
-    std::uint64_t place = 0;  // in the file
+    std::uint64_t offset = 0;  // in the file
   };
 
-  void load(const ChunkPlace& place);
+  void load(const ChunkSpan& span);
   void take(Loaded& chunk, View content, std::size_t begin);
   [[nodiscard]] bool wants(std::uint16_t channel) const;
   [[nodiscard]] Loaded* soonest();

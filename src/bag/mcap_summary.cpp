@@ -32,19 +32,19 @@ void append_channel(Bytes& out, const McapSummary& summary, std::uint16_t number
 }
 
 void append_statistics(Bytes& out, const McapSummary& summary, const McapSummary::Totals& totals) {
-  const auto known = [&](const ChannelState& state) { return state.since < totals.chunks; };
+  const auto described = [&](const ChannelState& state) { return state.since < totals.chunks; };
   std::vector<bool> schemas(summary.schemas.size() + 1);
   for (const ChannelState& state : summary.channels)
-    schemas[state.schema] = schemas[state.schema] || known(state);
+    schemas[state.schema] = schemas[state.schema] || described(state);
   schemas[0] = false;
   Record record(out, Op::statistics);
   record.numbers(totals.messages, static_cast<std::uint16_t>(std::ranges::count(schemas, true)),
-                 static_cast<std::uint32_t>(std::ranges::count_if(summary.channels, known)),
+                 static_cast<std::uint32_t>(std::ranges::count_if(summary.channels, described)),
                  totals.attachments, totals.metadata, totals.chunks,
                  totals.messages > 0 ? totals.start : 0, totals.end);
   record.list([&] {
     for (std::size_t i = 0; i < totals.counts.size(); ++i) {
-      if (!known(summary.channels[i])) continue;
+      if (!described(summary.channels[i])) continue;
       record.numbers(static_cast<std::uint16_t>(i + 1), totals.counts[i]);
     }
   });
@@ -89,11 +89,11 @@ Bytes McapSummary::ending(const Totals& after, std::uint64_t at) const {
     Record(offsets, Op::summary_offset)
         .numbers(static_cast<std::uint8_t>(op), at + start, std::uint64_t{out.size() - start});
   };
-  const auto known = [&](const ChannelState& state) { return state.since < after.chunks; };
+  const auto described = [&](const ChannelState& state) { return state.since < after.chunks; };
   group(Op::schema, [&] {
     for (std::size_t i = 1; i <= schemas.size(); ++i) {
       const auto uses = [&](const ChannelState& state) {
-        return state.schema == i && known(state);
+        return state.schema == i && described(state);
       };
       if (!std::ranges::any_of(channels, uses)) continue;
       append_schema(out, *this, static_cast<std::uint16_t>(i));
@@ -101,7 +101,7 @@ Bytes McapSummary::ending(const Totals& after, std::uint64_t at) const {
   });
   group(Op::channel, [&] {
     for (std::size_t i = 1; i <= channels.size(); ++i) {
-      if (known(channels[i - 1])) append_channel(out, *this, static_cast<std::uint16_t>(i));
+      if (described(channels[i - 1])) append_channel(out, *this, static_cast<std::uint16_t>(i));
     }
   });
   group(Op::statistics, [&] { append_statistics(out, *this, after); });

@@ -1,4 +1,4 @@
-// Holds what the end of an MCAP file says.
+// Holds what the end of an MCAP file contains.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace palpate::bag {
 
-/// All that a reader wants to know of a file without reading its data, while it grows.
+/// All that a reader needs of a file without reading its data, while it grows.
 struct McapSummary {
   struct ChannelState {
     Channel channel;
@@ -43,7 +43,7 @@ struct McapSummary {
   /// The channel's number.
   std::uint16_t add(const Channel& channel);
 
-  /// Writes what a reader has to know of a channel before its first message, which comes now.
+  /// Writes what a reader needs of a channel before its first message, which comes now.
   void describe(Bytes& out, std::uint16_t number);
 
   /// The end of a file with these totals whose data end at byte `at`.

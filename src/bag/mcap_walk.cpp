@@ -29,25 +29,25 @@ class Walk {
   void take_summary(View summary);
   void take_chunk_index(Fields fields);
   void take_statistics(Fields fields);
-  void sort_known();
+  void sort_indexed();
   void search(std::uint64_t begin, std::uint64_t end);
   void take(Op op, std::uint64_t at, std::uint64_t length);
   void take_chunk(std::uint64_t at, std::uint64_t length);
   void take_message(std::uint64_t at, std::uint64_t length);
   void take_attachment(std::uint64_t at, std::uint64_t length);
-  void count(const Message& message, ChunkPlace& place);
+  void count(const Message& message, ChunkSpan& span);
 
-  struct Known {
-    ChunkPlace place;
+  struct Indexed {
+    ChunkSpan span;
     std::uint64_t behind = 0;  // the chunk and its index
   };
 
   const RandomFile& file_;
   std::uint64_t notes_ = 0;  // bytes of those that were kept
   Contents contents_;
-  std::vector<Known> known_;
+  std::vector<Indexed> indexed_;
   std::uint64_t data_end_ = 0;
-  bool counted_ = false;  // the file's end told how many messages there are
+  bool counted_ = false;  // the file's end stored how many messages there are
 };
 
 Contents Walk::run() {
@@ -55,10 +55,10 @@ Contents Walk::run() {
   if (!std::ranges::equal(magic, kMagic)) refuse_other(file_);
   read_summary();
   std::uint64_t at = kMagic.size();
-  for (Known& known : known_) {
-    search(at, known.place.offset);
-    contents_.chunks.push_back(std::move(known.place));
-    at = known.behind;
+  for (Indexed& indexed : indexed_) {
+    search(at, indexed.span.offset);
+    contents_.chunks.push_back(std::move(indexed.span));
+    at = indexed.behind;
   }
   search(at, data_end_);
   if (!contents_.closed) {
@@ -68,7 +68,7 @@ Contents Walk::run() {
   return std::move(contents_);
 }
 
-// Uses what the file's end says, if all of it is there.
+// Uses what the file's end stores, if all of it is there.
 void Walk::read_summary() {
   data_end_ = file_.size();
   if (file_.size() < kFileEnd + kMagic.size()) return;
@@ -96,7 +96,7 @@ void Walk::read_summary() {
     contents_.closed = true;
     contents_.lose(fmt::format("the summary at byte {} is damaged: {}", start, error.what()));
     data_end_ = footer_at;
-    known_.clear();
+    indexed_.clear();
   }
 }
 
@@ -112,27 +112,27 @@ void Walk::take_summary(View summary) {
   });
   if (statistics) take_statistics(*statistics);
   // Without statistics the summary is not trusted: scan the whole file.
-  if (!counted_) known_.clear();
-  sort_known();
+  if (!counted_) indexed_.clear();
+  sort_indexed();
 }
 
 void Walk::take_chunk_index(Fields fields) {
-  Known known;
-  ChunkPlace& place = known.place;
-  place.start = fields.number<std::uint64_t>();
-  place.end = fields.number<std::uint64_t>();
-  place.offset = fields.number<std::uint64_t>();
-  place.length = fields.number<std::uint64_t>();
+  Indexed indexed;
+  ChunkSpan& span = indexed.span;
+  span.start = fields.number<std::uint64_t>();
+  span.end = fields.number<std::uint64_t>();
+  span.offset = fields.number<std::uint64_t>();
+  span.length = fields.number<std::uint64_t>();
   Fields offsets(fields.bytes(fields.number<std::uint32_t>()));
   while (!offsets.left().empty()) {
-    place.channels.push_back(offsets.number<std::uint16_t>());
+    span.channels.push_back(offsets.number<std::uint16_t>());
     offsets.number<std::uint64_t>();
   }
   const auto indexes = fields.number<std::uint64_t>();
   const std::uint64_t size = file_.size();
-  if (place.offset > size || place.length > size || indexes > size) return;  // not to be believed
-  known.behind = place.offset + place.length + indexes;
-  known_.push_back(std::move(known));
+  if (span.offset > size || span.length > size || indexes > size) return;  // not to be believed
+  indexed.behind = span.offset + span.length + indexes;
+  indexed_.push_back(std::move(indexed));
 }
 
 void Walk::take_statistics(Fields fields) {
@@ -143,7 +143,7 @@ void Walk::take_statistics(Fields fields) {
   const auto start = fields.number<std::uint64_t>();
   const auto end = fields.number<std::uint64_t>();
   Fields counts(fields.bytes(fields.number<std::uint32_t>()));
-  if (channels > contents_.channels.size() || (known_.empty() && messages > 0)) return;
+  if (channels > contents_.channels.size() || (indexed_.empty() && messages > 0)) return;
   while (!counts.left().empty()) {
     const auto found = contents_.channels.find(counts.number<std::uint16_t>());
     const auto number = counts.number<std::uint64_t>();
@@ -155,19 +155,21 @@ void Walk::take_statistics(Fields fields) {
   contents_.end = end;
 }
 
-// Keeps known chunks that do not overlap in the data; overlapping ones are searched for instead.
-void Walk::sort_known() {
-  std::ranges::stable_sort(known_, {}, [](const Known& known) { return known.place.offset; });
+// Keeps indexed chunks that do not overlap in the data; overlapping ones are searched for instead.
+void Walk::sort_indexed() {
+  std::ranges::stable_sort(indexed_, {},
+                           [](const Indexed& indexed) { return indexed.span.offset; });
   std::uint64_t at = kMagic.size();
-  const auto wrong = [&](const Known& known) {
-    if (known.place.offset < at || known.place.length < kRecordHead || known.behind > data_end_) {
-      contents_.lose(fmt::format("the index of a chunk at byte {} is wrong", known.place.offset));
+  const auto wrong = [&](const Indexed& indexed) {
+    if (indexed.span.offset < at || indexed.span.length < kRecordHead ||
+        indexed.behind > data_end_) {
+      contents_.lose(fmt::format("the index of a chunk at byte {} is wrong", indexed.span.offset));
       return true;
     }
-    at = known.behind;
+    at = indexed.behind;
     return false;
   };
-  std::erase_if(known_, wrong);
+  std::erase_if(indexed_, wrong);
 }
 
 void Walk::search(std::uint64_t begin, std::uint64_t end) {
@@ -213,50 +215,49 @@ void Walk::take(Op op, std::uint64_t at, std::uint64_t length) {
 }
 
 void Walk::take_chunk(std::uint64_t at, std::uint64_t length) {
-  ChunkPlace place{.offset = at - kRecordHead, .length = kRecordHead + length, .channels = {}};
+  ChunkSpan span{.offset = at - kRecordHead, .length = kRecordHead + length, .channels = {}};
   const Bytes records = unpack(file_.read(at, length));
   each_record(records, [&](Op op, View content, std::size_t) {
     if (op == Op::schema || op == Op::channel) contents_.describe(op, content);
-    if (op == Op::message) count(message_of(content), place);
+    if (op == Op::message) count(message_of(content), span);
   });
-  std::ranges::sort(place.channels);
-  place.channels.erase(std::unique(place.channels.begin(), place.channels.end()),
-                       place.channels.end());
-  if (place.start <= place.end) contents_.chunks.push_back(std::move(place));
+  std::ranges::sort(span.channels);
+  span.channels.erase(std::unique(span.channels.begin(), span.channels.end()), span.channels.end());
+  if (span.start <= span.end) contents_.chunks.push_back(std::move(span));
 }
 
-// Messages without chunk that follow one another become one place.
+// Messages without chunk that follow one another become one span.
 void Walk::take_message(std::uint64_t at, std::uint64_t length) {
   if (length > kLargestChunk) throw Error("a message is longer than any honest one");
   const Message message = message_of(file_.read(at, std::min<std::uint64_t>(length, kMessageHead)));
   const std::uint64_t offset = at - kRecordHead;
-  std::vector<ChunkPlace>& places = contents_.chunks;
-  const bool goes_on = !places.empty() && places.back().loose &&
-                       places.back().offset + places.back().length == offset &&
-                       places.back().length + length < kLargestRun;
-  if (!goes_on) places.push_back({.offset = offset, .channels = {}, .loose = true});
-  places.back().length += kRecordHead + length;
-  count(message, places.back());
+  std::vector<ChunkSpan>& spans = contents_.chunks;
+  const bool goes_on = !spans.empty() && spans.back().loose &&
+                       spans.back().offset + spans.back().length == offset &&
+                       spans.back().length + length < kLargestRun;
+  if (!goes_on) spans.push_back({.offset = offset, .channels = {}, .loose = true});
+  spans.back().length += kRecordHead + length;
+  count(message, spans.back());
 }
 
 void Walk::take_attachment(std::uint64_t at, std::uint64_t length) {
   const Bytes content = file_.read(at, std::min(length, kAttachmentHead));
   Fields fields(content);
-  AttachmentPlace place{.head = {}, .offset = at, .length = length};
-  place.head.log_time = fields.number<std::uint64_t>();
-  place.head.create_time = fields.number<std::uint64_t>();
-  place.head.name = fields.text();
-  place.head.media_type = fields.text();
-  place.size = fields.number<std::uint64_t>();
-  if (place.size > length) throw Error("an attachment is shorter than it says");
-  contents_.attachments.push_back(std::move(place));
+  AttachmentSpan span{.head = {}, .offset = at, .length = length};
+  span.head.log_time = fields.number<std::uint64_t>();
+  span.head.create_time = fields.number<std::uint64_t>();
+  span.head.name = fields.text();
+  span.head.media_type = fields.text();
+  span.size = fields.number<std::uint64_t>();
+  if (span.size > length) throw Error("an attachment is shorter than it says");
+  contents_.attachments.push_back(std::move(span));
 }
 
-void Walk::count(const Message& message, ChunkPlace& place) {
-  place.start = std::min(place.start, message.stamp.log);
-  place.end = std::max(place.end, message.stamp.log);
-  std::vector<std::uint16_t>& channels = place.channels;
-  if (!place.loose && (channels.empty() || channels.back() != message.channel)) {
+void Walk::count(const Message& message, ChunkSpan& span) {
+  span.start = std::min(span.start, message.stamp.log);
+  span.end = std::max(span.end, message.stamp.log);
+  std::vector<std::uint16_t>& channels = span.channels;
+  if (!span.loose && (channels.empty() || channels.back() != message.channel)) {
     channels.push_back(message.channel);
   }
   const auto channel = contents_.channels.find(message.channel);

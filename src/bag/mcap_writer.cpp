@@ -140,7 +140,7 @@ void McapWriter::write_chunk() {
   for (McapSummary::ChannelState& state : summary_.channels) state.index.clear();
 }
 
-// The chunk and the places of its messages; and where both are, for the file's end.
+// The chunk and the offsets of its messages; and where both are, for the file's end.
 void McapWriter::append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end) {
   Packed packed = options_.compressed ? pack(chunk_) : Packed{};
   const View bytes = packed.bytes.empty() ? View(chunk_) : View(packed.bytes);
@@ -150,21 +150,21 @@ void McapWriter::append_chunk(Bytes& out, std::uint64_t start, std::uint64_t end
       .numbers(std::uint64_t{bytes.size()})
       .bytes(bytes);
   const std::uint64_t length = out.size();
-  Record place(summary_.index[0], Op::chunk_index);
-  place.numbers(start, end, end_, length);
-  place.list([&] {
+  Record entry(summary_.index[0], Op::chunk_index);
+  entry.numbers(start, end, end_, length);
+  entry.list([&] {
     for (std::size_t i = 0; i < summary_.channels.size(); ++i) {
       if (summary_.channels[i].index.empty()) continue;
       const auto number = static_cast<std::uint16_t>(i + 1);
-      place.numbers(number, end_ + out.size());
+      entry.numbers(number, end_ + out.size());
       Record index(out, Op::message_index);
       index.numbers(number).list([&] {
         for (const auto& [time, offset] : summary_.channels[i].index) index.numbers(time, offset);
       });
     }
   });
-  place.numbers(std::uint64_t{out.size()} - length).text(packed.compression);
-  place.numbers(std::uint64_t{bytes.size()}, std::uint64_t{chunk_.size()});
+  entry.numbers(std::uint64_t{out.size()} - length).text(packed.compression);
+  entry.numbers(std::uint64_t{bytes.size()}, std::uint64_t{chunk_.size()});
 }
 
 void McapWriter::attach(const Attachment& attachment) {

@@ -19,9 +19,9 @@ namespace palpate::bag {
 /// chunks), it is written at every sync only; a file without it is read all the same.
 ///
 /// One thread at a time. write() may take as long as the disk does: not for a servo's thread. Reads
-/// no clock: time is what messages and advance() say. Every function that writes throws Error that
-/// names the file and the reason (a full disk); the file then ends with the last chunk that was
-/// written whole, and takes no more.
+/// no clock: time is what messages and advance() state. Every function that writes throws Error
+/// that names the file and the reason (a full disk); the file then ends with the last chunk that
+/// was written whole, and takes no more.
 class McapWriter {
  public:
   struct Options {
@@ -35,7 +35,7 @@ class McapWriter {
   /// Makes the file; one that was there is replaced.
   McapWriter(std::string path, const Options& options);
   explicit McapWriter(std::string path) : McapWriter(std::move(path), Options{}) {}
-  /// close(), but what goes wrong is not told.
+  /// close(), but what goes wrong is not reported.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -67,7 +67,7 @@ class McapWriter {
   void attach(const Attachment& attachment);
   void add(const Metadata& metadata);
 
-  /// Says how late it is (ns), when no message does: writes and syncs what is due.
+  /// Sets the time (ns) where no message does: writes and syncs what is due.
   void advance(std::uint64_t now);
 
   /// Writes what is left, waits for the disk, closes the file.

@@ -5,7 +5,7 @@
 
 namespace palpate::bag {
 
-/// Says what a file is that does not begin as MCAP files do, and how it becomes one.
+/// Reports what a file is that does not begin as MCAP files do, and how it becomes one.
 /// @throws Error always.
 [[noreturn]] void refuse_other(const RandomFile& file);
 

@@ -6,7 +6,7 @@
 
 namespace palpate::bag {
 
-/// A file that is read at any place. One thread at a time.
+/// A file that is read at any offset. One thread at a time.
 class RandomFile {
  public:
   /// @throws Error when it cannot be read or is no plain file.

@@ -59,7 +59,7 @@ TEST(BagProgram, RecoverClosesAFileThatWasCutAndLosesOneChunk) {
   record(shell);
   const std::string whole = shell.read("run.mcap");
   const McapReader reader(shell.path("run.mcap"));
-  const ChunkPlace& last = reader.contents().chunks.back();
+  const ChunkSpan& last = reader.contents().chunks.back();
   shell.write("cut.mcap", whole.substr(0, last.offset + last.length / 2));
   const Outcome cut = shell.run("bag info cut.mcap");
   EXPECT_EQ(cut.code, 0) << cut.err;

@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, FlippedBit, testing::Range(1u, 6u));
 TEST(McapCheck, NamesWhatDiffersFromWhat) {
   const test::Folder folder;
   std::string bytes = bag_of({.data_crc = false, .summary_crc = false}, folder);
-  const ChunkPlace chunk = McapReader(folder / "whole.mcap").contents().chunks[0];
+  const ChunkSpan chunk = McapReader(folder / "whole.mcap").contents().chunks[0];
   ++bytes[chunk.offset + kRecordHead];                         // its first message's time
   ++bytes[chunk.offset + chunk.length + kRecordHead + 2 + 4];  // a message's time in the index
   folder.write("changed.mcap", bytes);
@@ -156,7 +156,7 @@ TEST(McapCheck, NamesWhatDiffersFromWhat) {
 TEST(McapCheck, MessageIsFoundThatNoIndexLeadsTo) {
   const test::Folder folder;
   std::string bytes = bag_of({.data_crc = false}, folder);
-  const ChunkPlace chunk = McapReader(folder / "whole.mcap").contents().chunks[1];
+  const ChunkSpan chunk = McapReader(folder / "whole.mcap").contents().chunks[1];
   bytes[chunk.offset + chunk.length] = static_cast<char>(kPrivate);  // the index is somebody's own
   folder.write("changed.mcap", bytes);
   std::vector<Read> messages;

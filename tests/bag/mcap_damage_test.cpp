@@ -25,8 +25,8 @@ std::string small_file(const test::Folder& folder, bool compressed = true) {
 std::vector<std::size_t> ends_of(const std::string& path) {
   std::vector<std::size_t> ends;
   const McapReader reader(path);
-  for (const ChunkPlace& place : reader.contents().chunks) {
-    ends.push_back(place.offset + place.length);
+  for (const ChunkSpan& span : reader.contents().chunks) {
+    ends.push_back(span.offset + span.length);
   }
   return ends;
 }

@@ -102,8 +102,8 @@ Report report_of(const std::string& path, const bag::Contents& contents, bool ch
   report.row("time", "[{?}{}, {duration_s} long]", any, date(contents.start), seconds_of(contents));
   add_topics(report, contents);
   report.data["attachments"] = Json::array();
-  for (const bag::AttachmentPlace& place : contents.attachments) {
-    report.item("attachments", "attached", "{name}, {bytes} bytes", place.head.name, place.size);
+  for (const bag::AttachmentSpan& span : contents.attachments) {
+    report.item("attachments", "attached", "{name}, {bytes} bytes", span.head.name, span.size);
   }
   add_losses(report, contents.losses);
   if (contents.losses.empty()) {
