@@ -31,15 +31,15 @@ std::string hash_in(const dds_qos_t* qos) {
   return text.substr(at + kKey.size(), text.find(';', at) - at - kKey.size());
 }
 
-Endpoint endpoint_of(const dds_builtintopic_endpoint_t& told, bool writes) {
+Endpoint endpoint_of(const dds_builtintopic_endpoint_t& sample, bool writes) {
   dds_reliability_kind_t reliability = DDS_RELIABILITY_BEST_EFFORT;
   dds_durability_kind_t durability = DDS_DURABILITY_VOLATILE;
   dds_duration_t blocking = 0;
-  dds_qget_reliability(told.qos, &reliability, &blocking);
-  dds_qget_durability(told.qos, &durability);
-  return {.topic = std::string(told.topic_name).substr(2),
-          .type = ros_type(told.type_name),
-          .hash = hash_in(told.qos),
+  dds_qget_reliability(sample.qos, &reliability, &blocking);
+  dds_qget_durability(sample.qos, &durability);
+  return {.topic = std::string(sample.topic_name).substr(2),
+          .type = ros_type(sample.type_name),
+          .hash = hash_in(sample.qos),
           .writes = writes,
           .reliable = reliability == DDS_RELIABILITY_RELIABLE,
           .stays = durability >= DDS_DURABILITY_TRANSIENT_LOCAL};
@@ -57,10 +57,10 @@ void collect(const Participant& participant, bool writes, std::vector<Endpoint>&
     count = dds_take(reader, samples.data(), infos.data(), kAtOnce, kAtOnce);
     for (std::int32_t i = 0; i < count; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const auto* told = static_cast<const dds_builtintopic_endpoint_t*>(samples[k]);
+      const auto* sample = static_cast<const dds_builtintopic_endpoint_t*>(samples[k]);
       const bool alive = infos[k].valid_data && infos[k].instance_state == DDS_IST_ALIVE;
-      if (alive && std::string_view(told->topic_name).starts_with("rt/")) {
-        found.push_back(endpoint_of(*told, writes));
+      if (alive && std::string_view(sample->topic_name).starts_with("rt/")) {
+        found.push_back(endpoint_of(*sample, writes));
       }
     }
     if (count > 0) dds_return_loan(reader, samples.data(), count);

@@ -11,7 +11,7 @@ namespace palpate::dds {
 struct Endpoint {
   std::string topic;  ///< "/camera/depth"
   std::string type;   ///< "sensor_msgs/Image"; a type that is none of ROS's as it is named on DDS
-  std::string hash;   ///< "RIHS01_..."; empty: it tells none
+  std::string hash;   ///< "RIHS01_..."; empty: it sends none
   bool writes = false;
   bool reliable = false;
   bool stays = false;  ///< transient local

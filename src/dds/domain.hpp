@@ -15,8 +15,8 @@ enum class Range {
 struct DomainOptions {
   std::uint32_t id = 0;
   Range range = Range::localhost;
-  std::string peers = {};    ///< further machines to tell, separated by ';', as ROS_STATIC_PEERS
-  bool own_settings = true;  ///< false: CYCLONEDDS_URI says how the domain is set up
+  std::string peers = {};    ///< further machines to contact, separated by ';', as ROS_STATIC_PEERS
+  bool own_settings = true;  ///< false: CYCLONEDDS_URI sets how the domain is set up
 };
 
 /// Reads options from the environment: ROS_DOMAIN_ID, ROS_LOCALHOST_ONLY,

@@ -37,9 +37,9 @@ class RawReader {
   /// Waits at most `timeout` s for a message.
   bool wait(double timeout) const;
 
-  /// Writers that it hears.
+  /// Writers that it is matched with.
   [[nodiscard]] std::size_t writers() const;
-  /// Messages of one writer that did not arrive, or gave way to newer ones before they were taken.
+  /// Messages of one writer that did not arrive, or were replaced by newer ones unread.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
   [[nodiscard]] const std::string& topic() const { return topic_; }
 
@@ -67,7 +67,7 @@ class RawWriter {
   /// False: it could not be sent in time.
   bool write(std::span<const std::uint8_t> bytes);
 
-  /// Readers that hear it.
+  /// Readers that it is matched with.
   [[nodiscard]] std::size_t readers() const;
   [[nodiscard]] const std::string& topic() const { return topic_; }
 

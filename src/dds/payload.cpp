@@ -34,13 +34,13 @@ void pad(Payload& made) {
 }
 
 // The number that its writer gave a message: in the head of the submessage (RTPS 2.3, 9.4.5.3),
-// where Cyclone has brought it into the byte order of this machine. 0: not known.
+// where Cyclone has brought it into the byte order of this machine. 0: unknown.
 std::uint64_t number_in(const nn_rdata* fragment) {
-  constexpr std::size_t kPlace = 16;
+  constexpr std::size_t kOffset = 16;
   if (fragment == nullptr || fragment->submsg_zoff == 0) return 0;
   std::array<std::uint32_t, 2> number{};  // high, low
   const unsigned char* from = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_SUBMSG_OFF(fragment));
-  std::memcpy(number.data(), from + kPlace, sizeof number);
+  std::memcpy(number.data(), from + kOffset, sizeof number);
   return (std::uint64_t{number[0]} << 32) | number[1];
 }
 

@@ -23,7 +23,7 @@ namespace palpate::dds {
 /// The bytes of a value that was received, as long as it is held.
 [[nodiscard]] std::span<const std::uint8_t> bytes_of(const ddsi_serdata* value);
 
-/// Its writer counts its messages from 1 on; 0: not known, as of a writer in this process.
+/// Its writer counts its messages from 1 on; 0: unknown, as of a writer in this process.
 [[nodiscard]] std::uint64_t number_of(const ddsi_serdata* value);
 
 }  // namespace palpate::dds

@@ -104,7 +104,7 @@ class CdrWriter {
 /// hold.
 class CdrReader {
  public:
-  /// @throws Error when the head says that the bytes are no plain CDR.
+  /// @throws Error when the bytes are no plain CDR by their head.
   explicit CdrReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {
     if (bytes.size() < kHead || bytes[0] != 0 || bytes[1] > 1) {
       throw Error("the message is not encoded as plain CDR; its sender has to use XCDR version 1");

@@ -11,9 +11,8 @@ namespace palpate::message {
 /// The camera that took images of a topic. `rectified`: its lens was made perfect in them, so that
 /// P holds and not K and D. A rational_polynomial lens becomes the CameraModel that comes nearest
 /// to it over the image.
-/// @throws Error that says what about it cannot be used: another distortion (equidistant), no focal
-/// length, a lens that
-///   is a pixel or more off.
+/// @throws Error that names what about it cannot be used: another distortion (equidistant), no
+///   focal length, a lens that is a pixel or more off.
 [[nodiscard]] CameraModel camera_of(const CameraInfo& info, bool rectified);
 
 /// Is it a topic of rectified images by ROS's convention: "rect" in the last part of its name?

@@ -5,7 +5,7 @@
 /// palpate's own types, whose definitions travel in its recordings (docs/bags.md).
 namespace palpate::message {
 
-/// A servo's step: what the device told, what the field found of each source, and what was felt.
+/// A servo's step: the device's state, what the field found of each source, and what was felt.
 struct Tick {
   static constexpr auto kName = "palpate_msgs/Tick";
   static constexpr auto kHash = "";
@@ -130,7 +130,7 @@ struct Cloud {
   std::vector<float> positions;
   std::vector<float> normals;
   std::vector<float> intensities;
-  std::vector<double> viewpoint;  // empty: not known
+  std::vector<double> viewpoint;  // empty: unknown
   std::uint64_t width = 0;
   std::uint64_t height = 0;
   std::vector<std::uint32_t> pixels;

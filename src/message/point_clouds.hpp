@@ -9,7 +9,7 @@ namespace palpate::message {
 /// Normals, colours ("rgb", "rgba" as PCL packs them) and intensities are kept, points that are not
 /// finite dropped; there may be none left. Organised clouds keep their pixels, and are seen from
 /// the frame's origin.
-/// @throws Error that says what contradicts itself.
+/// @throws Error that reports what contradicts itself.
 [[nodiscard]] PointCloud cloud_of(const PointCloud2& message);
 
 /// Positions and normals (where `cloud` has them) as float32; the header stays for the caller to

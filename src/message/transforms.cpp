@@ -32,13 +32,14 @@ Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b
 }
 
 // What keeps a transform from being a pose.
-std::string what_is_wrong(const Transform& told) {
-  const Quaternion& q = told.rotation;
+std::string what_is_wrong(const Transform& transform) {
+  const Quaternion& q = transform.rotation;
   if (q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0) return "its quaternion is all zeros";
   return fmt::format(
       "its translation is ({}, {}, {}), its quaternion ({}, {}, {}, {}): that is not finite, or "
       "the quaternion's length is not 1",
-      told.translation.x, told.translation.y, told.translation.z, q.x, q.y, q.z, q.w);
+      transform.translation.x, transform.translation.y, transform.translation.z, q.x, q.y, q.z,
+      q.w);
 }
 
 void explain(std::string* why, std::string words) {
@@ -94,14 +95,14 @@ Eigen::Vector3d eigen(const Vector3& vector) {
 }
 
 void Transforms::add(const TFMessage& message, bool is_static) {
-  for (const TransformStamped& told : message.transforms) {
-    const std::string child = plain(told.child_frame_id);
-    const std::string parent = plain(told.header.frame_id);
-    const auto pose = isometry(told.transform.translation, told.transform.rotation);
+  for (const TransformStamped& stamped : message.transforms) {
+    const std::string child = plain(stamped.child_frame_id);
+    const std::string parent = plain(stamped.header.frame_id);
+    const auto pose = isometry(stamped.transform.translation, stamped.transform.rotation);
     const bool is_new = !links_.contains(child);
     if (child.empty() || parent.empty() || (is_new && links_.size() >= kFrames)) continue;
     if (!pose) {
-      refuse(child, parent, told.transform);
+      refuse(child, parent, stamped.transform);
       continue;
     }
     refused_.erase(child);
@@ -111,14 +112,14 @@ void Transforms::add(const TFMessage& message, bool is_static) {
     }
     Link& link = links_[child];
     link.is_static = is_static;
-    const double stamp = to_seconds(told.header.stamp);
+    const double stamp = to_seconds(stamped.header.stamp);
     // A clock that was set back, or a bag that begins again, starts over.
     if (is_static || (!link.poses.empty() && stamp < link.poses.back().stamp - kKept))
       link.poses.clear();
-    const auto after = std::ranges::upper_bound(link.poses, stamp, {}, &Known::stamp);
+    const auto after = std::ranges::upper_bound(link.poses, stamp, {}, &StampedPose::stamp);
     link.poses.insert(after, {stamp, *pose});
     const double oldest = link.poses.back().stamp - kKept;
-    const auto kept = std::ranges::lower_bound(link.poses, oldest, {}, &Known::stamp);
+    const auto kept = std::ranges::lower_bound(link.poses, oldest, {}, &StampedPose::stamp);
     link.poses.erase(link.poses.begin(),
                      std::max(kept, link.poses.end() - static_cast<std::ptrdiff_t>(
                                                            std::min(link.poses.size(), kPoses))));
@@ -126,21 +127,21 @@ void Transforms::add(const TFMessage& message, bool is_static) {
 }
 
 void Transforms::refuse(const std::string& child, const std::string& parent,
-                        const Transform& told) {
+                        const Transform& transform) {
   if (refused_.size() >= kFrames && !refused_.contains(child)) return;
   refused_[child] = fmt::format(
       "the transform from {} to {} in /tf or /tf_static is no pose: {}. Correct it where it is "
       "published, and record again",
-      child, parent, what_is_wrong(told));
+      child, parent, what_is_wrong(transform));
 }
 
 std::optional<Eigen::Isometry3d> Transforms::at(const Link& link, double stamp) {
   if (link.is_static) return link.poses.back().pose;
-  const auto after = std::ranges::lower_bound(link.poses, stamp, {}, &Known::stamp);
+  const auto after = std::ranges::lower_bound(link.poses, stamp, {}, &StampedPose::stamp);
   if (after == link.poses.end()) return {};
   if (after->stamp == stamp) return after->pose;
   if (after == link.poses.begin()) return {};
-  const Known& before = *(after - 1);
+  const StampedPose& before = *(after - 1);
   if (after->stamp - before.stamp > kWidestGap) return {};
   return between(before.pose, after->pose, (stamp - before.stamp) / (after->stamp - before.stamp));
 }

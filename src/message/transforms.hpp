@@ -31,26 +31,26 @@ namespace palpate::message {
 /// moving frames. Not thread-safe.
 class Transforms {
  public:
-  /// Adds transforms; drops those that make no tree, and those that are no pose, of which find()
-  /// can tell.
+  /// Adds transforms; drops those that make no tree, and those that are no pose, which find()
+  /// can report.
   void add(const TFMessage& message, bool is_static);
 
   /// Transform from the axes of `from` to those of `to` at `stamp` (s), linear and by slerp between
-  /// known poses. nullopt if they are not connected, or the poses of a moving link on either side
-  /// are more than 0.5 s apart; `why` then says which.
+  /// stored poses. nullopt if they are not connected, or the poses of a moving link on either side
+  /// are more than 0.5 s apart; `why` then names which.
   [[nodiscard]] std::optional<Eigen::Isometry3d> find(const std::string& to,
                                                       const std::string& from, double stamp,
                                                       std::string* why = nullptr) const;
 
  private:
-  struct Known {
+  struct StampedPose {
     double stamp = 0;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   };
   struct Link {
     std::string parent;
     bool is_static = false;
-    std::deque<Known> poses;  // in the order of time
+    std::deque<StampedPose> poses;  // in the order of time
   };
 
   [[nodiscard]] static std::optional<Eigen::Isometry3d> at(const Link& link, double stamp);
@@ -59,7 +59,7 @@ class Transforms {
                                                        const std::string& root, double stamp,
                                                        std::string* why) const;
 
-  void refuse(const std::string& child, const std::string& parent, const Transform& told);
+  void refuse(const std::string& child, const std::string& parent, const Transform& transform);
 
   std::map<std::string, Link> links_;           // by the child's name
   std::map<std::string, std::string> refused_;  // what was no pose last, in words, by the child

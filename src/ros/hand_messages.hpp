@@ -45,7 +45,7 @@ void add_markers(const message::Header& header, const ServoState& state, int ind
                                                     const StepDurations& last);
 /// A stream's phase, ages and drops.
 [[nodiscard]] message::DiagnosticStatus stream_status(const StreamState& state);
-/// Says whether a robot follows, and how long it waited for each reason.
+/// Reports whether a robot follows, and how long it waited for each reason.
 [[nodiscard]] message::DiagnosticStatus robot_status(const RosBridge::RobotState& state);
 
 }  // namespace palpate::ros

@@ -1,4 +1,4 @@
-// Decides where a robot is sent, from what the sources know about proxy, hand and robot position.
+// Decides where a robot is sent, from what the sources report of proxy, hand and robot position.
 #include "ros/robot_guide.hpp"
 
 #include <fmt/format.h>
@@ -21,10 +21,10 @@ constexpr Reason kLarge = "the tool is too large for the surface: give a larger 
 constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
 
-// m from the robot to the first checked position of its way, and between them; a finger is thicker
+// m from the robot to the first checked position of its path, and between them; a finger is thicker
 // (judgement)
-constexpr double kWayStep = 0.005;
-constexpr double kJoin = 0.02;  // m; a hand finds a place again to that (judgement)
+constexpr double kPathStep = 0.005;
+constexpr double kJoin = 0.02;  // m; how exactly a hand returns to a position (judgement)
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
 // s without news of the hand that change nothing: no hand gets anywhere in it (0.5 m/s: 10 mm, as
@@ -32,7 +32,7 @@ constexpr double kLongestStep = 0.1;
 constexpr double kLateHand = 0.02;
 
 // Why the proxy's own path no longer proves that the robot can follow it; empty if it still does.
-Reason broken_way(const ServoState& state) {
+Reason broken_path(const ServoState& state) {
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
   if (has(state.field_notes, FieldNote::not_loaded)) return kNotLoaded;
   if (has(state.field_notes, FieldNote::behind)) return kBehind;
@@ -60,39 +60,39 @@ std::vector<const Source*> sources_of(const Scene& scene, const std::vector<std:
 RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options,
                        double tool_radius)
     : options_(options), tool_radius_(tool_radius), sources_(sources_of(scene, options.sources)) {
-  for (const Source* source : sources_) (void)source->seen({}, 0);  // asks for frames
+  for (const Source* source : sources_) (void)source->seen({}, 0);  // requests frames
 }
 
-// The highest answer of the sources counts, in the order of Seen::Says. But free gives way to solid
+// The highest answer of the sources counts, in the order of Seen::Says. But free yields to solid
 // where its frame is older than kStays, or than the moment when the solid came. `memory`: of that
 // moment, of the tool or the robot, which stay where they are for long enough; it is renewed. The
-// hand and the way bring copies.
-RobotGuide::Place RobotGuide::judge(const Vector3d& x, double now, Memory& memory) const {
+// hand and the path bring copies.
+RobotGuide::Verdict RobotGuide::judge(const Vector3d& x, double now, Memory& memory) const {
   const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
-  Place place;
-  Place solid;
-  Memory known = (x - memory.where).norm() <= kJoin ? memory : Memory{};
+  Verdict best;
+  Verdict solid;
+  Memory last = (x - memory.where).norm() <= kJoin ? memory : Memory{};
   for (const Source* source : sources_) {
     std::optional<Seen> seen = source->seen({x, tool_radius_}, now);
     if (!seen && !source->points()) seen = {.says = Seen::Says::old};  // nothing came yet
     if (!seen) continue;
-    if (place.source == nullptr || rank(*seen) > rank(place.seen)) place = {source, *seen};
+    if (best.source == nullptr || rank(*seen) > rank(best.seen)) best = {source, *seen};
     if (seen->says != Seen::Says::solid) continue;
     const double stamp = now - seen->age;
     if (seen->came) {
-      known = stamp > known.came ? Memory{source, stamp, x} : Memory{known.source, known.came, x};
-      memory = known;
+      last = stamp > last.came ? Memory{source, stamp, x} : Memory{last.source, last.came, x};
+      memory = last;
     }
-    if (solid.source == nullptr || known.source == source) solid = {source, *seen};
+    if (solid.source == nullptr || last.source == source) solid = {source, *seen};
   }
-  const bool outdated = now - place.seen.age < known.came || place.seen.age > kStays;
-  return place.free() && solid.source != nullptr && outdated ? solid : place;
+  const bool outdated = now - best.seen.age < last.came || best.seen.age > kStays;
+  return best.free() && solid.source != nullptr && outdated ? solid : best;
 }
 
 // Largest lag of the rendered surface behind the seen one, m. The seen one moves on while a frame
 // is prepared; the rendered one takes an interval to get there, and waits if the next frame is
 // late. In one frame the lag grows by at most one frame's motion; more has another cause.
-double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, double dt) {
+double RobotGuide::allowed_ahead(const ServoState& state, const Verdict& proxy, double dt) {
   const double interval = proxy.source->state().interval;
   const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
   const double before = interval > 0 ? speed_ * std::max(1 - dt / (2 * interval), 0.0) : 0;
@@ -101,18 +101,18 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Place& proxy, do
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
-// Is the straight way from the robot to the target seen to be free? A surface may have come over
-// the robot in one frame, as far as it does slowly: as near to it the way may be so deep in it.
+// Is the straight path from the robot to the target seen to be free? A surface may have come over
+// the robot in one frame, as far as it does slowly: as near to it the path may be so deep in it.
 bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
-  if (!robot_.place) return true;
-  const Vector3d way = target - *robot_.place;
+  if (!robot_.position) return true;
+  const Vector3d path = target - *robot_.position;
   // Balls half a radius apart leave 3 % of the radius between them.
-  const double step = std::max(kWayStep, tool_radius_ / 2);
+  const double step = std::max(kPathStep, tool_radius_ / 2);
   Memory memory = robot_.memory;
-  for (double gone = kWayStep; gone < way.norm(); gone += step) {
-    const Place place = judge(*robot_.place + gone * way.normalized(), now, memory);
-    const bool leaves = gone <= kJump && place.solid() && place.seen.behind <= kJump;
-    if (!place.free() && !leaves) return false;
+  for (double gone = kPathStep; gone < path.norm(); gone += step) {
+    const Verdict verdict = judge(*robot_.position + gone * path.normalized(), now, memory);
+    const bool leaves = gone <= kJump && verdict.solid() && verdict.seen.behind <= kJump;
+    if (!verdict.free() && !leaves) return false;
   }
   return true;
 }
@@ -124,7 +124,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
-  const Place proxy = judge(state.contact.proxy, now, tool_);
+  const Verdict proxy = judge(state.contact.proxy, now, tool_);
   if (proxy.source == nullptr) return without_view(state, dt, pressed);
   // What a cloud has there may hold the tool later, whatever a camera sees.
   if (has(state.field_notes, FieldNote::not_loaded)) {
@@ -133,7 +133,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   }
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
-  const bool lags = robot_.place && (follows_ || now - followed_ <= kFreeFor);
+  const bool lags = robot_.position && (follows_ || now - followed_ <= kFreeFor);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
@@ -158,7 +158,7 @@ void RobotGuide::count_free(double dt) {
 // Stops following when the proxy is not free. Counts how long hand and proxy were seen free. A
 // shorter loss of sight than kFreeFor suspends the count; `hand`: what is seen of the hand or,
 // where the proxy is not free, of the proxy.
-void RobotGuide::note(const Place& hand, bool proxy_free, double dt, bool pressed) {
+void RobotGuide::note(const Verdict& hand, bool proxy_free, double dt, bool pressed) {
   if (hand.sighted()) sighted_ = looked_;
   if (proxy_free && hand.free()) {
     count_free(dt);
@@ -170,7 +170,7 @@ void RobotGuide::note(const Place& hand, bool proxy_free, double dt, bool presse
 
 RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double stamp, double ahead) {
   // It is where the tool is.
-  robot_ = {.place = target, .memory = tool_, .clear = stamp, .seen = looked_};
+  robot_ = {.position = target, .memory = tool_, .clear = stamp, .seen = looked_};
   ahead_ = ahead;
   followed_ = looked_;
   return {.target = target};
@@ -185,13 +185,13 @@ void RobotGuide::miss_hand(double now) {
   if (now - looked_ > kLateHand) forget();
 }
 
-void RobotGuide::is_at(const std::optional<Vector3d>& place) {
-  robot_ = {.place = place, .memory = robot_.memory, .clear = -kNever, .seen = -kNever};
+void RobotGuide::is_at(const std::optional<Vector3d>& position) {
+  robot_ = {.position = position, .memory = robot_.memory, .clear = -kNever, .seen = -kNever};
 }
 
 // Nothing was seen meanwhile.
 void RobotGuide::forget() {
-  is_at(robot_.place);
+  is_at(robot_.position);
   free_for_.reset();
   followed_ = -kNever;
   ahead_ = 0;
@@ -204,8 +204,8 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
   const auto waits = [](Reason reason) {
     return Answer{.reason = reason, .why = std::string(reason)};
   };
-  const Reason reason = broken_way(state);
-  if (!reason.empty() && !robot_.place) return waits(reason);
+  const Reason reason = broken_path(state);
+  if (!reason.empty() && !robot_.position) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
   if (reason.empty() && !state.contact.touching) {
     count_free(dt);
@@ -214,7 +214,7 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
   }
   follows_ = reason.empty() && (follows_ || may_start(pressed));
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
-  if (!pressed && robot_.place && (state.contact.proxy - *robot_.place).norm() > kJoin)
+  if (!pressed && robot_.position && (state.contact.proxy - *robot_.position).norm() > kJoin)
     return waits(kApart);
   // In the step in which a surface moved over it, it may still be a little inside.
   if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))

@@ -17,7 +17,7 @@ namespace palpate::ros {
 /// from its front. Else it waits at its last target, and goes back towards the camera when what is
 /// seen comes over it no faster than it may go back; no target lies in what the newest frame shows.
 /// It follows again once hand and proxy have been seen free for half a second, or the dead man's
-/// button is pressed again. One thread asks.
+/// button is pressed again. One thread calls it.
 class RobotGuide {
  public:
   /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
@@ -26,36 +26,36 @@ class RobotGuide {
 
   struct Answer {
     std::optional<Eigen::Vector3d> target = {};  ///< m, world; unset: no target is sent
-    bool retreats = false;                       ///< the target is on its way back
+    bool retreats = false;                       ///< the target leads back
     std::string_view reason = {};                ///< why it does not follow; empty: it does
-    std::string why = {};                        ///< the same with what is known of it
+    std::string why = {};                        ///< the same with its numbers
   };
 
-  /// Asked some hundred times a second. `now`: s, on the clock of the sources' stamps. `pressed`:
-  /// the dead man's button was up before, and what is on the way is the user's to see.
+  /// Called some hundred times a second. `now`: s, on the clock of the sources' stamps. `pressed`:
+  /// the dead man's button was up before, and what is on the path is the user's to see.
   [[nodiscard]] Answer look(const ServoState& state, double now, bool pressed);
 
   /// No target is sent now, for other reasons; then it waits for the half second, or the button.
   void pause();
 
-  /// Nothing is known of the hand now: for less than 20 ms that changes nothing. After more, what
-  /// was seen before does not count, and it goes on where proxy and way are seen free.
+  /// There are no data of the hand now: for less than 20 ms that changes nothing. After more, what
+  /// was seen before does not count, and it goes on where proxy and path are seen free.
   void miss_hand(double now);
 
   /// The robot is there, whatever target was answered last.
-  void is_at(const std::optional<Eigen::Vector3d>& place);
+  void is_at(const std::optional<Eigen::Vector3d>& position);
 
  private:
   // What came last over the tool, or over the robot.
   struct Memory {
     const Source* source = nullptr;                          // that saw it come; null: none did
     double came = -std::numeric_limits<double>::infinity();  // when, s
-    Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this place, m
+    Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this position, m
   };
 
   // The sources' answer about one ball.
-  struct Place {
-    const Source* source = nullptr;  // who says so; null: there is no camera
+  struct Verdict {
+    const Source* source = nullptr;  // that decided; null: there is no camera
     Seen seen = {};
 
     [[nodiscard]] bool free() const { return seen.says == Seen::Says::free; }
@@ -63,18 +63,18 @@ class RobotGuide {
     [[nodiscard]] bool sighted() const { return free() || solid(); }
   };
 
-  [[nodiscard]] Place judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
-  [[nodiscard]] double allowed_ahead(const ServoState& state, const Place& proxy, double dt);
+  [[nodiscard]] Verdict judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
+  [[nodiscard]] double allowed_ahead(const ServoState& state, const Verdict& proxy, double dt);
   [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now) const;
   [[nodiscard]] bool may_start(bool pressed) const;
   void count_free(double dt);
-  void note(const Place& hand, bool proxy_free, double dt, bool pressed);
+  void note(const Verdict& hand, bool proxy_free, double dt, bool pressed);
   // `stamp`: of the newest frame, which shows the target free, s.
   [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double stamp, double ahead = 0);
-  [[nodiscard]] Answer wait(const Place& proxy, double now, double dt);
-  void note_held(const Place& held, double now);
+  [[nodiscard]] Answer wait(const Verdict& proxy, double now, double dt);
+  void note_held(const Verdict& held, double now);
   bool note_clear(double stamp);
-  [[nodiscard]] bool goes_back(Place held, double now, double dt);
+  [[nodiscard]] bool goes_back(Verdict held, double now, double dt);
   void forget();
   [[nodiscard]] Answer without_view(const ServoState& state, double dt, bool pressed);
 
@@ -85,11 +85,11 @@ class RobotGuide {
   };
 
   struct Robot {
-    std::optional<Eigen::Vector3d> place = {};  // where it is, m, world
+    std::optional<Eigen::Vector3d> position = {};  // where it is, m, world
     Memory memory = {};
-    double clear = 0;  // stamp of the last frame that showed nothing over its place, s
+    double clear = 0;  // stamp of the last frame that showed nothing over its position, s
     double gone = 0;   // how far it has gone back since then, m
-    double seen = 0;   // when its place was seen last, s
+    double seen = 0;   // when its position was seen last, s
     Over over = {};
   };
 
@@ -104,7 +104,7 @@ class RobotGuide {
   std::optional<double> free_for_;  // s in which hand and proxy were seen free; unset: they are not
   double sighted_ = 0;              // when both were seen last, s
   double followed_ = 0;  // when it followed last, s; -infinite: something was solid since
-  double looked_ = 0;    // when it was asked last, s
+  double looked_ = 0;    // when look() was called last, s
 };
 
 }  // namespace palpate::ros

@@ -1,4 +1,4 @@
-// What the parts of a robot's guide share: reasons that are told, and limits.
+// What the sources of a robot's guide share: reasons that are reported, and limits.
 #pragma once
 
 #include <array>

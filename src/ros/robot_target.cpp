@@ -45,7 +45,7 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
-  constexpr double kGuide = 250;  // Hz; a guide is asked at least so often (judgement)
+  constexpr double kGuide = 250;  // Hz; a guide is called at least so often (judgement)
   return options.robot ? std::max({options.rate, options.robot->rate, kGuide}) : options.rate;
 }
 
@@ -57,7 +57,7 @@ RobotTarget::RobotTarget(const dds::Participant& participant,
       guide_(scene, options, servo.options().field.tool_radius),
       target_(participant, robot_topic(options), {.reliable = true}),
       due_(options.rate),
-      told_{.topic = target_.topic()} {}
+      state_{.topic = target_.topic()} {}
 
 void RobotTarget::look(double now, const message::Time& stamp) {
   const ServoState state = servo_.state();
@@ -65,9 +65,9 @@ void RobotTarget::look(double now, const message::Time& stamp) {
   step_ = state.step;
   RobotGuide::Answer answer = decide(state, now);
   if (!due_.due(now)) return;
-  const bool told = answer.target && tell(state, *answer.target, stamp);
-  if (told) at_ = answer.target;
-  if (answer.target && !told) {
+  const bool sent = answer.target && send(state, *answer.target, stamp);
+  if (sent) at_ = answer.target;
+  if (answer.target && !sent) {
     guide_.is_at(at_);
     answer = {.reason = kSlow, .why = std::string(kSlow)};
   }
@@ -76,9 +76,9 @@ void RobotTarget::look(double now, const message::Time& stamp) {
 
 RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
   const bool down = options_.dead_man && ((state.buttons >> *options_.dead_man) & 1U) != 0;
-  // While the hand is silent nothing is known of its button.
-  const bool known = state.device == DeviceState::Status::ok;
-  const bool was_up = known ? std::exchange(up_, !down) : up_;
+  // While the hand is silent its button is unknown.
+  const bool valid = state.device == DeviceState::Status::ok;
+  const bool was_up = valid ? std::exchange(up_, !down) : up_;
   const std::string_view why = objection(state, now);
   if (why.empty()) return guide_.look(state, now, down && was_up);
   if (why == kSilent || why == kNoSteps) {
@@ -89,11 +89,11 @@ RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
   return {.reason = why, .why = std::string(why)};
 }
 
-bool RobotTarget::tell(const ServoState& state, const Eigen::Vector3d& place,
+bool RobotTarget::send(const ServoState& state, const Eigen::Vector3d& position,
                        const message::Time& stamp) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();
-  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * place);
+  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * position);
   return target_.write({{stamp, options_.frame}, message::pose_of(pose)});
 }
 
@@ -102,17 +102,17 @@ void RobotTarget::count(const RobotGuide::Answer& answer, double now) {
   const std::lock_guard lock(mutex_);
   const double span = counted_ > 0 ? now - counted_ : 0;
   counted_ = now;
-  told_.readers = readers;
-  told_.why = answer.why;
-  told_.reason = answer.reason;
-  told_.retreats = answer.retreats;
-  ++(answer.target ? told_.told : told_.held);
-  if (!answer.reason.empty()) told_.waits[std::string(answer.reason)] += span;
+  state_.readers = readers;
+  state_.why = answer.why;
+  state_.reason = answer.reason;
+  state_.retreats = answer.retreats;
+  ++(answer.target ? state_.told : state_.held);
+  if (!answer.reason.empty()) state_.waits[std::string(answer.reason)] += span;
 }
 
 RosBridge::RobotState RobotTarget::state() const {
   const std::lock_guard lock(mutex_);
-  return told_;
+  return state_;
 }
 
 // Why the hand allows no target; empty: it does.

@@ -39,7 +39,7 @@ class RobotTarget {
   RobotTarget(const dds::Participant& participant, const RosBridgeOptions::Robot& options,
               const Scene& scene, const Servo& servo);
 
-  /// `now`: s, on the clock of the sources' stamps; some hundred times a second. Tells the target
+  /// `now`: s, on the clock of the sources' stamps; some hundred times a second. Sends the target
   /// where one is due.
   void look(double now, const message::Time& stamp);
 
@@ -50,7 +50,7 @@ class RobotTarget {
   [[nodiscard]] std::string_view objection(const ServoState& state, double now);
   [[nodiscard]] RobotGuide::Answer decide(const ServoState& state, double now);
   // False: it could not be sent in time.
-  bool tell(const ServoState& state, const Eigen::Vector3d& place, const message::Time& stamp);
+  bool send(const ServoState& state, const Eigen::Vector3d& position, const message::Time& stamp);
   void count(const RobotGuide::Answer& answer, double now);
 
   RosBridgeOptions::Robot options_;
@@ -64,7 +64,7 @@ class RobotTarget {
   std::optional<Eigen::Vector3d> at_ = {};  // the last target that was sent, m, world
   double counted_ = 0;                      // up to when waits are, s; 0: from now on
   mutable std::mutex mutex_;                // of what follows
-  RosBridge::RobotState told_;
+  RosBridge::RobotState state_;
 };
 
 }  // namespace palpate::ros

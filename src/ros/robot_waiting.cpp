@@ -1,4 +1,4 @@
-// Says why a robot waits, and leads it back from what comes over it.
+// Reports why a robot waits, and leads it back from what comes over it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,15 +12,15 @@ namespace {
 constexpr Reason kPassed = "the surface passed over the tool";
 constexpr Reason kCame = "something came between camera and tool";
 constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
-constexpr Reason kWay = "the way to the tool is not seen free";
+constexpr Reason kPath = "the way to the tool is not seen free";
 // Steps back for one frame: each leaves r^2 / 2 D of a ball's rim (judgement).
 constexpr int kTries = 3;
 
 }  // namespace
 
-RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
+RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt) {
   ahead_ = 0;
-  const Place held = robot_.place ? judge(*robot_.place, now, robot_.memory) : Place{};
+  const Verdict held = robot_.position ? judge(*robot_.position, now, robot_.memory) : Verdict{};
   note_held(held, now);
   Answer answer;
   if (held.solid()) {
@@ -30,12 +30,12 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
     answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
     answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
   } else {
-    answer.reason = follows_ ? kWay : kNotYet;
+    answer.reason = follows_ ? kPath : kNotYet;
     answer.why = answer.reason;
   }
   if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
   if (!goes_back(held, now, dt)) return answer;
-  answer.target = robot_.place;
+  answer.target = robot_.position;
   answer.retreats = true;
   return answer;
 }
@@ -43,13 +43,13 @@ RobotGuide::Answer RobotGuide::wait(const Place& proxy, double now, double dt) {
 // Moves the robot in front of what was measured at once, and of what is foreseen at its speed. A
 // ball's rim may still be behind what it is beside: then it goes farther. False: it is not seen to
 // be in front.
-bool RobotGuide::goes_back(Place held, double now, double dt) {
+bool RobotGuide::goes_back(Verdict held, double now, double dt) {
   double step = std::max(std::min(options_.retreat * dt, held.seen.behind), held.seen.measured);
   const bool clears = held.seen.measured > 0 && note_clear(now - held.seen.age);
   robot_.gone += clears ? step - held.seen.measured : step;
   for (int k = 0; k < kTries; ++k) {
-    robot_.place = *robot_.place + step * held.seen.towards;
-    held = judge(*robot_.place, now, robot_.memory);
+    robot_.position = *robot_.position + step * held.seen.towards;
+    held = judge(*robot_.position, now, robot_.memory);
     if (!held.solid() || !(held.seen.measured > 0)) return held.sighted();
     step = held.seen.measured;
     robot_.gone += step;
@@ -57,11 +57,11 @@ bool RobotGuide::goes_back(Place held, double now, double dt) {
   return false;
 }
 
-// Lets the robot go back only from what comes over its place no faster than it may go back: by what
-// is seen and foreseen of it since a frame that showed nothing there. What came by more than kJump
-// at once, or unseen, stands between it and the camera: the way back would lead into it. A shorter
-// loss of sight than kFreeFor changes nothing.
-void RobotGuide::note_held(const Place& held, double now) {
+// Lets the robot go back only from what comes over its position no faster than it may go back: by
+// what is seen and foreseen of it since a frame that showed nothing there. What came by more than
+// kJump at once, or unseen, stands between it and the camera: the path back would lead into it. A
+// shorter loss of sight than kFreeFor changes nothing.
+void RobotGuide::note_held(const Verdict& held, double now) {
   if (held.sighted()) robot_.seen = now;
   if (robot_.seen < now && now - robot_.seen <= kFreeFor) return;
   if (!held.sighted()) robot_.clear = -kNever;
@@ -83,7 +83,7 @@ void RobotGuide::note_held(const Place& held, double now) {
   robot_.over.what = came ? kCame : fast && options_.retreat > 0 ? kFast : kPassed;
 }
 
-// Notes that a frame showed nothing over the robot's place. False: a later one did, too.
+// Notes that a frame showed nothing over the robot's position. False: a later one did, too.
 bool RobotGuide::note_clear(double stamp) {
   if (stamp <= robot_.clear) return false;
   robot_.clear = stamp;

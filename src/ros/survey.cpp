@@ -22,7 +22,7 @@ using namespace message;
 constexpr double kDiscovery = 1;  // s in which running programs find one another (judgement)
 
 // A type that palpate takes or gives, and how a topic of it is used.
-struct Known {
+struct TopicType {
   std::string_view type;
   std::string_view hash;
   const char* read;   // of one that somebody writes; {} is its name
@@ -33,7 +33,7 @@ constexpr const char* kHand = "--device ros:generic,pose={},wrench=TOPIC";
 constexpr const char* kForce = "--device ros:generic,pose=TOPIC,wrench={}";
 constexpr const char* kRobot = "--robot generic,topic={}";
 
-constexpr std::array<Known, 6> kKnown = {
+constexpr std::array<TopicType, 6> kTypes = {
     {{Image::kName, Image::kHash, kCamera, nullptr},
      {CompressedImage::kName, CompressedImage::kHash, kCamera, nullptr},
      {PointCloud2::kName, PointCloud2::kHash, kCamera, nullptr},
@@ -41,13 +41,13 @@ constexpr std::array<Known, 6> kKnown = {
      {WrenchStamped::kName, WrenchStamped::kHash, nullptr, kForce},
      {TFMessage::kName, TFMessage::kHash, nullptr, nullptr}}};
 
-const Known* known(const std::string& type) {
-  const auto* const found = std::ranges::find(kKnown, type, &Known::type);
-  return found == kKnown.end() ? nullptr : found;
+const TopicType* find_type(const std::string& type) {
+  const auto* const found = std::ranges::find(kTypes, type, &TopicType::type);
+  return found == kTypes.end() ? nullptr : found;
 }
 
 // Command or option that uses such a topic; null: none, as for palpate's own topics.
-const char* use_of(const dds::Endpoint& there, const Known& type) {
+const char* use_of(const dds::Endpoint& there, const TopicType& type) {
   if (there.topic.starts_with("/palpate/")) return nullptr;
   if (there.writes && there.topic.ends_with("/ee_pose")) return "--device ros:fd,ns=NAMESPACE";
   return there.writes ? type.read : type.write;
@@ -66,7 +66,7 @@ void add(std::vector<RosTopic>& topics, const dds::Endpoint& there) {
   if (there.writes || topic->writers == 0)  // writers come first
     topic->reliable = topic->reliable && there.reliable;
   (there.writes ? topic->writers : topic->readers) += 1;
-  const Known* type = known(there.type);
+  const TopicType* type = find_type(there.type);
   if (type == nullptr) return;
   if (!there.hash.empty() && there.hash != fmt::format("RIHS01_{}", type->hash)) {
     topic->mismatch =
@@ -82,7 +82,8 @@ struct Ear {
   Ear(const dds::Participant& participant, RosTopic& its_topic)
       : topic(its_topic),
         reader(participant,
-               {topic.name, known(topic.type)->type.data(), known(topic.type)->hash.data()}, {}) {}
+               {topic.name, find_type(topic.type)->type.data(), find_type(topic.type)->hash.data()},
+               {}) {}
 
   void take(double now) {
     while (reader.take([&](std::span<const std::uint8_t> bytes) { frame_in(bytes); })) {
@@ -109,7 +110,7 @@ struct Ear {
 void listen(const dds::Participant& participant, std::vector<RosTopic>& topics, double seconds) {
   std::vector<std::unique_ptr<Ear>> ears;
   for (RosTopic& topic : topics) {
-    if (topic.writers == 0 || known(topic.type) == nullptr) continue;
+    if (topic.writers == 0 || find_type(topic.type) == nullptr) continue;
     try {
       ears.push_back(std::make_unique<Ear>(participant, topic));
     } catch (const Error& error) {  // not a name that ROS 2 would give

@@ -64,7 +64,7 @@ struct HandTopics {
   }
 
   RosBridge::Hand hand;
-  StepDurations reported = {};  // what was told already
+  StepDurations reported = {};  // what was published already
   dds::Writer<message::PoseStamped> pose;
   dds::Writer<message::PoseStamped> proxy;
   dds::Writer<message::TwistStamped> twist;

@@ -21,7 +21,7 @@ struct Material {
 inline constexpr std::array<Material, 4> kMaterials = {{
     // 0.3: 1 N goes 7 mm deep, the thickness of a pelt. 0.5: hairs hold a stroke back. 3 mm: tufts.
     {"fur", 0.3, 0.5, {.amplitude = 3e-5, .wavelength = 3e-3}},
-    // 1.2: gives way by 1.7 mm at 1 N, which leaves room for a relief, and is below ice where a
+    // 1.2: yields by 1.7 mm at 1 N, which leaves room for a relief, and is below ice where a
     // device bears 800 N/m, too. 0.35: dry wood on wood has 0.25 to 0.5. 2 mm: 25 to 100 grains a
     // second at 5 to 20 cm/s, which fingers feel well.
     {"wood", 1.2, 0.35, {.amplitude = 6e-5, .wavelength = 2e-3}},

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kAutomatic = "automatic";
 constexpr double kSliderSteps = 80;   // of a slider, about
 constexpr double kWidestVoxel = 10;   // spacings
-constexpr double kUsualVoxel = 0.05;  // m, where no spacing is known
+constexpr double kUsualVoxel = 0.05;  // m, where no spacing is measured
 constexpr double kWidestWave = 0.01;  // m of the hand: longer waves are felt as shape
 
 // 1, 2 or 5 times a power of ten, next to `value` by ratio.

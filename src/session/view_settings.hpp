@@ -21,7 +21,7 @@ struct ViewSettings {
   struct Preparation {
     std::optional<Policy> policy;  ///< unset: as each kind of source has it
     int history = 4;
-    double smoothing = 1;         ///< of what the noise asks for: windows and radii grow with it
+    double smoothing = 1;         ///< of what the noise requires: windows and radii grow with it
     std::optional<double> voxel;  ///< of clouds, m; unset: chosen from the data
 
     bool operator==(const Preparation&) const = default;
@@ -44,7 +44,7 @@ struct ViewScope {
 };
 
 /// What `scene` and `servos` allow to be felt, at so many world metres of a metre of the hand; what
-/// is known of sources is to be added. No stiffer than every hand's device bears.
+/// sources report is to be added. No stiffer than every hand's device bears.
 [[nodiscard]] ViewScope scope_of(const Scene& scene, double scale,
                                  const std::vector<Servo*>& servos);
 
@@ -56,10 +56,10 @@ struct ViewScope {
 void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
          const Setting::Value& value);
 
-/// The names that preset() knows.
+/// The names that preset() accepts.
 [[nodiscard]] std::vector<std::string> preset_names();
 
-/// What a run began with, but for what the preset of that name says, within the bounds of `scope`.
+/// What a run began with, but for what the preset of that name sets, within the bounds of `scope`.
 /// @throws Error when there is none.
 [[nodiscard]] ViewSettings preset(const ViewSettings& initial, const std::string& name,
                                   const ViewScope& scope);

@@ -21,7 +21,7 @@ struct RosBridgeOptions {
     /// "crisp", "cartesian", "servo", "crtk" or "generic": which topic takes the target.
     std::string preset;
     std::string ns = {};          ///< its namespace; empty: the preset's usual one
-    std::string topic = {};       ///< in place of the preset's
+    std::string topic = {};       ///< instead of the preset's
     std::string frame = "world";  ///< frame of reference of the targets
     /// The hand's own position instead of the proxy's: it enters what the camera sees.
     bool hand = false;
@@ -31,7 +31,7 @@ struct RosBridgeOptions {
     double scale = 1;
     std::optional<int> dead_man =
         {};  ///< targets are sent only while this button of the hand is down, 0 to 31
-    /// Names of the sources whose cameras say which places are free; empty: all.
+    /// Names of the sources whose cameras show which positions are free; empty: all.
     std::vector<std::string> sources = {};
     /// Speed at which it goes back from a surface that came over it, m/s, 0 to 1; 0: it stays.
     double retreat = 0.05;
@@ -69,7 +69,7 @@ class RosBridge {
   /// Targets sent to the robot so far, and why others were withheld.
   struct RobotState {
     std::string topic;
-    std::uint64_t told = 0;   ///< targets
+    std::uint64_t told = 0;   ///< targets sent
     std::uint64_t held = 0;   ///< targets that were due and not sent
     std::string why = {};     ///< why the last that was due was held back; empty: it was sent
     std::string reason = {};  ///< the same without numbers
