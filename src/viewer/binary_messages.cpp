@@ -64,22 +64,22 @@ std::int8_t rounded(float x) noexcept {
   return static_cast<std::int8_t>(std::lround(127 * x));
 }
 
-void put_places(const CloudMessage& message, ByteWriter& bytes) {
+void put_positions(const CloudMessage& message, ByteWriter& bytes) {
   Vector3f lower = Vector3f::Zero();
   Vector3f upper = Vector3f::Zero();
-  if (!message.places.empty()) lower = upper = message.places.front();
-  for (const Vector3f& place : message.places) {
-    lower = lower.cwiseMin(place);
-    upper = upper.cwiseMax(place);
+  if (!message.positions.empty()) lower = upper = message.positions.front();
+  for (const Vector3f& position : message.positions) {
+    lower = lower.cwiseMin(position);
+    upper = upper.cwiseMax(position);
   }
   const Vector3f extent = upper - lower;
   bytes.put(lower);
   bytes.put(extent);
   Vector3f scale = Vector3f::Zero();
   for (int i = 0; i < 3; ++i) scale[i] = extent[i] > 0 ? kCloudSteps / extent[i] : 0;
-  for (const Vector3f& place : message.places) {
+  for (const Vector3f& position : message.positions) {
     for (int i = 0; i < 3; ++i) {
-      const float u = std::clamp((place[i] - lower[i]) * scale[i], 0.0F, kCloudSteps);
+      const float u = std::clamp((position[i] - lower[i]) * scale[i], 0.0F, kCloudSteps);
       bytes.put(static_cast<std::uint16_t>(std::lround(u)));
     }
   }
@@ -125,7 +125,7 @@ std::string encode(const StateMessage& message) {
 }
 
 std::string encode(const CloudMessage& message) {
-  const std::size_t n = message.places.size();
+  const std::size_t n = message.positions.size();
   assert(message.colors.empty() || message.colors.size() == n);
   assert(message.normals.empty() || message.normals.size() == n);
   assert(message.trust.empty() || message.trust.size() == n);
@@ -140,7 +140,7 @@ std::string encode(const CloudMessage& message) {
       (message.faded ? kFaded : 0)));
   bytes.put(static_cast<std::uint32_t>(n));
   bytes.put(message.stamp);
-  put_places(message, bytes);
+  put_positions(message, bytes);
   for (const auto& color : message.colors) {
     for (const std::uint8_t part : color) bytes.put(part);
   }

@@ -108,7 +108,7 @@ void ToolHolders::move(Session& session, const Hand& hand) {
   if (hand.device >= holders_.size() || !options_.devices[hand.device].takeable) {
     throw Error(fmt::format("no tool {} that a page can move", hand.device));
   }
-  if (session.lost.contains(hand.device)) return;  // said before it knew
+  if (session.lost.contains(hand.device)) return;  // sent before it received the loss
   TargetSource::Target target = hand.target;
   target.position += options_.origin;
   control(hand.device, target);
@@ -119,7 +119,7 @@ void ToolHolders::move(Session& session, const Hand& hand) {
   holders_[hand.device] = &session;
 }
 
-// If the tool was taken away meanwhile, the release says that the client knows it now.
+// If the tool was taken away meanwhile, the release confirms that the client received that.
 void ToolHolders::release(Session& session, const Release& wish) {
   if (wish.device >= holders_.size()) throw Error("unknown tool");
   session.lost.erase(wish.device);
@@ -137,7 +137,7 @@ void ToolHolders::leave(const Session& session) {
     try {
       if (holders_[device] == &session) let_go(device);
     } catch (const std::exception&) {
-      continue;  // the client that would have to know is gone
+      continue;  // the client that would be notified is gone
     }
   }
 }
@@ -145,7 +145,7 @@ void ToolHolders::leave(const Session& session) {
 void ToolHolders::check(double now) {
   for (std::size_t device = 0; device < holders_.size(); ++device) {
     Session* const holder = holders_[device];
-    if (holder == nullptr || now - holder->heard <= options_.limits.hand_silence) continue;
+    if (holder == nullptr || now - holder->received <= options_.limits.hand_silence) continue;
     holder->lose(device, fmt::format("no message from this page for {} s: the tool was released",
                                      options_.limits.hand_silence));
     let_go(device);
@@ -159,7 +159,7 @@ void ToolHolders::let_go(std::size_t device) {
 
 void ClientSessions::receive(Session& session, std::string_view text, double now) {
   if (session.closing) return;
-  session.heard = now;
+  session.received = now;
   if (session.messages.exceeded(now)) {
     refuse(session, fmt::format("more than {} messages per second", options_.limits.messages), now);
     return;

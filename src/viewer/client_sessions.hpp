@@ -61,7 +61,7 @@ class Outbox {
  public:
   static constexpr std::size_t kMostAnswers = 32;
 
-  /// A replaced message leaves its place in the row to the newer one, so every topic comes to its
+  /// A replaced message leaves its slot in the row to the newer one, so every topic comes to its
   /// turn. Beyond kMostAnswers the oldest answer is left out.
   void put(Topic topic, Message message);
 
@@ -144,8 +144,8 @@ struct Session {
   double opened;         ///< s
   bool greeted = false;  ///< said hello with the token
   std::size_t points = 0;
-  double heard = 0;            ///< when it said something last, s
-  std::set<std::size_t> lost;  ///< tools that it does not know yet to be lost
+  double received = 0;         ///< time of its last message, s
+  std::set<std::size_t> lost;  ///< lost tools that it has not released yet
   Outbox outbox;
   RateWindow messages;
   RateWindow refusals;
@@ -160,7 +160,7 @@ struct ClientSessionsOptions {
   ViewerOptions::Limits limits = {};
   ViewerControls controls = {};  ///< `pause` and `reset` are set
   std::vector<DeviceLabel> devices;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of places that pages tell
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of positions that pages send
   std::function<Welcome()> welcome;  ///< devices, settings and presets are filled in
 };
 
@@ -173,13 +173,13 @@ class ToolHolders {
       : options_(options), holders_(options.devices.size(), nullptr) {}
 
   [[nodiscard]] bool taken(std::size_t device) const { return holders_[device] != nullptr; }
-  // @throws Error that says why a page cannot do that.
+  // @throws Error that explains why a page cannot do that.
   void move(Session& session, const Hand& hand);
   void release(Session& session, const Release& wish);
   void reset(const Reset& wish) const;
   /// Releases all tools of a client that is gone.
   void leave(const Session& session);
-  /// Releases what silent clients hold at `now` (s), and tells them.
+  /// Releases what silent clients hold at `now` (s), and notifies them.
   void check(double now);
 
  private:
@@ -189,8 +189,8 @@ class ToolHolders {
   std::vector<Session*> holders_;  // of each device's tool
 };
 
-/// All clients of the program: reads what they say and answers. Knows neither sockets nor clocks;
-/// one thread uses it.
+/// All clients of the program: reads what they send and answers. Depends on neither sockets nor
+/// clocks; one thread uses it.
 class ClientSessions {
  public:
   explicit ClientSessions(ClientSessionsOptions options)
@@ -208,7 +208,7 @@ class ClientSessions {
 
   /// A message came at `now` (s).
   void receive(Session& session, std::string_view text, double now);
-  /// Tells a client that its message was refused; closes it after too many of them.
+  /// Notifies a client that its message was refused; closes it after too many of them.
   void refuse(Session& session, std::string_view why, double now);
   /// Closes those who said no hello in time; lets go of tools whose holders have fallen silent.
   void check(double now);
@@ -217,7 +217,7 @@ class ClientSessions {
   void send_to_all(Topic topic, const Message& message);
   void send_settings();
   void send(const Notice& notice);
-  /// Tells the pages that the recording ended by itself.
+  /// Notifies the pages that the recording ended by itself.
   void end_record();
   /// Sends the time line's present moment if it has changed.
   void send_moment();
@@ -240,7 +240,7 @@ class ClientSessions {
   ToolHolders tools_;
   std::vector<Session*> sessions_;
   std::string recording_;                   // the file, while one is recorded
-  std::optional<TimeLine::Moment> moment_;  // that was told last
+  std::optional<TimeLine::Moment> moment_;  // that was sent last
   Viewer::Counts counts_;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kOverviewShare = 4;  // of what is drawn, at least one in so many; judgement
 
-// A place in a stretch that repeats from call to call and has no rhythm that a scan's rows could
+// An index in a stretch that repeats from call to call and has no rhythm that a scan's rows could
 // have, too.
 std::uint64_t scattered(std::uint64_t i) {
   std::uint64_t x = (i + 1) * 0x9E3779B97F4A7C15u;
@@ -52,7 +52,7 @@ double usual_weight(Kernel kernel) {
   return 1 / (plane_integral(kernel) * kUsualMultiple * kUsualMultiple);
 }
 
-/// How large points are drawn, m: R, or where they lie more densely than R asks for,
+/// How large points are drawn, m: R, or where they lie more densely than R requires,
 /// kUsualMultiple spacings.
 std::vector<float> drawn_radii(const SurfacePoints& points) {
   std::vector<float> radii = newest(points.radii, points.end_radii);
@@ -64,7 +64,7 @@ std::vector<float> drawn_radii(const SurfacePoints& points) {
   return radii;
 }
 
-/// The same of points that nothing is known of, by their own spacings.
+/// The same of points without measured ones, by their own spacings.
 std::vector<float> drawn_radii(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
   const CellGrid grid(detail::elements_at(cloud.positions, kept));
   const std::vector<float> spacings = local_spacings(grid);
@@ -75,14 +75,15 @@ std::vector<float> drawn_radii(const PointCloud& cloud, const std::vector<std::u
   return radii;
 }
 
-/// Adds points that are seen and cannot be felt here: as ones that nothing is known of.
+/// Adds points that are seen and cannot be felt here: as ones of trust 0.
 void add_overview(const PointCloud& overview, const std::vector<std::uint32_t>& kept,
                   const Eigen::Vector3d& origin, CloudMessage& message) {
   constexpr std::array<std::uint8_t, 3> kGrey{128, 128, 128};
   const Eigen::Vector3f shift = (overview.origin - origin).cast<float>();
-  const bool coloured = message.places.empty() ? !overview.colors.empty() : !message.colors.empty();
+  const bool coloured =
+      message.positions.empty() ? !overview.colors.empty() : !message.colors.empty();
   for (const std::uint32_t i : kept) {
-    message.places.emplace_back(overview.positions[i] + shift);
+    message.positions.emplace_back(overview.positions[i] + shift);
     message.trust.push_back(0);
     if (!message.normals.empty()) message.normals.emplace_back(Eigen::Vector3f::Zero());
     if (!coloured) continue;
@@ -126,15 +127,15 @@ CloudMessage cloud_of(const SurfacePoints& points, const Eigen::Vector3d& origin
   // What is left of a thinned cloud covers as much.
   const float wider = std::sqrt(static_cast<float>(shown.size()) / static_cast<float>(kept.size()));
   message.radii.reserve(kept.size());
-  message.places.reserve(kept.size());
+  message.positions.reserve(kept.size());
   message.trust.reserve(kept.size());
   if (!normals.empty()) message.normals.reserve(kept.size());
   if (!points.colors.empty()) message.colors.reserve(kept.size());
   for (const std::uint32_t k : kept) {
     const std::uint32_t i = shown[k];
-    const Eigen::Vector3f& place =
+    const Eigen::Vector3f& position =
         points.end_positions.empty() ? points.grid.points()[i] : points.end_positions[i];
-    message.places.emplace_back(place + shift);
+    message.positions.emplace_back(position + shift);
     message.radii.push_back(wider * radii[i]);
     if (!normals.empty()) message.normals.push_back(normals[i]);
     message.trust.push_back(static_cast<std::uint8_t>(std::lround(255 * confidences[i])));
@@ -149,10 +150,10 @@ std::vector<EncodedCloud> CloudEncoder::encode(const std::set<std::size_t>& budg
   for (std::size_t s = 0; s < sources_.size(); ++s) {
     const Source::State state = scene_.source(s).state();
     newest[s] = scene_.source(s).points();
-    Known& known = sources_[s];
+    Encoded& last = sources_[s];
     const bool gone = faded(state, now);
-    if (known.points.lock() != newest[s] || known.frames != state.frames || known.faded != gone) {
-      known = {newest[s], state.frames, gone, {}};
+    if (last.points.lock() != newest[s] || last.frames != state.frames || last.faded != gone) {
+      last = {newest[s], state.frames, gone, {}};
     }
     sizes[s] = newest[s] ? newest[s]->size() : 0;
     if (newest[s] && state.overview) sizes[s] += state.overview->size();

@@ -44,7 +44,7 @@ std::string_view path_of(const Request& request) {
   return target.substr(0, target.find('?'));
 }
 
-// A client's WebSocket: hands what it says to the sessions, sends what is in its outbox.
+// A client's WebSocket: hands its messages to the sessions, sends what is in its outbox.
 class Socket final : public Connection, public std::enable_shared_from_this<Socket> {
  public:
   Socket(ServerContext& context, beast::tcp_stream stream)
@@ -56,7 +56,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
-  // Answers the request that asked for a socket.
+  // Answers the request for a socket.
   void run(Request request) {
     request_ = std::move(request);
     auto& lowest = beast::get_lowest_layer(stream_);
@@ -194,7 +194,7 @@ class Socket final : public Connection, public std::enable_shared_from_this<Sock
   bool closing_ = false;
 };
 
-// Answers requests for the page, and becomes a Socket when that is asked for.
+// Answers requests for the page, and becomes a Socket when that is requested.
 class HttpConnection final : public Connection,
                              public std::enable_shared_from_this<HttpConnection> {
  public:

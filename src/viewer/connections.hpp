@@ -52,7 +52,7 @@ class Connection {
 
   /// Called now and then: has it been waiting for too long?
   virtual void check(double now) = 0;
-  /// The server ends: says so where there is somebody to hear it.
+  /// The server ends: notifies its client where there is one.
   virtual void end() { abort(); }
   /// Closes it at once, without a word.
   virtual void abort() = 0;

@@ -17,8 +17,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector3i;
 
-// Values at the corners of kCells^3 cubic cells around a centre; those that nobody put are not
-// known.
+// Values at the corners of kCells^3 cubic cells around a centre, or none where nobody put one.
 class Lattice {
  public:
   static constexpr int kCells = 32;
@@ -30,10 +29,10 @@ class Lattice {
 
   [[nodiscard]] double cell() const { return cell_; }
   // Position of a corner relative to the centre, m.
-  [[nodiscard]] Eigen::Vector3d place(const Eigen::Vector3i& corner) const {
+  [[nodiscard]] Eigen::Vector3d position(const Eigen::Vector3i& corner) const {
     return cell_ * corner.cast<double>() - Eigen::Vector3d::Constant(half_);
   }
-  [[nodiscard]] bool known(const Eigen::Vector3i& corner) const {
+  [[nodiscard]] bool has_value(const Eigen::Vector3i& corner) const {
     return !std::isnan(value(corner));
   }
   [[nodiscard]] float value(const Eigen::Vector3i& corner) const { return values_[index(corner)]; }
@@ -74,7 +73,7 @@ std::size_t index_of(const Vector3i& cell) {
 
 // Sums over the crossings of a cell's edges.
 struct Crossings {
-  Vector3f place = Vector3f::Zero();
+  Vector3f position = Vector3f::Zero();
   float support = 0;
   int count = 0;
 
@@ -83,7 +82,7 @@ struct Crossings {
     const float g = lattice.value(b);
     if ((f > 0) == (g > 0)) return;
     const float t = f / (f - g);
-    place += ((1 - t) * lattice.place(a) + t * lattice.place(b)).cast<float>();
+    position += ((1 - t) * lattice.position(a) + t * lattice.position(b)).cast<float>();
     support += (1 - t) * lattice.support(a) + t * lattice.support(b);
     ++count;
   }
@@ -92,7 +91,7 @@ struct Crossings {
 std::optional<Vector3f> vertex_of(const Lattice& lattice, const Vector3i& cell,
                                   double least_support) {
   for (int corner = 0; corner < 8; ++corner) {
-    if (!lattice.known(corner_of(cell, corner))) return std::nullopt;
+    if (!lattice.has_value(corner_of(cell, corner))) return std::nullopt;
   }
   Crossings crossings;
   for (int corner = 0; corner < 8; ++corner) {
@@ -104,7 +103,7 @@ std::optional<Vector3f> vertex_of(const Lattice& lattice, const Vector3i& cell,
   if (crossings.count == 0) return std::nullopt;
   const auto count = static_cast<float>(crossings.count);
   if (crossings.support < static_cast<float>(least_support) * count) return std::nullopt;
-  return crossings.place / count;
+  return crossings.position / count;
 }
 
 template <class Visit>
@@ -117,8 +116,8 @@ void for_each(int first, const Visit& visit) {
 }
 
 // The surface between positive and other values of a lattice: a vertex in each cell whose corners
-// are all known and differ, in the mean of its edges' crossings; a quadrangle around each edge that
-// the surface crosses. Vertices with less than `least_support` are left out.
+// all have values, which differ, in the mean of its edges' crossings; a quadrangle around each edge
+// that the surface crosses. Vertices with less than `least_support` are left out.
 class SurfaceNet {
  public:
   SurfaceNet(const Lattice& lattice, double least_support)
@@ -173,7 +172,7 @@ class SurfaceNet {
 // A block is the smallest cube that is looked at as one: a field gathers points for it once.
 constexpr int kBlock = 2;  // cells
 
-// A value further from 0 than this says that there is none in reach, whatever the field's slope.
+// A value further from 0 than this shows that no surface is in reach, whatever the field's slope.
 constexpr double kSteepest = 1.3;
 
 // Fills a lattice where the surface may be.
@@ -185,7 +184,7 @@ class Sampler {
   // A cube of `edge` cells, from the corner `first` on.
   void look(const Vector3i& first, int edge) {
     const double half = 0.5 * edge * lattice_.cell();
-    const Vector3d center = region_.center + lattice_.place(first) + Vector3d::Constant(half);
+    const Vector3d center = region_.center + lattice_.position(first) + Vector3d::Constant(half);
     if (field_.is_free({center, std::sqrt(3.0) * half})) return;
     if (edge == kBlock) {
       look_at_block(first, center, std::sqrt(3.0) * half);
@@ -208,8 +207,8 @@ class Sampler {
   }
 
   void sample(const Vector3i& corner) {
-    if (lattice_.known(corner)) return;
-    const Sample sample = field_.sample(region_.center + lattice_.place(corner));
+    if (lattice_.has_value(corner)) return;
+    const Sample sample = field_.sample(region_.center + lattice_.position(corner));
     lattice_.put(corner, sample.value, sample.support);
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The messages between program and page: docs/viewer_protocol.md says what each byte is.
+// The messages between program and page: docs/viewer_protocol.md describes each byte.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -75,7 +75,7 @@ struct Unreadable {
 using ClientMessage = std::variant<Unreadable, Hello, Hand, Release, Set, Preset, Pause, Reset,
                                    Record, Seek, Play, Points, Ping>;
 
-constexpr std::size_t kMostPoints = 10'000'000;  ///< that a page may ask for
+constexpr std::size_t kMostPoints = 10'000'000;  ///< that a page may request
 constexpr std::size_t kLongestWord = 256;        ///< bytes of a text
 constexpr double kFarthestHand = 1e6;            ///< m from the origin
 
@@ -89,7 +89,7 @@ struct Notice {
   Viewer::NoticeLevel level = Viewer::NoticeLevel::info;
   std::string text;
   std::optional<double> share = {};  ///< of work that takes a while, 0-1: the notice stays until 1
-  bool over = false;                 ///< what it says is true no more: it is taken back
+  bool over = false;                 ///< it holds no more, and is taken back
 
   bool operator==(const Notice&) const = default;
 };
@@ -177,7 +177,7 @@ constexpr std::uint32_t kBehind = 16384;
 constexpr std::uint32_t kNotLoaded = 32768;
 }  // namespace state_flag
 
-/// Message 1. Places relative to the origin, m.
+/// Message 1. Positions relative to the origin, m.
 struct StateMessage {
   std::uint8_t device = 0;
   std::uint32_t flags = 0;  ///< of state_flag
@@ -186,7 +186,7 @@ struct StateMessage {
   Eigen::Vector3f proxy = Eigen::Vector3f::Zero();
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   Eigen::Vector3f force = Eigen::Vector3f::Zero();  ///< N
-  float radius = 0;                                 ///< R; 0: not known
+  float radius = 0;                                 ///< R; 0: unknown
   float rate = 0;                                   ///< steps a second
   std::array<float, 2> computing{};                 ///< p50 and p99, s
   std::array<float, 2> lateness{};                  ///< p50 and p99, s
@@ -197,11 +197,11 @@ struct StateMessage {
 
 [[nodiscard]] std::string encode(const StateMessage& message);
 
-/// Message 2. Places relative to the origin, m. Optional columns are empty or as long as `places`.
+/// Message 2. Positions relative to the origin, m. Optional columns are empty or of equal length.
 struct CloudMessage {
   std::uint8_t source = 0;
   double stamp = 0;  ///< s
-  std::vector<Eigen::Vector3f> places;
+  std::vector<Eigen::Vector3f> positions;
   std::vector<std::array<std::uint8_t, 3>> colors = {};
   std::vector<Eigen::Vector3f> normals = {};
   std::vector<std::uint8_t> trust = {};  ///< SurfacePoints::confidences, 255 for 1

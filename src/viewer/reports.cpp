@@ -84,8 +84,8 @@ std::optional<StateMessage> StateReporter::next(double now, double radius, bool 
   message.device = device_;
   message.flags = flags(state, taken);
   message.time = state.time;
-  const bool hip_is_known = state.hip.allFinite();  // no fault of the device
-  message.hip = ((hip_is_known ? state.hip : state.contact.proxy) - origin_).cast<float>();
+  const bool hip_is_finite = state.hip.allFinite();  // no fault of the device
+  message.hip = ((hip_is_finite ? state.hip : state.contact.proxy) - origin_).cast<float>();
   message.proxy = (state.contact.proxy - origin_).cast<float>();
   message.normal = state.contact.normal.cast<float>();
   message.force = state.force.cast<float>();
@@ -106,10 +106,10 @@ std::optional<StateMessage> StateReporter::next(double now, double radius, bool 
 double StateReporter::interval(const ServoState& state) {
   const std::uint64_t steps = state.step - step_;
   const double mean = steps > 0 ? (state.time - time_) / static_cast<double>(steps) : 0;
-  const bool known = step_ > 0 && mean > 0;
+  const bool measured = step_ > 0 && mean > 0;
   step_ = state.step;
   time_ = state.time;
-  return known ? mean : state.dt;
+  return measured ? mean : state.dt;
 }
 
 // Forces after `step` wait for the next message.
@@ -177,7 +177,7 @@ std::vector<Notice> FaultNotices::update(std::span<const ViewedStream> streams,
   return news;
 }
 
-// A problem that repeats itself with every frame is told once.
+// A problem that repeats itself with every frame is reported once.
 bool FaultNotices::is_new(const StreamState& stream) {
   Problem& last = problems_[stream.source];
   const bool repeated = last.words == stream.problem && stream.problem_at - last.time <= kPeace;

@@ -1,4 +1,4 @@
-// Tells pages of a run, and does what they wish.
+// Reports a run to pages, and does what they request.
 #include "viewer/run_view.hpp"
 
 #include <fmt/core.h>

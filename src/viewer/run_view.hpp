@@ -14,8 +14,8 @@
 
 namespace palpate::viewer {
 
-/// A scene and its servos as all pages see them. Knows neither sockets nor clocks; one thread uses
-/// it.
+/// A scene and its servos as all pages see them. Depends on neither sockets nor clocks; one thread
+/// uses it.
 class RunView {
  public:
   static constexpr double kStatePeriod = 1.0 / 60;  ///< s; a screen's frame (judgement)
@@ -40,7 +40,7 @@ class RunView {
   /// Sends what is wrong with streams and devices, where somebody looks: every kReportPeriod.
   void tell_faults();
   void show(const EncodedScene& encoded);
-  /// Tells of long work, done from 0 to 1; pages that come later hear of it, too.
+  /// Reports long work, done from 0 to 1, to pages that come later, too.
   void show_progress(std::string what, double share);
 
  private:

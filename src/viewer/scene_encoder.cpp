@@ -40,7 +40,7 @@ double host_time() {
 // servo's.
 class SurfaceEncoder {
  public:
-  // @throws Error when the scene has no place for one more field.
+  // @throws Error when the scene has no slot for one more field.
   SurfaceEncoder(Scene& scene, const Servo& servo, std::size_t device,
                  const Eigen::Vector3d& origin)
       : servo_(servo),
@@ -128,7 +128,7 @@ void SceneEncoder::encode(const std::set<std::size_t>& budgets, EncodedScene& en
   if (host_time() - reported_ >= kSourcesPeriod) report(encoded);
 }
 
-// A scene that has no place for one more field is seen all the same.
+// A scene that has no slot for one more field is seen all the same.
 void SceneEncoder::encode_surfaces(EncodedScene& encoded) {
   std::string complaint;
   try {
@@ -157,9 +157,9 @@ void SceneEncoder::report(EncodedScene& encoded) {
 }
 
 std::string SceneEncoder::news(std::string complaint) {
-  if (told_ == complaint) return {};
-  told_ = std::move(complaint);
-  return told_;
+  if (complaint_ == complaint) return {};
+  complaint_ = std::move(complaint);
+  return complaint_;
 }
 
 // The servos' clock is the snapshots'.

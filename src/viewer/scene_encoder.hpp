@@ -21,7 +21,7 @@
 
 namespace palpate::viewer {
 
-/// Triangles around a centre that is known apart. Seen from the free side their corners go
+/// Triangles around a centre that is stored apart. Seen from the free side their corners go
 /// anticlockwise.
 struct Mesh {
   std::vector<Eigen::Vector3f> vertices;  ///< m, relative to the centre
@@ -33,21 +33,21 @@ struct LocalRegion {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< m
   double radius = 0;  ///< R, m; the mesh reaches kReach of it to every side
   /// Surface with less support is left out: the back of a sheet, where the solid ends because
-  /// nothing is known behind it.
+  /// nothing is measured behind it.
   double least_support = 0;
 };
 
 /// R's to every side of the centre.
 inline constexpr double kReach = 2.4;
 
-/// The surface of `field` in a cube (surface nets): what can be felt there, as far as it is known.
-/// Cubes that are free are passed over, and no more than 32^3 cells looked at, so that it costs a
-/// few thousand samples.
+/// The surface of `field` in a cube (surface nets): what can be felt there, as far as it is
+/// measured. Cubes that are free are passed over, and no more than 32^3 cells looked at, so that it
+/// costs a few thousand samples.
 [[nodiscard]] Mesh local_surface(const Field& field, const LocalRegion& region);
 
 /// At most `budget` of `count` points, rising: one of each of `budget` equal stretches of their
-/// order. Along a CellGrid's Morton order, stretches are places: what is left covers all as the
-/// points did, and the same points stay from one call to the next.
+/// order. Along a CellGrid's Morton order, stretches are neighbourhoods: what is left covers all as
+/// the points did, and the same points stay from one call to the next.
 [[nodiscard]] std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget);
 
 /// Divides `budget` points among clouds in proportion to their sizes.
@@ -77,7 +77,7 @@ class CloudEncoder {
   [[nodiscard]] std::vector<EncodedCloud> encode(const std::set<std::size_t>& budgets, double now);
 
  private:
-  struct Known {
+  struct Encoded {
     std::weak_ptr<const SurfacePoints> points;
     std::uint64_t frames = 0;
     bool faded = false;
@@ -96,13 +96,13 @@ class CloudEncoder {
 
   const Scene& scene_;
   Eigen::Vector3d origin_;
-  std::vector<Known> sources_;
+  std::vector<Encoded> sources_;
   std::vector<Overview> overviews_;
 };
 
 /// Surface around one tool.
 struct EncodedSurface {
-  double radius = 0;  ///< R, m; 0: not known
+  double radius = 0;  ///< R, m; 0: unknown
   SharedBytes bytes;  ///< the newest; null: the servo made no step yet
 };
 
@@ -154,7 +154,7 @@ class SceneEncoder {
   SceneEncoderOptions options_;
   CloudEncoder clouds_;
   std::vector<std::unique_ptr<SurfaceEncoder>> surfaces_;
-  std::string told_;          // the last complaint
+  std::string complaint_;     // the last complaint
   double reported_ = -1e300;  // s, of the host
 };
 

@@ -35,7 +35,7 @@ class Server {
   void stop();
   /// Does `act` on the network thread. Any thread.
   void post(std::function<void()> act);
-  /// Clients are told so when they are closed at the end. Network thread.
+  /// Clients receive that when they are closed at the end. Network thread.
   void restarts(std::string why);
   /// Network thread.
   [[nodiscard]] Viewer::Counts counts() const;
@@ -51,7 +51,7 @@ struct PageFile {
   std::string_view bytes;
 };
 
-/// The page's files, held in the program. Where the page was not built, one that says how to.
+/// The page's files, held in the program. Where the page was not built, one that explains how to.
 [[nodiscard]] std::span<const PageFile> page_files();
 
 }  // namespace palpate::viewer

@@ -70,13 +70,13 @@ std::size_t device(const json& object) {
 }
 
 Hand hand(const json& object) {
-  const json& place = member(object, "position");
-  if (!place.is_array() || place.size() != 3) throw Unread{"'position' is not [x, y, z]"};
+  const json& position = member(object, "position");
+  if (!position.is_array() || position.size() != 3) throw Unread{"'position' is not [x, y, z]"};
   Hand hand;
   hand.device = device(object);
   for (std::size_t i = 0; i < 3; ++i) {
     hand.target.position[static_cast<Eigen::Index>(i)] =
-        number(place[i], "position", -kFarthestHand, kFarthestHand);
+        number(position[i], "position", -kFarthestHand, kFarthestHand);
   }
   hand.target.buttons = static_cast<std::uint32_t>(whole(object, "buttons", kAllButtons));
   if (object.contains("force")) {
@@ -157,8 +157,8 @@ json json_of(const SourceReport& source) {
   if (source.disagreement) result["disagreement"] = *source.disagreement;
   if (source.pose) {
     const Eigen::Quaterniond q(source.pose->linear());
-    const Eigen::Vector3d place = source.pose->translation();
-    result["pose"] = {{"position", json_of(place)},
+    const Eigen::Vector3d position = source.pose->translation();
+    result["pose"] = {{"position", json_of(position)},
                       {"quaternion", json::array({q.x(), q.y(), q.z(), q.w()})}};
   }
   if (source.frustum) {

@@ -45,11 +45,11 @@ class Upload final : public Connection, public std::enable_shared_from_this<Uplo
     const beast::string_view target = request_.get().target();
     const std::string_view path(target.data(), target.size());
     name_ = file_name(path.substr(std::min(path.size(), kPath.size())));
-    const beast::string_view said = request_.get()[http::field::authorization];
-    const std::string_view words(said.data(), said.size());
-    const bool known =
+    const beast::string_view header = request_.get()[http::field::authorization];
+    const std::string_view words(header.data(), header.size());
+    const bool authorized =
         words.starts_with(kBearer) && same_token(words.substr(kBearer.size()), options().token);
-    if (!known) {
+    if (!authorized) {
       ++context().forbidden;
       return answer(http::status::unauthorized, "Wrong token.");
     }
@@ -78,7 +78,7 @@ class Upload final : public Connection, public std::enable_shared_from_this<Uplo
     return context().sessions.options();
   }
 
-  // In pieces: one that comes slowly is told from one that does not come.
+  // In pieces: one that comes slowly is distinguished from one that does not come.
   void read() {
     stream_.expires_after(nanoseconds(context().limits.header_time));
     http::async_read_some(

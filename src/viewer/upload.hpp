@@ -13,7 +13,7 @@ namespace palpate::viewer {
 
 using RequestParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
-/// Does a request's path ask to open a file: "/open/NAME"?
+/// Does a request's path open a file: "/open/NAME"?
 [[nodiscard]] bool is_upload(std::string_view path) noexcept;
 
 /// A file's name as a request's path writes it, with %XX for what is no letter there; empty: it is

@@ -59,17 +59,17 @@ struct Spread {
 };
 
 Spread spread_along(const std::vector<Eigen::Vector3f>& points, int axis) {
-  std::vector<float> places;
-  places.reserve(points.size());
-  for (const Eigen::Vector3f& p : points) places.push_back(p[axis]);
-  std::ranges::sort(places);
-  const auto outliers = static_cast<std::size_t>(kOutlier * static_cast<double>(places.size()));
-  const float lower = places[outliers];
-  const float upper = places[places.size() - 1 - outliers];
+  std::vector<float> values;
+  values.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) values.push_back(p[axis]);
+  std::ranges::sort(values);
+  const auto outliers = static_cast<std::size_t>(kOutlier * static_cast<double>(values.size()));
+  const float lower = values[outliers];
+  const float upper = values[values.size() - 1 - outliers];
   const auto foot = static_cast<float>(kFoot) * (upper - lower);
-  const auto even = kFoot * static_cast<double>(places.size());
-  const auto low = std::ranges::upper_bound(places, lower + foot) - places.begin();
-  const auto high = places.end() - std::ranges::lower_bound(places, upper - foot);
+  const auto even = kFoot * static_cast<double>(values.size());
+  const auto low = std::ranges::upper_bound(values, lower + foot) - values.begin();
+  const auto high = values.end() - std::ranges::lower_bound(values, upper - foot);
   return {upper - lower, static_cast<double>(low) / even, static_cast<double>(high) / even};
 }
 

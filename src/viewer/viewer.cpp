@@ -36,7 +36,7 @@ class EncoderThread {
 
   // `show` is called on the thread.
   EncoderThread(Scene& scene, SceneEncoderOptions options, Show show);
-  // Waits for the picture that is under way.
+  // Waits for the picture in progress.
   ~EncoderThread() = default;
   EncoderThread(const EncoderThread&) = delete;
   EncoderThread& operator=(const EncoderThread&) = delete;
@@ -172,7 +172,7 @@ void Viewer::restarts(std::string why) {
 void Viewer::notice(Viewer::NoticeLevel level, std::string text) {
   Parts& parts = *parts_;
   parts.server.post(
-      [&parts, said = Notice{level, std::move(text)}] { parts.run.sessions().send(said); });
+      [&parts, item = Notice{level, std::move(text)}] { parts.run.sessions().send(item); });
 }
 
 void Viewer::progress(std::string what, double share) {

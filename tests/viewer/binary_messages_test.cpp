@@ -79,7 +79,7 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   CloudMessage message;
   message.source = 2;
   message.stamp = 7.25;
-  message.places = {{1, 10, 5}, {3, 10, 9}};
+  message.positions = {{1, 10, 5}, {3, 10, 9}};
   message.colors = {{10, 20, 30}, {40, 50, 60}};
   message.normals = {{0, 0, 1}, {1, 0, 0}};
   message.trust = {7, 255};
@@ -94,8 +94,8 @@ TEST(CloudMessage, LiesByteByByteAsTheProtocolSays) {
   EXPECT_EQ(test::number_at<double>(bytes, 8), 7.25);
   expect_vector(bytes, 16, {1, 10, 5});
   expect_vector(bytes, 28, {2, 0, 4});
-  const std::array<std::uint16_t, 6> places{0, 0, 0, 65535, 0, 65535};
-  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(u16(bytes, 40 + 2 * i), places[i]);
+  const std::array<std::uint16_t, 6> positions{0, 0, 0, 65535, 0, 65535};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(u16(bytes, 40 + 2 * i), positions[i]);
   const std::array<std::uint8_t, 6> colors{10, 20, 30, 40, 50, 60};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(u8(bytes, 52 + i), colors[i]);
   const std::array<std::int8_t, 4> normals{0, 0, 127, 0};
@@ -132,13 +132,14 @@ TEST(CloudMessage, PlacesComeBackToHalfAStepOfTheExtent) {
   std::uniform_real_distribution<float> at(-3, 5);
   CloudMessage message;
   for (int i = 0; i < 1000; ++i)
-    message.places.emplace_back(at(random), at(random), 0.1F * at(random));
+    message.positions.emplace_back(at(random), at(random), 0.1F * at(random));
   const std::string bytes = encode(message);
-  for (std::size_t p = 0; p < message.places.size(); ++p) {
+  for (std::size_t p = 0; p < message.positions.size(); ++p) {
     for (std::size_t i = 0; i < 3; ++i) {
       const float extent = f32(bytes, 28 + 4 * i);
       const float place = f32(bytes, 16 + 4 * i) + extent * u16(bytes, 40 + 6 * p + 2 * i) / 65535;
-      EXPECT_NEAR(place, message.places[p][static_cast<Eigen::Index>(i)], 0.51F * extent / 65535);
+      EXPECT_NEAR(place, message.positions[p][static_cast<Eigen::Index>(i)],
+                  0.51F * extent / 65535);
     }
   }
 }

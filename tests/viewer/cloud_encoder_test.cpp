@@ -43,9 +43,9 @@ TEST(CloudOf, GivesTheFeltPointsRelativeToTheOrigin) {
   points.origin = {1000, 0, 0};
   points.density_weights[5] = 0;
   const CloudMessage cloud = cloud_of(points, {999, 0, 0.25}, 1000);
-  EXPECT_EQ(cloud.places.size(), 48u);
+  EXPECT_EQ(cloud.positions.size(), 48u);
   EXPECT_EQ(cloud.normals.size(), 48u);
-  for (const auto& place : cloud.places) {
+  for (const auto& place : cloud.positions) {
     EXPECT_NEAR(place.x(), 1, 0.0121);
     EXPECT_FLOAT_EQ(place.z(), 0.25F);
   }
@@ -59,8 +59,8 @@ TEST(CloudOf, ColoursStayWithTheirPoints) {
   }
   const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), 10);
   ASSERT_EQ(cloud.colors.size(), 10u);
-  for (std::size_t k = 0; k < cloud.places.size(); ++k) {
-    EXPECT_EQ(points.grid.points()[cloud.colors[k][0]], cloud.places[k]);
+  for (std::size_t k = 0; k < cloud.positions.size(); ++k) {
+    EXPECT_EQ(points.grid.points()[cloud.colors[k][0]], cloud.positions[k]);
   }
 }
 
@@ -82,8 +82,8 @@ TEST(CloudOf, TrustStaysWithItsPointsAndIsAByteWhoseUpperHalfIsTrusted) {
 float middle_radius(const SurfacePoints& points, std::size_t budget) {
   const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), budget);
   std::size_t nearest = 0;
-  for (std::size_t i = 0; i < cloud.places.size(); ++i) {
-    if (cloud.places[i].norm() < cloud.places[nearest].norm()) nearest = i;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    if (cloud.positions[i].norm() < cloud.positions[nearest].norm()) nearest = i;
   }
   return cloud.radii.at(nearest);
 }
@@ -113,17 +113,17 @@ TEST(CloudOf, ShowsMovingPointsWhereTheyGo) {
   points.end_presences.assign(points.size(), 1.F);
   points.end_presences[0] = 0;
   const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), 1000);
-  ASSERT_EQ(cloud.places.size(), 48u);
-  EXPECT_EQ(cloud.places.front(), Eigen::Vector3f(1, 2, 3));
+  ASSERT_EQ(cloud.positions.size(), 48u);
+  EXPECT_EQ(cloud.positions.front(), Eigen::Vector3f(1, 2, 3));
 }
 
 TEST(CloudOf, AThinnedSheetIsStillCoveredEverywhere) {
   const SurfacePoints points = test::make_points(test::plane(0, 4e-3, 15));
   const CloudMessage cloud = cloud_of(points, Eigen::Vector3d::Zero(), 240);  // a quarter
-  ASSERT_EQ(cloud.places.size(), 240u);
+  ASSERT_EQ(cloud.positions.size(), 240u);
   for (const auto& p : points.grid.points()) {
     float nearest = 1;
-    for (const auto& q : cloud.places) nearest = std::min(nearest, (p - q).norm());
+    for (const auto& q : cloud.positions) nearest = std::min(nearest, (p - q).norm());
     EXPECT_LT(nearest, 16e-3F);
   }
 }

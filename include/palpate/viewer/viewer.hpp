@@ -69,7 +69,7 @@ struct ViewerControls {
   /// character, and does not begin with a dot. Empty: pages do not offer it.
   std::function<void(const std::string& name, std::string bytes)> open = {};
 
-  /// A recording that is shown in place of a run: servos show its states, and nobody steps them.
+  /// A recording that is shown instead of a run: servos show its states, and nobody steps them.
   struct TimeLine {
     /// Moment of the recording that is shown.
     struct Moment {
@@ -88,7 +88,7 @@ struct ViewerControls {
     std::function<Moment()> moment = {};
     std::function<void(double time)> seek = {};
     std::function<void(bool on, double speed)> play = {};
-    /// The largest force in each of equal parts of the length, N; 0 where it is not known yet.
+    /// The largest force in each of equal parts of the length, N; 0 where it is unknown yet.
     std::function<std::vector<float>()> envelope = {};
     /// The forces before the moment that was sought last, oldest first.
     std::function<std::vector<Force>(std::size_t device)> past = {};
@@ -146,7 +146,7 @@ struct ViewerOptions {
   std::string address = "127.0.0.1";
   /// 0: any that is free. Unset: the first free one of kFirstPort and the nine after it.
   std::optional<std::uint16_t> port = {};
-  /// Viewer::listening() of a viewer that has ended: goes on there, in place of `address` and
+  /// Viewer::listening() of a viewer that has ended: goes on there, instead of `address` and
   /// `port`.
   std::shared_ptr<const ListeningPort> listening = {};
   /// 1 to 256 letters, digits and any of -._~; empty: 128 random bits of the system.
@@ -213,7 +213,7 @@ class Viewer {
   void restarts(std::string why);
   /// Sends every page a notice for the person at it. Any thread but a servo's.
   void notice(NoticeLevel level, std::string text);
-  /// Sends every page the progress of long work, 0 to 1; 0: not known. One such notice stays on
+  /// Sends every page the progress of long work, 0 to 1; 0: unknown. One such notice stays on
   /// pages until it is 1. Any thread but a servo's.
   void progress(std::string what, double share);
   /// The program itself changed a setting: notifies every page. Any thread but a servo's.
