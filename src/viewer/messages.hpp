@@ -192,7 +192,7 @@ struct StateMessage {
   std::array<float, 2> lateness{};                  ///< p50 and p99, s
   float interval = 0;                               ///< between samples on average, s
   std::vector<Eigen::Vector3f> forces;              ///< N, oldest first; at most 65535
-  std::optional<Eigen::Quaternionf> orientation{};  ///< of the tool, where it is known
+  std::optional<Eigen::Quaternionf> orientation{};  ///< of the tool, where it is reported
 };
 
 [[nodiscard]] std::string encode(const StateMessage& message);

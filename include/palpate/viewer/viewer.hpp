@@ -20,7 +20,7 @@ namespace palpate {
 /// Callbacks for actions of a viewer's page. All are called on the viewer's network thread, one at
 /// a time, and should return within a millisecond or so. An Error that they throw is reported to
 /// the page and changes nothing. An empty callback means that the action is refused, unless its
-/// comment says otherwise.
+/// comment states otherwise.
 struct ViewerControls {
   /// Something that a viewer's page may change. The viewer has no setting of its own: a program
   /// offers them.
