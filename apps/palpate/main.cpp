@@ -73,7 +73,7 @@ Command command(CLI::App& program, const char* name, const char* help,
   });
 }
 
-// The same of one that asks what it was given.
+// The same of one that reads which options it was given.
 template <class Options>
 Command command(CLI::App& program, const char* name, const char* help,
                 void (*add)(CLI::App&, Options&), void (*run)(const CLI::App&, const Options&)) {
@@ -84,14 +84,14 @@ Command command(CLI::App& program, const char* name, const char* help,
                           });
 }
 
-void touch_as_told(const CLI::App& app, const TouchChoices& choices) {
+void touch_as_given(const CLI::App& app, const TouchChoices& choices) {
   touch(plan_touch(app, choices));
 }
 
 std::vector<Command> add_commands(CLI::App& p) {
   return {
       command(p, "touch", "Touch clouds and camera streams, and report the forces",
-              add_touch_command, touch_as_told),
+              add_touch_command, touch_as_given),
       command(p, "align", "Find the poses of cameras and clouds by aligning their surfaces",
               add_align_options, align_sources),
       command(p, "info", "Describe clouds, cameras and sequences", add_info_options, info),
@@ -136,8 +136,8 @@ std::vector<std::string> arguments(const CLI::App& program, int argc, char** arg
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
     const auto named = [&](const CLI::App* each) { return each->get_name() == words.front(); };
-    const bool known = words.empty() || !program.get_subcommands(named).empty();
-    if (known) words.emplace_back("--help");  // else it is refused as what it is
+    const bool valid = words.empty() || !program.get_subcommands(named).empty();
+    if (valid) words.emplace_back("--help");  // else it is refused as what it is
   }
   std::ranges::reverse(words);
   return words;

@@ -31,7 +31,7 @@ void draw_alignment(const LoadedScene& loaded, const std::vector<AlignedSource>&
   constexpr std::size_t kShown = 60'000;  // points of a source
   const Waiting waiting("drawing the picture");
   nlohmann::json facts = {{"sources", nlohmann::json::array()}};
-  std::vector<float> rows;  // place before, place after, normal after, source
+  std::vector<float> rows;  // position before and after, normal after, source
   for (std::size_t s = 0; s < aligned.size(); ++s) {
     const SurfacePoints& points = *loaded.scene.source(s).points();
     const Eigen::Isometry3f moved = aligned[s].T_aligned_rough.cast<float>();

@@ -65,7 +65,7 @@ Losses with(Losses losses, const Losses& more) {
   return losses;
 }
 
-// None: it is damaged, which `losses` tell.
+// None: it is damaged, which `losses` report.
 std::optional<bag::Attachment> attachment_of(const bag::McapReader& reader, std::size_t index,
                                              Losses& losses) {
   try {
@@ -120,7 +120,7 @@ std::string file_in(const std::string& path) {
                           path, fmt::join(files, ", ")));
 }
 
-void tell(const BagCommand& command) {
+void print_info(const BagCommand& command) {
   check_distinct({{"the bag", command.input}}, {{"--json", command.json}});
   std::optional<OutputFile> json;
   if (!command.json.empty()) json.emplace(command.json);
@@ -190,7 +190,7 @@ void add_bag_options(CLI::App& command, BagCommand& bag) {
 }
 
 void bag(const BagCommand& bag) {
-  if (bag.info->parsed()) return tell(bag);
+  if (bag.info->parsed()) return print_info(bag);
   if (bag.recover->parsed()) return recover(bag);
   throw UsageError(
       "nothing to do with a bag is given; use info or recover (see 'palpate bag --help')");

@@ -148,12 +148,12 @@ Eigen::Isometry3d pose_of(const std::vector<double>& v, const std::string& what)
 
 PoseArgument parse_pose(const std::string& text) {
   const std::string form = std::string("NAME=") + kPoseForm;
-  const std::size_t place = text.find('=');
-  if (place == std::string::npos || place == 0) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
     throw UsageError(fmt::format("--pose: '{}' names no source; write {}", text, form));
   }
-  const std::vector<double> v = parse_numbers(text.substr(place + 1), 0, "--pose", form);
-  const std::string name = text.substr(0, place);
+  const std::vector<double> v = parse_numbers(text.substr(equals + 1), 0, "--pose", form);
+  const std::string name = text.substr(0, equals);
   return {name, pose_of(v, "--pose " + name)};
 }
 
@@ -165,10 +165,10 @@ bool is_name(std::string_view text) {
 
 CloudArgument split_argument(const std::string& text) {
   std::error_code ignored;
-  const std::size_t place = text.find('=');
-  const bool named = place != std::string::npos && !std::filesystem::exists(text, ignored) &&
-                     is_name(std::string_view(text).substr(0, place));
-  return named ? CloudArgument{text.substr(0, place), text.substr(place + 1)}
+  const std::size_t equals = text.find('=');
+  const bool named = equals != std::string::npos && !std::filesystem::exists(text, ignored) &&
+                     is_name(std::string_view(text).substr(0, equals));
+  return named ? CloudArgument{text.substr(0, equals), text.substr(equals + 1)}
                : CloudArgument{"", text};
 }
 

@@ -76,8 +76,8 @@ inline constexpr const char* kPoseForm =
 
 /// Names every source that has no name yet after its path, with a number where two would be the
 /// same.
-/// @throws UsageError when two names are the same, a path names nothing, or standard input is asked
-/// for twice.
+/// @throws UsageError when two names are the same, a path names nothing, or standard input is
+/// requested twice.
 void name_all(std::vector<CloudArgument>& sources);
 
 /// Both for each argument.

@@ -18,7 +18,7 @@ namespace palpate::app {
 /// Suggests the word that was meant. Its name is the words, with ' ' between (bash_completion()).
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::string>& words);
 
-/// A check that takes what `parse` takes, and otherwise says what its UsageError does.
+/// A check that takes what `parse` takes, and otherwise reports what its UsageError does.
 [[nodiscard]] CLI::Validator parsed_by(std::function<void(const std::string&)> parse);
 
 /// --json of a command whose report can be had as data.

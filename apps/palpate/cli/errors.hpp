@@ -21,13 +21,13 @@ enum ExitCode : int {
   kUsage = 2,    ///< the command line makes no sense
 };
 
-/// A command line that parses but makes no sense; the message says which part and what to write.
+/// A command line that parses but makes no sense; the message names which part and what to write.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// @throws UsageError that says `what`, unless `good`.
+/// @throws UsageError with the text `what`, unless `good`.
 inline void require(bool good, const char* what) {
   if (!good) throw UsageError(what);
 }
@@ -53,7 +53,7 @@ auto suggesting(std::string_view word, const Named& named, Make make) {
 }
 
 /// "; did you mean --radius?" of the first word on a command line that `program` or one of its
-/// commands did not know; empty: nothing is near.
+/// commands did not recognise; empty: nothing is near.
 [[nodiscard]] std::string hint(const CLI::App& program);
 
 }  // namespace palpate::app

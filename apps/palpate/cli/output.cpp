@@ -27,18 +27,18 @@ bool as_it_is(const std::string& path) {
 fs::path whole_path(const std::string& path) {
   std::error_code failed;
   const fs::path whole = fs::absolute(path, failed);
-  const fs::path place = failed ? fs::path() : fs::weakly_canonical(whole, failed);
-  return failed ? fs::path() : place;
+  const fs::path resolved = failed ? fs::path() : fs::weakly_canonical(whole, failed);
+  return failed ? fs::path() : resolved;
 }
 
 std::string where_links_lead(const std::string& path) {
-  const fs::path place = whole_path(path);
-  return place.empty() ? path : place.string();
+  const fs::path resolved = whole_path(path);
+  return resolved.empty() ? path : resolved.string();
 }
 
 // A file that may not be written must not be replaced either.
-bool protects_itself(const std::string& place) {
-  return access(place.c_str(), F_OK) == 0 && access(place.c_str(), W_OK) != 0;
+bool protects_itself(const std::string& path) {
+  return access(path.c_str(), F_OK) == 0 && access(path.c_str(), W_OK) != 0;
 }
 
 bool is_plain(const std::string& path) {
@@ -47,11 +47,11 @@ bool is_plain(const std::string& path) {
   return !fs::exists(path, ignored) || fs::is_regular_file(path, ignored);
 }
 
-bool same_place(const std::string& a, const std::string& b) {
+bool same_file(const std::string& a, const std::string& b) {
   std::error_code failed;
   if (fs::equivalent(a, b, failed) && !failed) return true;  // two names of one file
-  const fs::path place = whole_path(a);
-  return place.empty() ? a == b : place == whole_path(b);
+  const fs::path resolved = whole_path(a);
+  return resolved.empty() ? a == b : resolved == whole_path(b);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ void OutputFile::Closer::operator()(std::FILE* file) const {
 
 OutputFile::OutputFile(const std::string& path, Unfinished unfinished)
     : path_(path == "-" ? "standard output" : path),
-      place_(path),
+      target_(path),
       growing_(path),
       stays_(unfinished == Unfinished::stays && path != "-" && !as_it_is(path)) {
   if (path == "-") {
@@ -70,18 +70,18 @@ OutputFile::OutputFile(const std::string& path, Unfinished unfinished)
     return;
   }
   if (!as_it_is(path)) {
-    place_ = where_links_lead(path);
-    if (protects_itself(place_)) fail("cannot be written");
-    growing_ = place_ + (stays_ ? ".part" : fmt::format(".part-{}", getpid()));
+    target_ = where_links_lead(path);
+    if (protects_itself(target_)) fail("cannot be written");
+    growing_ = target_ + (stays_ ? ".part" : fmt::format(".part-{}", getpid()));
   }
   open();
-  if (growing_ == place_ || nameless_) return;
+  if (growing_ == target_ || nameless_) return;
   file_.reset();
   std::remove(growing_.c_str());
 }
 
 OutputFile::~OutputFile() {
-  if (file_ && growing_ != place_ && !nameless_ && !stays_) std::remove(growing_.c_str());
+  if (file_ && growing_ != target_ && !nameless_ && !stays_) std::remove(growing_.c_str());
 }
 
 void OutputFile::open() {
@@ -92,18 +92,18 @@ void OutputFile::open() {
 }
 
 void OutputFile::open_named() {
-  const char* mode = growing_ == place_ ? "wb" : "wbx";
+  const char* mode = growing_ == target_ ? "wb" : "wbx";
   file_.reset(std::fopen(growing_.c_str(), mode));
   for (int i = 2; !file_ && stays_ && errno == EEXIST; ++i) {
-    growing_ = fmt::format("{}.part-{}", place_, i);
+    growing_ = fmt::format("{}.part-{}", target_, i);
     file_.reset(std::fopen(growing_.c_str(), mode));
   }
 }
 
 // Opens a file without a name, which vanishes however the program ends. Some file systems cannot.
 bool OutputFile::open_nameless() {
-  if (stays_ || growing_ == place_ || access("/proc/self/fd", F_OK) != 0) return false;
-  const std::string folder = fs::path(place_).parent_path().string();
+  if (stays_ || growing_ == target_ || access("/proc/self/fd", F_OK) != 0) return false;
+  const std::string folder = fs::path(target_).parent_path().string();
   const int descriptor = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (descriptor < 0) return false;
   file_.reset(fdopen(descriptor, "wb"));
@@ -150,11 +150,11 @@ void OutputFile::close() {
   if (nameless_ && !name()) fail("cannot be written");
   if (stays_ && fdatasync(fileno(file_.get())) != 0) fail("cannot be written");
   const bool closed = std::fclose(file_.release()) == 0;
-  if (growing_ == place_) {
+  if (growing_ == target_) {
     if (!closed) fail("cannot be written");
     return;
   }
-  if (closed && std::rename(growing_.c_str(), place_.c_str()) == 0) return;
+  if (closed && std::rename(growing_.c_str(), target_.c_str()) == 0) return;
   const int reason = errno;
   if (!stays_) std::remove(growing_.c_str());
   errno = reason;
@@ -210,7 +210,7 @@ void check_distinct(const std::vector<NamedFile>& inputs, const std::vector<Name
   for (const NamedFile& output : outputs) {
     if (!is_plain(output.path)) continue;
     for (const NamedFile& other : others) {
-      if (!is_plain(other.path) || !same_place(output.path, other.path)) continue;
+      if (!is_plain(other.path) || !same_file(output.path, other.path)) continue;
       throw UsageError(fmt::format("{} {} is the same file as {}; choose another path", output.name,
                                    output.path, other.name));
     }

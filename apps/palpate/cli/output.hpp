@@ -14,10 +14,10 @@
 namespace palpate::app {
 
 /// A file that appears when it is complete: until close() it grows without a name in its folder or,
-/// where the file system knows no such files, beside its place under another name. So a run that
+/// where the file system has no such files, beside its target under another name. So a run that
 /// fails leaves what was there as it was. "-" is standard output; what is no plain file (/dev/null,
-/// a pipe) is written as it is. Whatever goes wrong, a full disk included, is told as an Error that
-/// names the file.
+/// a pipe) is written as it is. Whatever goes wrong, a full disk included, is reported as an Error
+/// that names the file.
 ///
 /// One that `stays` grows as PATH.part (PATH.part-2, ... where there is one already), and if it is
 /// not closed it stays there, in whole lines where the disk is full: for what cannot be had twice.
@@ -33,11 +33,11 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
   /// @throws Error when it cannot be written.
   void write(std::string_view text);
-  /// Brings everything to the disk and to its place. @throws Error as the constructor does.
+  /// Brings everything to the disk and to its target. @throws Error as the constructor does.
   void close();
 
-  /// Where it grows, for a program that this one starts; what it writes there comes to its place as
-  /// well.
+  /// Where it grows, for a program that this one starts; what it writes there comes to its target
+  /// as well.
   /// @throws Error when it cannot be made.
   [[nodiscard]] std::string growing();
 
@@ -53,17 +53,17 @@ class OutputFile {
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;
-  std::string place_;    // where links lead
+  std::string target_;   // where links lead
   std::string growing_;  // its name meanwhile; the same where it is written as it is
   bool stays_;
   bool nameless_ = false;
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// The file that was asked for; none where `path` is empty. @throws Error as OutputFile does.
+/// The requested file; none where `path` is empty. @throws Error as OutputFile does.
 [[nodiscard]] std::optional<OutputFile> output_at(const std::string& path);
 
-/// Writes all of a file that was asked for, if any. @throws Error as OutputFile does.
+/// Writes all of a requested file, if any. @throws Error as OutputFile does.
 void write_whole(std::optional<OutputFile>& file, std::string_view text);
 /// The same of the file at `path`; none where that is empty.
 void write_whole(const std::string& path, std::string_view text);

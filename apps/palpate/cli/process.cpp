@@ -16,10 +16,10 @@ namespace palpate::app {
 namespace {
 
 // A signal is the process's, so is what its handler can reach.
-volatile std::sig_atomic_t asked_to_end = 0;
+volatile std::sig_atomic_t end_requested = 0;
 
-void ask(int) {
-  asked_to_end = 1;
+void request_end(int) {
+  end_requested = 1;
 }
 
 bool has_desktop() {
@@ -98,9 +98,9 @@ int run_program(const std::vector<std::string>& words, const std::string& output
 }
 
 Interruption::Interruption() {
-  asked_to_end = 0;
+  end_requested = 0;
   struct sigaction action = {};
-  action.sa_handler = ask;
+  action.sa_handler = request_end;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
@@ -114,8 +114,8 @@ Interruption::~Interruption() {
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
 }
 
-bool Interruption::asked() const noexcept {
-  return asked_to_end != 0;
+bool Interruption::requested() const noexcept {
+  return end_requested != 0;
 }
 
 Browser::Browser(const std::string& url) {

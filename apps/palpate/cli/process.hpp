@@ -12,8 +12,8 @@ namespace palpate::app {
 [[nodiscard]] int run_program(const std::vector<std::string>& words, const std::string& output);
 
 /// While it lives, Ctrl-C (SIGINT), SIGTERM and a terminal that is closed (SIGHUP, unless the
-/// program was started to outlive it: nohup) ask the program to come to an end instead of ending
-/// it. Once: the second one of a kind ends it. One at a time.
+/// program was started to outlive it: nohup) request the program to come to an end instead of
+/// ending it. Once: the second one of a kind ends it. One at a time.
 class Interruption {
  public:
   Interruption();
@@ -21,7 +21,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  [[nodiscard]] bool asked() const noexcept;
+  [[nodiscard]] bool requested() const noexcept;
 
  private:
   static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
@@ -34,7 +34,7 @@ class Interruption {
 /// the end.
 class Browser {
  public:
-  /// Opens nothing where there is no browser, no desktop or no place for the file.
+  /// Opens nothing where there is no browser, no desktop or no folder for the file.
   explicit Browser(const std::string& url);
   ~Browser();
   Browser(const Browser&) = delete;

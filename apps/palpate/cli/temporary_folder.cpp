@@ -15,7 +15,7 @@
 namespace palpate::app {
 namespace {
 
-std::filesystem::path place() {
+std::filesystem::path root_folder() {
   std::error_code error;
   std::filesystem::path folder = std::filesystem::temp_directory_path(error);
   if (!error) return folder;
@@ -25,7 +25,7 @@ std::filesystem::path place() {
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (place() / "palpate-XXXXXX").string();
+  std::string pattern = (root_folder() / "palpate-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) {
     throw Error(fmt::format(
         "{} cannot be created for temporary files; set TMPDIR to a folder with room", pattern));

@@ -25,10 +25,10 @@ namespace palpate::app {
 /// A length in metres with a fitting unit: "2.54 mm", "0.8 um", "1.42 km".
 [[nodiscard]] std::string length(double metres);
 
-/// An energy in joules in the same way: "-12.3 mJ".
+/// An energy in joules in the same form: "-12.3 mJ".
 [[nodiscard]] std::string energy(double joules);
 
-/// A time in seconds in the same way: "0.35 s", "12 ms".
+/// A time in seconds in the same form: "0.35 s", "12 ms".
 [[nodiscard]] std::string duration(double seconds);
 
 /// Quantile by nearest rank: the smallest of `sorted` that is at least as large as a share (0 to 1)
@@ -56,7 +56,7 @@ class Style {
   bool colored_;
 };
 
-/// Says on standard error how far something is: in one line that is rewritten on a terminal; in
+/// Reports on standard error how far something is: in one line that is rewritten on a terminal; in
 /// lines of their own, after two seconds and then every five, elsewhere.
 class Progress {
  public:
@@ -79,7 +79,7 @@ class Progress {
   Clock::time_point next_;
 };
 
-/// Says on standard error that something is under way whose progress nobody knows, once it has
+/// Reports on standard error that something of unknown progress is going on, once it has
 /// taken a while: half a second on a terminal, where the line vanishes at the end, else two.
 class Waiting {
  public:

@@ -21,7 +21,7 @@ namespace palpate::app {
 namespace {
 
 // Drivers with their devices, or what they miss; one that is available is followed by what
-// `state_of` says of it.
+// `state_of` reports of it.
 void print_drivers(const std::vector<DriverInfo>& drivers, std::FILE* stream,
                    const std::function<std::string(const DriverInfo&)>& state_of) {
   const Style style(stream);

@@ -49,7 +49,7 @@ std::string verdict(Severity severity) {
 
 }  // namespace
 
-void ask(std::span<const Check> checks, const Machine& machine, Findings& findings) {
+void run_checks(std::span<const Check> checks, const Machine& machine, Findings& findings) {
   for (const Check& check : checks) {
     findings.push_back({check.question(machine), check.area, check.what});
   }

@@ -17,9 +17,9 @@ class App;
 
 namespace palpate::app::doctor {
 
-/// A device on USB, as the kernel tells in /sys/bus/usb/devices.
+/// A device on USB, as the kernel lists in /sys/bus/usb/devices.
 struct UsbDevice {
-  std::string place;       ///< "1-4.2"
+  std::string path;        ///< "1-4.2"
   std::string vendor;      ///< "045e"
   std::string product;     ///< "02ae"
   std::string title = {};  ///< what the device calls its maker and itself: may be anything
@@ -44,7 +44,7 @@ struct DeviceModel {
   std::string_view rival;  ///< a driver of the kernel that takes it away; empty: none
 };
 
-/// A device that is plugged in and whose model palpate knows.
+/// A device that is plugged in and whose model palpate lists.
 struct KnownUsbDevice {
   UsbDevice device;
   DeviceModel model;
@@ -57,7 +57,7 @@ struct KnownUsbDevice {
 [[nodiscard]] bool any_reached_by(std::string_view driver,
                                   const std::vector<KnownUsbDevice>& devices);
 
-/// How much a finding stands in the way, from nothing on.
+/// How much a finding hinders a run, from nothing on.
 enum class Severity {
   good,
   note,     ///< something is absent that not everybody needs
@@ -108,11 +108,11 @@ struct Check {
 };
 
 /// The answers to a table's questions are appended to `findings`.
-void ask(std::span<const Check> checks, const Machine& machine, Findings& findings);
+void run_checks(std::span<const Check> checks, const Machine& machine, Findings& findings);
 
 // One function an area; each appends to `findings`.
 
-/// Does the kernel let a servo's thread run in time, and is the thread permitted what it asks for?
+/// Does the kernel let a servo's thread run in time, and is the thread permitted what it requests?
 void check_kernel(const Machine& machine, Findings& findings);
 /// Haptic devices on USB, and the vendors' libraries and services that reach them.
 void check_haptic_devices(const Machine& machine, Findings& findings);

@@ -86,14 +86,14 @@ Answer frequency_governor(const Machine& machine) {
 Answer clock_source(const Machine& machine) {
   static constexpr std::array<std::string_view, 4> kSlow = {"hpet", "acpi_pm", "jiffies",
                                                             "refined-jiffies"};
-  const auto told = [&](const char* file) {
+  const auto content = [&](const char* file) {
     return text(machine.system, std::string(kClock) + file);
   };
-  const auto current = told("current_clocksource");
+  const auto current = content("current_clocksource");
   if (!current) return note("unknown: not in /sys", kMountSys);
   if (std::ranges::find(kSlow, *current) == kSlow.end()) return good(*current);
   const std::string words = *current + ": reading the clock takes a microsecond or more";
-  if (told("available_clocksource").value_or("").find("tsc") != std::string::npos) {
+  if (content("available_clocksource").value_or("").find("tsc") != std::string::npos) {
     return warning(words + ", about 20 ns with tsc",
                    fmt::format("echo tsc | sudo tee /{}current_clocksource", kClock));
   }
@@ -168,10 +168,10 @@ std::string limit(const std::string& limits, const std::string& name) {
 }
 
 Answer limits(const Machine& machine) {
-  const std::string told = text(machine.system, "proc/self/limits").value_or("");
+  const std::string content = text(machine.system, "proc/self/limits").value_or("");
   const std::string words =
-      fmt::format("rtprio {}, memlock {}", limit(told, "Max realtime priority"),
-                  limit(told, "Max locked memory"));
+      fmt::format("rtprio {}, memlock {}", limit(content, "Max realtime priority"),
+                  limit(content, "Max locked memory"));
   if (machine.trial.report.all_granted()) return good(words);
   return note(words + "; palpate needs rtprio 80 or more and unlimited memlock",
               rights_command(machine.system));
@@ -203,14 +203,14 @@ constexpr std::array kRightsChecks = {
 }  // namespace
 
 void check_kernel(const Machine& machine, Findings& findings) {
-  ask(kKernelChecks, machine, findings);
+  run_checks(kKernelChecks, machine, findings);
   if (machine.trial.lateness.count > 0) {
     findings.push_back({jitter(machine), kKernel, "jitter at 1 kHz"});
   }
   for (const RealtimeReport::Request& request : machine.trial.report.requests) {
     findings.push_back({granted(machine.system, request), kRights, request.what});
   }
-  ask(kRightsChecks, machine, findings);
+  run_checks(kRightsChecks, machine, findings);
 }
 
 }  // namespace palpate::app::doctor

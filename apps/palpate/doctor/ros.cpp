@@ -12,10 +12,10 @@ namespace palpate::app::doctor {
 namespace {
 
 constexpr const char* kRos2 = "ROS 2";
-// What palpate asks for: a cloud of 640 x 480 points comes in one burst.
+// What palpate requires: a cloud of 640 x 480 points comes in one burst.
 constexpr long kReceiveBuffer = 4L << 20;
 constexpr int kLargestDomain = 232;     // whose ports are below 65536
-constexpr int kFirstTakenDomain = 102;  // whose ports Linux gives to programs that ask for any
+constexpr int kFirstTakenDomain = 102;  // whose ports Linux gives to programs that request any
 constexpr int kLastTakenDomain = 214;
 constexpr std::array<std::string_view, 4> kRanges = {"LOCALHOST", "SUBNET", "OFF",
                                                      "SYSTEM_DEFAULT"};
@@ -130,7 +130,7 @@ constexpr std::array kRosChecks = {
 }  // namespace
 
 void check_ros(const Machine& machine, Findings& findings) {
-  ask(kRosChecks, machine, findings);
+  run_checks(kRosChecks, machine, findings);
 }
 
 }  // namespace palpate::app::doctor

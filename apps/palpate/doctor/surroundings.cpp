@@ -101,7 +101,7 @@ Answer browser(const Machine& machine) {
       fmt::format("sudo apt install xdg-utils {}", is_ubuntu(system) ? "firefox" : "firefox-esr"));
 }
 
-// The files that other answers' commands copy, unless a package has put them in place.
+// The files that other answers' commands copy, unless a package has installed them.
 Answer installation(const Machine& machine) {
   if (has_rules(machine.system) && is_there(machine.system, kLimits)) {
     return good("udev and logins read palpate's rules and limits");
@@ -130,7 +130,7 @@ constexpr std::array kChecks = {
 }  // namespace
 
 void check_surroundings(const Machine& machine, Findings& findings) {
-  ask(kChecks, machine, findings);
+  run_checks(kChecks, machine, findings);
 }
 
 }  // namespace palpate::app::doctor

@@ -137,7 +137,7 @@ std::optional<std::string> decimal_point(const std::string& name) {
 }
 
 constexpr unsigned kPatience = 10;  // s
-constexpr char kLoaded = 'l';       // the first character of what the other process tells
+constexpr char kLoaded = 'l';       // the first character of what the other process reports
 constexpr char kNotLoaded = 'n';
 
 // "3.4.0" where the loaded file is "libHD.so.3.4.0".
@@ -175,22 +175,22 @@ void be_silent() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, stream);
 }
 
-[[noreturn]] void load_and_tell(const std::string& name, int pipe) {
+[[noreturn]] void load_and_report(const std::string& name, int pipe) {
   be_silent();
   ::alarm(kPatience);
-  const std::string told = loaded(name);
-  const ssize_t written = ::write(pipe, told.data(), told.size());
+  const std::string reply = loaded(name);
+  const ssize_t written = ::write(pipe, reply.data(), reply.size());
   _exit(written < 0 ? 1 : 0);
 }
 
 std::string read_all(int pipe) {
-  std::string told;
+  std::string reply;
   std::array<char, 512> part;
   for (;;) {
     const ssize_t count = ::read(pipe, part.data(), part.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return told;
-    told.append(part.data(), static_cast<std::size_t>(count));
+    if (count <= 0) return reply;
+    reply.append(part.data(), static_cast<std::size_t>(count));
   }
 }
 
@@ -209,17 +209,17 @@ LibraryTrial try_library(const std::string& name) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
     throw Error("doctor: cannot create a pipe; close other programs");
   const pid_t child = fork();
-  if (child == 0) load_and_tell(name, ends[1]);
+  if (child == 0) load_and_report(name, ends[1]);
   ::close(ends[1]);
-  const std::string told = child > 0 ? read_all(ends[0]) : "";
+  const std::string reply = child > 0 ? read_all(ends[0]) : "";
   ::close(ends[0]);
   if (child < 0) throw Error("doctor: cannot start a process; close other programs");
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (told.empty()) return {LibraryTrial::Outcome::broken, death(status)};
-  const std::string words = told.substr(1);
-  if (told.front() == kLoaded) return {LibraryTrial::Outcome::loaded, words};
+  if (reply.empty()) return {LibraryTrial::Outcome::broken, death(status)};
+  const std::string words = reply.substr(1);
+  if (reply.front() == kLoaded) return {LibraryTrial::Outcome::loaded, words};
   const bool absent = words.starts_with(name + ": cannot open shared object file");
   return {absent ? LibraryTrial::Outcome::absent : LibraryTrial::Outcome::broken, words};
 }
@@ -251,10 +251,10 @@ std::optional<std::string> text(const System& system, const std::string& path) {
 }
 
 std::optional<long> whole_number(const System& system, const std::string& path) {
-  const std::optional<std::string> told = text(system, path);
-  if (!told) return std::nullopt;
+  const std::optional<std::string> digits = text(system, path);
+  if (!digits) return std::nullopt;
   long value = 0;
-  std::from_chars(told->data(), told->data() + told->size(), value);
+  std::from_chars(digits->data(), digits->data() + digits->size(), value);
   return value;
 }
 

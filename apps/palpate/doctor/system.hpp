@@ -24,7 +24,7 @@ struct RealtimeTrial {
 struct LibraryTrial {
   enum class Outcome { loaded, absent, broken };
   Outcome outcome = Outcome::absent;
-  std::string words = {};  ///< its version, if it tells; the loader's words, if it is broken
+  std::string words = {};  ///< its version, if it reports one; the loader's words, if it is broken
 };
 
 /// A file such as a device's, as this user sees it.
@@ -35,8 +35,8 @@ struct Node {
   std::string group = {};
 };
 
-/// A machine as the checks see it: files under a root, and functions for what files do not say.
-/// They ask nothing else, so that tests can make up any machine.
+/// A machine as the checks see it: files under a root, and functions for what files do not show.
+/// They use nothing else, so that tests can make up any machine.
 struct System {
   std::filesystem::path root = "/";              ///< of /dev, /etc, /proc, /sys, /usr
   std::filesystem::path share;                   ///< where palpate's rules for udev and limits lie
@@ -56,8 +56,8 @@ struct System {
 /// The machine that the program runs on.
 [[nodiscard]] System this_system();
 
-/// Loads a library in a process of its own, which may crash or hang (10 s) without harm, and asks
-/// for its version where it is Force Dimension's. @throws Error when there can be no other process.
+/// Loads a library in a process of its own, which may crash or hang (10 s) without harm, and reads
+/// its version where it is Force Dimension's. @throws Error when there can be no other process.
 [[nodiscard]] LibraryTrial try_library(const std::string& name);
 
 /// A file's text without the last line's end; nothing where it cannot be read.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* kDevices = "sys/bus/usb/devices/";
 
-// How models are told apart: by vendor and product, any product where that is empty, and, where a
-// vendor makes other things too, by a word of what the device calls itself.
+// How models are distinguished: by vendor and product, any product where that is empty, and, where
+// a vendor makes other things too, by a word of what the device calls itself.
 struct Sign {
   std::string_view vendor;
   std::string_view product;
@@ -42,8 +42,8 @@ constexpr std::array kSigns = {
 };
 
 bool fits(const Sign& sign, const UsbDevice& device) {
-  const auto is = [](std::string_view wanted, const std::string& told) {
-    return wanted.empty() || wanted == told;
+  const auto is = [](std::string_view wanted, const std::string& found) {
+    return wanted.empty() || wanted == found;
   };
   return is(sign.vendor, device.vendor) && is(sign.product, device.product) &&
          device.title.find(sign.word) != std::string::npos;
@@ -61,7 +61,7 @@ void add_terminals(const fs::path& folder, std::vector<std::string>& terminals) 
 // Kernel drivers of its interfaces: folders "1-4:1.0" in the device's.
 void add_interfaces(const fs::path& folder, UsbDevice& device) {
   for (const fs::path& entry : entries(folder)) {
-    if (!entry.filename().string().starts_with(device.place + ":")) continue;
+    if (!entry.filename().string().starts_with(device.path + ":")) continue;
     std::error_code none;
     const fs::path driver = fs::read_symlink(entry / "driver", none);
     if (!none) device.drivers.push_back(driver.filename().string());
@@ -70,21 +70,22 @@ void add_interfaces(const fs::path& folder, UsbDevice& device) {
 }
 
 UsbDevice read_device(const System& system, const fs::path& folder) {
-  const std::string place = folder.filename().string();
-  const auto told = [&](const char* name) {
-    return text(system, kDevices + place + "/" + name).value_or("");
+  const std::string bus_path = folder.filename().string();
+  const auto attribute = [&](const char* name) {
+    return text(system, kDevices + bus_path + "/" + name).value_or("");
   };
-  UsbDevice device{.place = place, .vendor = told("idVendor"), .product = told("idProduct")};
-  device.title = told("manufacturer") + " " + told("product");
-  device.bus = whole_number(system, kDevices + place + "/busnum").value_or(0);
-  device.number = whole_number(system, kDevices + place + "/devnum").value_or(0);
+  UsbDevice device{
+      .path = bus_path, .vendor = attribute("idVendor"), .product = attribute("idProduct")};
+  device.title = attribute("manufacturer") + " " + attribute("product");
+  device.bus = whole_number(system, kDevices + bus_path + "/busnum").value_or(0);
+  device.number = whole_number(system, kDevices + bus_path + "/devnum").value_or(0);
   add_interfaces(folder, device);
   return device;
 }
 
 std::string title(const KnownUsbDevice& found) {
   return fmt::format("{} ({}:{} at {})", found.model.name, found.device.vendor,
-                     found.device.product, found.device.place);
+                     found.device.product, found.device.path);
 }
 
 // A serial device is used through its terminals, any other through its node.

@@ -52,13 +52,13 @@ DensityMap map_density(const PointCloud& cloud, int columns) {
   map.cell = std::max({width / columns, height / (2 * kMostRows), 1e-12});
   map.columns = std::clamp(static_cast<int>(std::ceil(width / map.cell)), 1, columns);
   map.rows = std::clamp(static_cast<int>(std::ceil(height / (2 * map.cell))), 1, kMostRows);
-  map.counts.resize(map.place(map.rows, 0));
+  map.counts.resize(map.index(map.rows, 0));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!box.contains(cloud.point(i))) continue;
     const Eigen::Vector3d p = cloud.point(i) - box.lower;
     const int column = std::min(static_cast<int>(p[map.horizontal] / map.cell), map.columns - 1);
     const int row = std::min(static_cast<int>(p[map.vertical] / (2 * map.cell)), map.rows - 1);
-    ++map.counts[map.place(map.rows - 1 - row, column)];
+    ++map.counts[map.index(map.rows - 1 - row, column)];
   }
   return map;
 }
@@ -69,7 +69,7 @@ std::string draw(const DensityMap& map, bool colored) {
   for (int row = 0; row < map.rows; ++row) {
     text += "  ";
     for (int column = 0; column < map.columns; ++column) {
-      const std::size_t count = map.counts[map.place(row, column)];
+      const std::size_t count = map.counts[map.index(row, column)];
       if (count == 0) {
         text += ' ';
       } else if (colored) {
@@ -116,7 +116,7 @@ class TrustPicture {
  private:
   std::string path_;
   OutputFile file_;
-  std::vector<float> rows_;  // place from the box's middle, normal, trust
+  std::vector<float> rows_;  // position from the box's middle, normal, trust
   std::string facts_;
 };
 

@@ -42,7 +42,7 @@ struct DensityMap {
   double cell = 0;                  ///< width of a cell, m; it is twice as high, like a letter
   std::vector<std::size_t> counts;  ///< row by row, the top one first
 
-  [[nodiscard]] std::size_t place(int row, int column) const {
+  [[nodiscard]] std::size_t index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
            static_cast<std::size_t>(column);
   }
@@ -53,7 +53,7 @@ struct DensityMap {
 /// The map as lines of text, denser is darker; in colours when `colored`.
 [[nodiscard]] std::string draw(const DensityMap& map, bool colored);
 
-/// Everything that `palpate info` tells of one cloud: what is measured at once, and what a study
+/// Everything that `palpate info` reports of one cloud: what is measured at once, and what a study
 /// adds.
 struct InfoReport {
   LoadedCloud loaded;
@@ -75,7 +75,7 @@ struct InfoReport {
 /// Adds what a study found.
 void add_study(Report& report, const InfoReport& info);
 
-/// What touch() would do unless told otherwise, in the words of its options.
+/// What touch() would do by default, in the words of its options.
 [[nodiscard]] Report advice_of(const InfoReport& report);
 
 /// What some frames of a camera or sequence show of it.
@@ -86,7 +86,7 @@ struct LiveFacts {
   int height = 0;       ///< pixels
   Pinhole pinhole;
   bool distorted = false;
-  bool posed = false;        ///< frames tell where they were taken
+  bool posed = false;        ///< frames store where they were taken
   std::size_t frames = 0;    ///< that were looked at
   std::size_t repeated = 0;  ///< of them bit for bit like the one before
   std::size_t failures = 0;  ///< reads that failed

@@ -118,7 +118,7 @@ std::string device_meant_by(const std::string& text) {
       word, {"scripted", "simulated", "remote", "forcedimension", "openhaptics", "haply"});
 }
 
-// The device without its placement. Drivers say themselves which other options there are.
+// The device without its placement. Drivers list themselves which other options there are.
 DevicePlan plan_of(const std::string& text) {
   if (names_hardware(text)) return {DeviceKind::hardware, text};
   const std::size_t comma = text.find(',');

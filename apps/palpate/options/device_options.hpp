@@ -13,7 +13,7 @@ namespace palpate::app {
 class OptionTable;
 
 enum class DeviceKind {
-  scripted,   ///< is where its trajectory says, whatever the force
+  scripted,   ///< is where its trajectory leads, whatever the force
   simulated,  ///< is pulled along its trajectory, and feels
   remote,     ///< another program's
   hardware,   ///< what a driver reaches

@@ -151,14 +151,14 @@ std::string unknown_section(const OptionTable& table, std::string_view section) 
 }
 
 std::string unknown_key(const OptionTable& table, std::string_view section, std::string_view key) {
-  std::vector<std::string> places;
+  std::vector<std::string> found;
   for (const std::string& each : sections(table)) {
     const std::vector<std::string> there = keys(table, each);
-    if (std::ranges::find(there, key) != there.end()) places.push_back(in_brackets(each));
+    if (std::ranges::find(there, key) != there.end()) found.push_back(in_brackets(each));
   }
   return fmt::format("'{}' is not a key of {}; {}its keys are {}", key, in_brackets(section),
-                     places.empty() ? question(key, keys(table, section))
-                                    : fmt::format("it belongs to {}; ", fmt::join(places, ", ")),
+                     found.empty() ? question(key, keys(table, section))
+                                   : fmt::format("it belongs to {}; ", fmt::join(found, ", ")),
                      fmt::join(keys(table, section), ", "));
 }
 

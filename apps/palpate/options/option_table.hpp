@@ -59,7 +59,7 @@ struct HeldBy<std::optional<Value>> {
 
 /// The options of a command line and the keys of a set-up file, each registered once: name, where
 /// it stands, type, check, help, scope, and the variable that it sets. Variables outlive the
-/// table. docs/architecture.md and CONTRIBUTING.md tell how to add one.
+/// table. docs/architecture.md and CONTRIBUTING.md explain how to add one.
 class OptionTable {
  public:
   /// Command line options are added to `command`, which outlives the table.
@@ -88,7 +88,7 @@ class OptionTable {
     return add(name, value, type, CLI::Validator(), help);
   }
 
-  /// One of described options: what is said of it tells name, type, check and help, and whether
+  /// One of described options: its description sets name, type, check and help, and whether
   /// set-up files alone have it. `check` holds instead of its range.
   template <class Value>
   Registration& add(const KeyedAbout& option, Value& value, const CLI::Validator& check) {
@@ -194,8 +194,8 @@ class OptionTable {
 /// @throws UsageError when an option of the command line applies to nothing of the run.
 void check_scopes(const OptionTable& table, const GivenOptions& given, const RunFacts& run);
 
-/// The same of keys that tell of sources. Others may be there for other runs.
-/// @throws Error that says where the key stands.
+/// The same of keys that describe sources. Others may be there for other runs.
+/// @throws Error that names where the key stands.
 void check_scopes(const OptionTable& table, const DescribedOptions& described,
                   const RunFacts& sources);
 

@@ -13,8 +13,8 @@ class OptionTable;
 /// Settings of ROS 2, besides sources and devices.
 struct RosPlan {
   bool published =
-      false;  ///< what hands do and feel is told; a robot is told, too, where there is one
-  std::string range = {};  ///< "localhost" or "subnet"; empty: as the environment says
+      false;  ///< what hands do and feel is published; a robot gets targets where there is one
+  std::string range = {};  ///< "localhost" or "subnet"; empty: as the environment has it
   RosBridgeOptions bridge = {};
   double robot_retreat = RosBridgeOptions::Robot().retreat;  ///< m/s
   std::vector<std::string> robot_sources = {};
@@ -30,7 +30,7 @@ struct RosPlan {
 
 void add_bridge_options(OptionTable& table, RosPlan& plan);
 
-/// Lets all of this process's ROS 2 have a range; empty: as the environment says. Before anything
+/// Lets all of this process's ROS 2 have a range; empty: as the environment has it. Before anything
 /// is opened.
 void use_range(const std::string& range);
 

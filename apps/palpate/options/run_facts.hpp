@@ -28,12 +28,12 @@ struct RunFacts {
   bool cloud_frames = false;     ///< ... frame by frame
   bool history = false;          ///< has a policy that keeps several clouds
 
-  bool simulated_time = false;  ///< was asked for ...
+  bool simulated_time = false;  ///< was requested ...
   bool any_time = false;        ///< ... or not
   bool guarded = false;         ///< in real time, with a guard and a servo's thread
   bool robot = false;           ///< a robot follows its proxy
   bool page = false;            ///< has a page
-  bool page_unasked = false;    ///< --view does not ask for one
+  bool page_unasked = false;    ///< --view does not request one
   bool follows = false;         ///< a hand follows a trajectory or an exploration ...
   bool explores = false;        ///< ... an exploration
   bool trajectory = false;      ///< ... a trajectory,

@@ -41,9 +41,9 @@ class SetupFile {
 
  private:
   [[nodiscard]] toml::table parse() const;
-  [[nodiscard]] std::string in_words(const toml::source_region& place,
+  [[nodiscard]] std::string in_words(const toml::source_region& region,
                                      const std::string& what) const;
-  [[noreturn]] void fail(const toml::source_region& place, const std::string& what) const;
+  [[noreturn]] void fail(const toml::source_region& region, const std::string& what) const;
   void check_sections(const toml::table& file) const;
   [[nodiscard]] std::vector<DescribedSource> sources(const SourcePlan& base,
                                                      const toml::node& node) const;
@@ -66,12 +66,12 @@ class SetupFile {
   const GivenOptions& given_;
 };
 
-std::string SetupFile::in_words(const toml::source_region& place, const std::string& what) const {
-  return fmt::format("{}, line {}: {}", path_, place.begin.line, what);
+std::string SetupFile::in_words(const toml::source_region& region, const std::string& what) const {
+  return fmt::format("{}, line {}: {}", path_, region.begin.line, what);
 }
 
-void SetupFile::fail(const toml::source_region& place, const std::string& what) const {
-  throw Error(in_words(place, what));
+void SetupFile::fail(const toml::source_region& region, const std::string& what) const {
+  throw Error(in_words(region, what));
 }
 
 toml::table SetupFile::parse() const {
@@ -165,14 +165,14 @@ std::vector<std::string> SetupFile::texts_of(std::string_view key, KeyKind kind,
 // be right all the same.
 void SetupFile::take(const OptionTable& table, std::string_view section, const toml::key& key,
                      const toml::node& node, DescribedOptions& described) const {
-  const Registration* const known = table.find(section, key.str());
-  if (known == nullptr) fail(key.source(), unknown_key(table_, section, key.str()));
-  const std::vector<std::string> texts = texts_of(key.str(), known->kind, node);
-  described[known->name] = in_words(key.source(), fmt::format("'{}'", key.str()));
-  if (given_.contains(known->name)) return;
+  const Registration* const registration = table.find(section, key.str());
+  if (registration == nullptr) fail(key.source(), unknown_key(table_, section, key.str()));
+  const std::vector<std::string> texts = texts_of(key.str(), registration->kind, node);
+  described[registration->name] = in_words(key.source(), fmt::format("'{}'", key.str()));
+  if (given_.contains(registration->name)) return;
   try {
-    for (const std::string& text : texts) known->option->add_result(text);
-    known->option->run_callback();
+    for (const std::string& text : texts) registration->option->add_result(text);
+    registration->option->run_callback();
   } catch (const CLI::Error& error) {
     fail(node.source(), fmt::format("'{}' of {}: {}", key.str(), in_brackets(section),
                                     without_option(error.what())));

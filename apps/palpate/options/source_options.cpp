@@ -152,7 +152,7 @@ std::size_t parse_size(std::string text) {
     const bool is_size = CLI::AsSizeValue(false)(text).empty();
     if (is_size && text != "0" && !given.starts_with('-')) return std::stoull(text);
   } catch (const CLI::Error&) {
-    // It says less than what follows.
+    // It contains less than what follows.
   }
   throw UsageError(fmt::format("--cache: '{}' is no size; give 500M or 2G", given));
 }

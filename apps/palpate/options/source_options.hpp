@@ -18,7 +18,7 @@ enum class SourceKind { cloud, depth_image, stream };
 
 /// How a file is read, and where its unit comes from.
 struct FileReading : ReadOptions {
-  /// Who said what the unit is: nobody, an option, or somebody on the page.
+  /// Who stated the unit: nobody, an option, or somebody on the page.
   enum class Unit { unsaid, given, chosen };
   Unit unit = Unit::unsaid;  ///< of `scale`
 };
@@ -35,7 +35,7 @@ struct SourcePlan {
   std::size_t cache = std::size_t{1} << 30U;  ///< bytes of memory for a store on disk; judgement
 };
 
-/// Registers the options that say how the bytes of a file become points.
+/// Registers the options that set how the bytes of a file become points.
 void add_reading_options(OptionTable& table, FileReading& options);
 
 /// Registers the memory for a store, where it may stay on disk.

@@ -24,7 +24,7 @@ struct TouchChoices {
   std::string setup = {};                 ///< file that describes a set-up
   std::vector<PoseArgument> poses = {};
   std::vector<DescribedSource> described_sources = {};  ///< of the set-up file
-  SourcePlan every_source = {};  ///< what holds for sources that the set-up file says no more of
+  SourcePlan every_source = {};  ///< of sources that the set-up file adds nothing to
   std::optional<FieldOptions::Kind> field = {};
   std::optional<FieldOptions::Gradient> gradient = {};
   std::optional<double> threshold = {};        ///< of the metaball
@@ -34,7 +34,7 @@ struct TouchChoices {
   TouchPlan plan = {};  ///< without its sources
 };
 
-/// Registers those that say which sources there are, how they are read and where they stand.
+/// Registers those that list which sources there are, how they are read and where they stand.
 void add_placed_sources(OptionTable& table, TouchChoices& choices);
 
 /// Registers what runs in real time are held to.
@@ -58,14 +58,14 @@ void read_setup(const std::string& path, const OptionTable& table, const GivenOp
                 TouchChoices& choices, DescribedOptions& described);
 
 /// The set-up file's sources and then those of the command line; one of these that has the name of
-/// one of the file's takes its place and keeps its pose and options. --pose wins over the file.
+/// one of the file's replaces it and keeps its pose and options. --pose wins over the file.
 /// Fills in what depends on the whole surface.
 /// @throws UsageError when there is none, two have one name, a pose names none of them, or options
 /// of one contradict each other.
 [[nodiscard]] std::vector<DescribedSource> choose_sources(const TouchChoices& choices,
                                                           const SurfacePlan& surface);
 
-/// Tells in `facts` of one more source.
+/// Adds one more source to `facts`.
 void add_facts(RunFacts& facts, const SourcePlan& source);
 
 }  // namespace palpate::app

@@ -52,7 +52,7 @@ void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
           "--preset paper uses a point tool; remove --tool-radius");
 }
 
-// Where a cloud is explored, K is known later, and checked again.
+// Where a cloud is explored, K is computed later, and checked again.
 void check_material(const SurfacePlan& surface, bool explored) {
   if (surface.stiffness || !explored) {
     (void)surface.soft_material(surface.stiffness.value_or(kStiffness));
@@ -115,7 +115,7 @@ bool in_real_time(const TouchPlan& plan, bool simulated_time) {
          });
 }
 
-// A page that was not asked for is where a person is at the terminal.
+// A page that was not requested is where a person is at the terminal.
 bool is_watched(const TouchChoices& choices) {
   const bool person = isatty(STDIN_FILENO) != 0 && isatty(STDERR_FILENO) != 0;
   return choices.plan.page.wanted || (person && !choices.no_view);
@@ -190,7 +190,7 @@ TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
   check_material(plan.surface, plan.motion.trajectory.empty());
   plan.time.real_time = in_real_time(plan, choices.simulated_time);
   plan.page.served = plan.time.real_time && is_watched(choices);
-  if (!plan.page.wanted) plan.page.headless = true;  // nobody asked for a page: it is only told of
+  if (!plan.page.wanted) plan.page.headless = true;  // not requested: only its address is printed
   const RunFacts facts = facts_of(plan, choices);
   check_scopes(table, given, facts);
   check_scopes(table, described, facts);

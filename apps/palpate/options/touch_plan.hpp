@@ -72,7 +72,7 @@ struct PagePlan {
   bool served = false;                     ///< it is there
   bool headless = false;                   ///< opens no browser
   std::string address = {};                ///< empty: this machine alone
-  std::string token = {};                  ///< who knows it may use the page; empty: a new one
+  std::string token = {};                  ///< who has it may use the page; empty: a new one
   std::optional<std::uint16_t> port = {};  ///< unset: the first free one from 8420 on
   std::shared_ptr<const ListeningPort> listening = {};  ///< that of the run before on it
   bool paused = false;                                  ///< as the run before on it was
@@ -89,7 +89,7 @@ struct OutputPlan {
   [[nodiscard]] bool takes_stdout() const { return log == "-" || json == "-"; }
 };
 
-/// All that a command line and a set-up file say of a run, read and checked.
+/// All that a command line and a set-up file set of a run, read and checked.
 struct TouchPlan {
   std::vector<SourcePlan> sources = {};
   std::vector<DevicePlan> devices = {};  ///< one a hand

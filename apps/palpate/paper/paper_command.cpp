@@ -97,7 +97,7 @@ std::string csv(const Fig5& figure) {
   return text;
 }
 
-// A row a servo step: t (s), then height (m), nx, ny and force (N) of each way of feeling.
+// A row a servo step: t (s), then height (m), nx, ny and force (N) of each method of feeling.
 std::string csv(const Fig7& figure) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -216,7 +216,7 @@ std::unique_ptr<DepthCamera> open_paper_source(const std::string& source) {
 }
 
 template <class Figure>
-void tell(const Figure& figure, const PaperOptions& options, FigureFiles& files) {
+void write_figure(const Figure& figure, const PaperOptions& options, FigureFiles& files) {
   print_figure(figure, options.source, options.csv == "-" ? stderr : stdout);
   files.write(csv(figure), facts(figure, options.source));
 }
@@ -239,13 +239,13 @@ void paper(const PaperCommand& paper) {
   FigureFiles files(options.csv, "", options.picture);
   const std::unique_ptr<DepthCamera> camera = open_paper_source(options.source);
   if (paper.fig5->parsed()) {
-    tell(measure_fig5(*camera, options.repeats), options, files);
+    write_figure(measure_fig5(*camera, options.repeats), options, files);
   } else {
     Fig7Options press;
     press.duration = options.duration;
     press.voxel = options.voxel.value_or(press.voxel);
     press.radius = options.radius;
-    tell(measure_fig7(*camera, press), options, files);
+    write_figure(measure_fig7(*camera, press), options, files);
   }
 }
 

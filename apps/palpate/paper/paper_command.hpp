@@ -62,7 +62,7 @@ struct Fig5Row {
 struct Fig5 {
   std::vector<Fig5Row> rows;
   std::size_t pixels = 0;  ///< of the frame, with a depth
-  double everywhere = 0;   ///< a frame's way to a surface by the depth filter, computing time of
+  double everywhere = 0;   ///< from a frame to a surface by the depth filter, computing time of
                            ///< all threads, the fastest, ms
 };
 
@@ -80,7 +80,7 @@ struct PressSample {
   double force = 0;  ///< N
 };
 
-/// One way of feeling the surface.
+/// One method of feeling the surface.
 struct Press {
   std::string name;   ///< "metaball", "point-set", "palpate"
   int clouds = 0;     ///< N; 0: our default, which keeps no clouds
@@ -112,7 +112,7 @@ struct Fig7Options {
 };
 
 /// The paper's test of stability over time: a hand held 4 mm deep in the surface in the middle of
-/// the image, felt in nine ways at once, from the same frames.
+/// the image, felt by nine methods at once, from the same frames.
 /// @throws Error when the camera ends or fails before the press does.
 [[nodiscard]] Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options);
 

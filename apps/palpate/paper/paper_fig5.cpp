@@ -73,7 +73,7 @@ Fig5Row measure(const PointCloud& cloud, std::size_t size, const PrepareTimes& p
   return row;
 }
 
-// A recording may have fewer frames than are asked for; then those that there are count.
+// A recording may have fewer frames than are requested; then those that there are count.
 double measure_frames(DepthCamera& camera, DepthFrame frame, int repeats) {
   constexpr int kWarm = 2;  // frames until all memory is there
   Scene scene;

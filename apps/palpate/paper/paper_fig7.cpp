@@ -29,11 +29,11 @@ constexpr double kDown = 0.4;         // when the hand is down, s
 constexpr double kSettled = 1;        // when the samples begin, s
 constexpr double kPeriod = 1e-3;      // of the servo, s
 constexpr double kAround = 0.08;      // half of the box that the paper's clouds are clipped to, m
-constexpr double kFitRadius = 0.04;   // of the points that tell the surface's normal, m
+constexpr double kFitRadius = 0.04;   // of the points that set the surface's normal, m
 constexpr int kMiddle = 8;            // pixels to either side of the image's middle
 
 // The test point, world frame, and the directions that variability is measured along.
-struct Place {
+struct TestPoint {
   Vector3d point = Vector3d::Zero();
   Vector3d point_in_camera = Vector3d::Zero();
   Vector3d normal = Vector3d::UnitZ();
@@ -78,22 +78,22 @@ double depth_in_the_middle(const DepthFrame& frame) {
   return median(depths);
 }
 
-Place place_of(const DepthFrame& frame) {
+TestPoint test_point_of(const DepthFrame& frame) {
   const Pinhole& p = frame.camera.pinhole;
   const double z = depth_in_the_middle(frame);
   const double u = 0.5 * (frame.camera.width - 1);
   const double v = 0.5 * (frame.camera.height - 1);
   const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
-  Place place;
-  place.point_in_camera = Vector3d((u - p.cx) * z / p.fx, (v - p.cy) * z / p.fy, z);
-  place.point = pose * place.point_in_camera;
-  place.normal = pose.linear() * normal_of(cloud_of(frame), place.point_in_camera);
+  TestPoint target;
+  target.point_in_camera = Vector3d((u - p.cx) * z / p.fx, (v - p.cy) * z / p.fy, z);
+  target.point = pose * target.point_in_camera;
+  target.normal = pose.linear() * normal_of(cloud_of(frame), target.point_in_camera);
   const Vector3d ahead = pose.linear().col(2);
-  Vector3d along = ahead - place.normal * place.normal.dot(ahead);
+  Vector3d along = ahead - target.normal * target.normal.dot(ahead);
   if (along.norm() < 1e-3) along = pose.linear().col(0);
-  place.tangent_x = along.normalized();
-  place.tangent_y = place.normal.cross(place.tangent_x);
-  return place;
+  target.tangent_x = along.normalized();
+  target.tangent_y = target.normal.cross(target.tangent_x);
+  return target;
 }
 
 // A field and a proxy on one of the scenes.
@@ -108,10 +108,10 @@ struct Feeler {
   Vector3d last_force = Vector3d::Zero();
 };
 
-// Nine ways to feel the same frames.
+// Nine methods that feel the same frames.
 class Feelers {
  public:
-  Feelers(const Place& place, const Fig7Options& options) : place_(place) {
+  Feelers(const TestPoint& target, const Fig7Options& options) : target_(target) {
     for (int n = 1; n <= kMostClouds; ++n) add_clouds(n, options);
     ours_.add("camera");
     for (const FieldOptions::Kind kind :
@@ -154,8 +154,8 @@ class Feelers {
     options.prepare.voxel = wanted.voxel;
     options.prepare.radius = wanted.radius;
     options.prepare.clip.emplace();
-    options.prepare.clip->extend(place_.point_in_camera - Vector3d::Constant(kAround));
-    options.prepare.clip->extend(place_.point_in_camera + Vector3d::Constant(kAround));
+    options.prepare.clip->extend(target_.point_in_camera - Vector3d::Constant(kAround));
+    options.prepare.clip->extend(target_.point_in_camera + Vector3d::Constant(kAround));
     clouds_.emplace_back().add("clouds", options);
   }
 
@@ -175,8 +175,8 @@ class Feelers {
     if (sampled) {
       const Sample sample = feeler.field.sample(contact.proxy);
       const Vector3d normal = sample.gradient.normalized();
-      press.samples.push_back({place_.normal.dot(contact.proxy - place_.point),
-                               normal.dot(place_.tangent_x), normal.dot(place_.tangent_y),
+      press.samples.push_back({target_.normal.dot(contact.proxy - target_.point),
+                               normal.dot(target_.tangent_x), normal.dot(target_.tangent_y),
                                contact.force.norm()});
       press.jump = std::max(press.jump, (contact.force - feeler.last_force).norm());
       press.touching += contact.touching ? 1 : 0;
@@ -184,15 +184,15 @@ class Feelers {
     feeler.last_force = contact.force;
   }
 
-  Place place_;
+  TestPoint target_;
   std::deque<Scene> clouds_;  // of N = 1, 2, ...
   Scene ours_;
   std::deque<Feeler> feelers_;
 };
 
-Vector3d hand_at(const Place& place, double time) {
+Vector3d hand_at(const TestPoint& target, double time) {
   const double down = std::clamp((time - 0.1) / (kDown - 0.1), 0.0, 1.0);
-  return place.point + (kHigh - down * (kHigh + kPressDepth)) * place.normal;
+  return target.point + (kHigh - down * (kHigh + kPressDepth)) * target.normal;
 }
 
 template <class Get>
@@ -217,7 +217,7 @@ void sum_up(Press& press) {
   press.touching /= static_cast<double>(press.samples.size());
 }
 
-// Every way feels every frame of the press, or they could not be compared.
+// Every method feels every frame of the press, or they could not be compared.
 void check(const StreamState& stream, double time, double whole) {
   if (stream.phase == StreamState::Phase::ended) {
     throw Error(
@@ -236,14 +236,14 @@ void check(const StreamState& stream, double time, double whole) {
 
 Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
   const DepthFrame frame = first_frame(camera);
-  const Place place = place_of(frame);
-  Feelers feelers(place, options);
+  const TestPoint target = test_point_of(frame);
+  Feelers feelers(target, options);
   Fig7 result;
-  result.depth = place.point_in_camera.z();
+  result.depth = target.point_in_camera.z();
   result.voxel = options.voxel;
   result.radius_given = options.radius.has_value();
   const Eigen::Isometry3d pose = frame.T_world_sensor.value_or(Eigen::Isometry3d::Identity());
-  result.angle = std::asin(std::min(1.0, std::abs(pose.linear().col(2).dot(place.normal))));
+  result.angle = std::asin(std::min(1.0, std::abs(pose.linear().col(2).dot(target.normal))));
   const double whole = kSettled + options.duration;
   const int steps = static_cast<int>(std::lround(whole / kPeriod));
   Progress progress("pressing");
@@ -257,7 +257,7 @@ Fig7 measure_fig7(DepthCamera& camera, const Fig7Options& options) {
     progress.update(static_cast<double>(i) / steps);
     const bool sampled = time >= kSettled;
     if (sampled) result.times.push_back(time);
-    feelers.step(time, hand_at(place, time), sampled);
+    feelers.step(time, hand_at(target, time), sampled);
   }
   result.frames = stream.state().touchable;
   result.presses = feelers.presses();

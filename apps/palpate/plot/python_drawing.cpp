@@ -26,7 +26,7 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-// The last line that says something: Python's own error.
+// The last line with text: Python's own error.
 std::string last_line(const std::string& text) {
   std::istringstream stream(text);
   std::string line;

@@ -23,7 +23,7 @@ struct DrawingData {
 [[nodiscard]] std::vector<std::string> drawing_trial();
 
 /// Checks --picture before any work; empty: no picture is wanted.
-/// @throws UsageError when its place is standard output or has another kind's ending than .png;
+/// @throws UsageError when its path is standard output or has another kind's ending than .png;
 /// Error when Python or matplotlib is missing, naming the package.
 void check_picture(const std::string& path);
 
@@ -31,16 +31,16 @@ void check_picture(const std::string& path);
 [[nodiscard]] std::string float_bytes(const std::vector<float>& values);
 
 /// Draws `picture` (`path` in messages) by a script for Python with matplotlib, which is given the
-/// folder with `data` and the picture's place; closes `picture`.
+/// folder with `data` and the picture's path; closes `picture`.
 /// @throws Error when Python or matplotlib is missing, naming the package, or drawing fails.
 void draw_by_python(std::string_view script, const std::vector<DrawingData>& data,
                     const std::string& path, OutputFile& picture);
 
-/// The files that a figure goes to. All are made before the work: a place that does not exist is
-/// told at once.
+/// The files that a figure goes to. All are made before the work: a path that does not exist is
+/// reported at once.
 class FigureFiles {
  public:
-  /// Their paths; empty: not asked for.
+  /// Their paths; empty: not requested.
   /// @throws UsageError, Error as check_distinct(), check_picture() and OutputFile do.
   FigureFiles(const std::string& csv, const std::string& json, const std::string& picture);
 

@@ -23,8 +23,8 @@
 #include "scene/description.hpp"
 #include "servo/description.hpp"
 
-/// Options as JSON and back, bit for bit, by what describe() says of them. members() names those of
-/// structs that are no options; a member that is new there does not compile before it is named
+/// Options as JSON and back, bit for bit, by what describe() lists of them. members() names those
+/// of structs that are no options; a member that is new there does not compile before it is named
 /// here.
 namespace palpate::app {
 
@@ -157,7 +157,7 @@ void take_exact(const Json& json, T& value) {
     for (int i = 0; i < 12; ++i)
       take_exact(json.at(static_cast<std::size_t>(i)), value.matrix()(i / 4, i % 4));
   } else if constexpr (Described<T> || Listed<T>) {
-    // What older recordings do not know keeps its default, which is how they were made.
+    // What older recordings do not contain keeps its default, which is how they were made.
     const auto& object = json.template get_ref<const Json::object_t&>();
     const auto take = [&object](const char* name, auto& member) {
       if (const auto found = object.find(name); found != object.end()) {

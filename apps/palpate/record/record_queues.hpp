@@ -52,7 +52,7 @@ class WaitingFrames {
   Taken waiting_;
   bool waits_ = false;
   std::uint64_t lost_ = 0;
-  std::vector<std::uint64_t> changes_;  // of each source's options, that were told
+  std::vector<std::uint64_t> changes_;  // of each source's options, that were reported
   std::vector<char> gaps_;              // of each source: its last frame was not recorded
 };
 
@@ -63,17 +63,17 @@ struct RecordOrder {
   RecordedSetup setup;
 };
 
-/// What people ask of a recorder. Any thread.
+/// What people request of a recorder. Any thread.
 class RecordOrders {
  public:
   /// `name`: of the file that is recorded from the beginning; empty: none.
   explicit RecordOrders(std::string name) : name_(std::move(name)) {}
 
-  /// Asks for the file that `make` makes, or for the end of the present one; nothing if that is how
+  /// Requests the file that `make` makes, or the end of the present one; nothing if that is how
   /// it is already. Returns its name. What `make` throws changes nothing.
   std::string record(bool on, const std::function<RecordOrder()>& make);
 
-  /// The file that was asked for last; empty: it was ended.
+  /// The file that was requested last; empty: it was ended.
   [[nodiscard]] std::string name() const;
 
   /// Notes that this file ended by itself.

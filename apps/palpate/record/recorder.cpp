@@ -96,10 +96,10 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
     Source& its = subject_.source(source);
     const std::uint64_t before = SourceTrace(its).publications();
     const std::uint64_t dropped = its.state().dropped;
-    const Source::StartTime asked = [&] { return use.start = start(); };
+    const Source::StartTime noted_start = [&] { return use.start = start(); };
     std::exception_ptr problem;
     try {
-      sink(frame, asked);
+      sink(frame, noted_start);
     } catch (const std::exception& error) {
       problem = std::current_exception();
       use.why_not = error.what();

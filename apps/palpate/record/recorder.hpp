@@ -63,7 +63,7 @@ class Recorder {
   /// The file that is being recorded; empty: none. Any thread.
   [[nodiscard]] std::string recording() const { return orders_.name(); }
 
-  /// Is told on the recorder's thread why a file ended by itself, the run going on. When
+  /// Called on the recorder's thread with why a file ended by itself, the run going on. When
   /// on_broken() has returned, the one before is called no more.
   using Broken = std::function<void(const std::string& why)>;
   void on_broken(Broken broken);
@@ -73,8 +73,8 @@ class Recorder {
   /// `ended`, whose call is recorded.
   [[nodiscard]] std::function<void()> watching(std::size_t source, std::function<void()> ended);
 
-  /// What a robot was told by `now`, s on the run's clock, if there is one: recorded where it says
-  /// something else than the time before. The thread of the run.
+  /// What targets a robot got by `now`, s on the run's clock, if there is one: recorded where it
+  /// differs from the time before. The thread of the run.
   void note(double now, const std::optional<RosBridge::RobotState>& robot);
 
   /// Waits until there is room for steps: for simulated time.

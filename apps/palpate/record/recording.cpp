@@ -85,9 +85,9 @@ Recording::Recording(const std::string& path) : path_(path), reader_(path) {
 }
 
 bag::Attachment Recording::attachment(const std::string& name) const {
-  const auto& places = reader_.contents().attachments;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i].head.name == name) return reader_.attachment(i);
+  const auto& attached = reader_.contents().attachments;
+  for (std::size_t i = 0; i < attached.size(); ++i) {
+    if (attached[i].head.name == name) return reader_.attachment(i);
   }
   const std::vector<std::string>& losses = reader_.contents().losses;
   throw Error(fmt::format(

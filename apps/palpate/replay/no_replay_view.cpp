@@ -1,4 +1,4 @@
-// In place of replay_view.cpp where there is no viewer.
+// Replaces replay_view.cpp where there is no viewer.
 #include "apps/palpate/replay/replay_view.hpp"
 #include "palpate/base/error.hpp"
 

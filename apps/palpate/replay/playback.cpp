@@ -191,13 +191,13 @@ void Playback::show_frames(const std::stop_token& stop) {
 void Playback::read_forces(const std::stop_token& stop) {
   Recording::Steps steps(run_.recording);
   const SteadyClock clock;
-  double told = clock.now();
+  double notified = clock.now();
   while (!stop.stop_requested()) {
     const std::optional<Recording::Step> step = steps.next();
     if (!step) break;
     take(*step);
-    if (clock.now() - told < kNews) continue;
-    told = clock.now();
+    if (clock.now() - notified < kNews) continue;
+    notified = clock.now();
     listener_.changed();
   }
   if (!stop.stop_requested()) listener_.changed();

@@ -45,7 +45,7 @@ class Playback {
   /// Was the run in the axes of a camera's picture, y down?
   [[nodiscard]] bool in_picture_axes() const { return run_.recording.in_picture_axes(); }
 
-  /// Starts the threads. From now on any thread may call the rest; stop() ends what is told.
+  /// Starts the threads. From now on any thread may call the rest; stop() ends the notifications.
   void start(Listener listener);
   void stop();
 
@@ -80,7 +80,7 @@ class Playback {
   std::optional<double> sought_;  // not shown yet
   std::vector<float> envelope_;
   std::vector<std::vector<TimeLine::Force>> pasts_;  // of each hand
-  std::vector<std::vector<FieldChange>> fields_;     // of each hand, as far as they are known
+  std::vector<std::vector<FieldChange>> fields_;     // of each hand, as far as they are read
   std::vector<std::jthread> threads_;                // last: they use all of the above
 };
 

@@ -43,11 +43,11 @@ void view_recording(const std::string& path, const PagePlan& page) {
                     fmt::print(stderr, "{}: {}\n", path, why);
                   }});
   const Interruption interruption;
-  tell_page(viewer.url(), page.address);
+  announce_page(viewer.url(), page.address);
   std::optional<Browser> browser;
   if (!page.headless) browser.emplace(viewer.url());
-  while (!interruption.asked()) std::this_thread::sleep_for(kLook);
-  playback.stop();  // what it tells, it tells the viewer
+  while (!interruption.requested()) std::this_thread::sleep_for(kLook);
+  playback.stop();  // its listener is the viewer
 }
 
 }  // namespace palpate::app

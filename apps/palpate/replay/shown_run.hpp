@@ -46,7 +46,7 @@ class ShownHand {
   Guard::State::Counts counts_;  // of what was shown
 };
 
-/// Shows a source of a recorded run. One thread shows; others may ask for the stream.
+/// Shows a source of a recorded run. One thread shows; others may read the stream.
 class ShownSource {
  public:
   using Stream = ViewerOptions::Stream;

@@ -154,7 +154,7 @@ void add_notes(Report& report, const TouchStatistics& s) {
 }
 
 // Advice for a hand that never touched the surface.
-std::string way_to_surface(const HandReport& report) {
+std::string path_to_surface(const HandReport& report) {
   const Hand& hand = report.hand;
   if (hand.plan) return "give it more time (--duration)";
   if (hand.chosen.follows_trajectory()) {
@@ -181,7 +181,7 @@ std::vector<std::string> advice(const HandReport& report) {
   std::vector<std::string> sentences;
   if (report.statistics.touching() == 0) {
     sentences.push_back(report.surface
-                            ? "the hand never touched the surface: " + way_to_surface(report)
+                            ? "the hand never touched the surface: " + path_to_surface(report)
                             : kNoSurface);
   }
   const double scale = report.hand.workspace.scale;

@@ -26,7 +26,7 @@ struct LiveReport {
   std::string failure;          ///< of the device, in words; empty: none
 };
 
-/// Everything that a run's report tells of one hand.
+/// Everything that a run's report contains of one hand.
 struct HandReport {
   const Hand& hand;
   const TouchStatistics& statistics;

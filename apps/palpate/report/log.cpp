@@ -22,7 +22,7 @@ TouchLog::TouchLog(const std::string& path) : file_(path, OutputFile::Unfinished
 TouchLog::~TouchLog() {
   try {
     if (problem_.empty() && buffer_.size() > 0) flush();
-  } catch (const Error&) {  // nobody is left to tell
+  } catch (const Error&) {  // nobody is left to report to
   }
 }
 

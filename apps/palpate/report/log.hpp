@@ -12,8 +12,8 @@ namespace palpate::app {
 
 /// The CSV log of a run: a header, then a row a step. Numbers are the shortest that read back to
 /// the same bits; `us` alone differs from run to run. The device, which is the same in every row,
-/// says whether there are columns for orientation and gripper. What is not closed stays beside its
-/// place (OutputFile).
+/// decides whether there are columns for orientation and gripper. What is not closed stays beside
+/// its target (OutputFile).
 class TouchLog {
  public:
   explicit TouchLog(const std::string& path);

@@ -33,10 +33,10 @@ class Report {
   Report(std::string title, std::string rest) : title_(std::move(title)), rest_(std::move(rest)) {}
 
   /// A line: `pattern` with the values in it. {KEY} shows the next value, which is the datum KEY;
-  /// '/' makes objects ("radius_m/median"). The key's unit ("_m", "_N_per_m", ...) says how the
+  /// '/' makes objects ("radius_m/median"). The key's unit ("_m", "_N_per_m", ...) sets how the
   /// value is shown. {} and a unit alone ({_m}) show a value that is no datum. Text in
   /// [brackets] is left out where its first value is 0, false, null or empty; what stands after |
-  /// is shown in its place: [{voxel_m}|none]. {?} takes a bool, which decides so and is not shown.
+  /// is shown instead: [{voxel_m}|none]. {?} takes a bool, which decides so and is not shown.
   /// A number that is not finite is null. A line without text is left out, its data are not.
   template <class... Value>
   void row(const Label& label, std::string_view pattern, const Value&... values) {

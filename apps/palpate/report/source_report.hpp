@@ -17,7 +17,7 @@ inline constexpr const char* kNoSurface =
 /// The same of a camera.
 [[nodiscard]] Report camera_report(const LoadedSource& source);
 
-/// Says how much of a cloud has low trust, where it is a hundredth or more.
+/// Reports how much of a cloud has low trust, where it is a hundredth or more.
 void add_trust(Report& report, const Prepared::Report& prepared);
 
 /// Adds the row "splats": how those of a file became `points`. `declared`: splats in the file,

@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kCloudPoints = 60'000;
 constexpr std::size_t kWholePoints = 20'000;  // of a picture of a third of the size
 constexpr std::size_t kSteps = 20'000;
-constexpr double kWhole = 2.5;  // times the way: show a cloud up to this size whole
+constexpr double kWhole = 2.5;  // times the path: show a cloud up to this size whole
 constexpr std::size_t kCloudColumns = 7;
 
 Box bounds(const Scene& scene) {
@@ -35,7 +35,7 @@ Box bounds(const Scene& scene) {
   return all;
 }
 
-// What the picture shows: the way of hand and proxy, and some of what is around it or, unless that
+// What the picture shows: the path of hand and proxy, and some of what is around it or, unless that
 // is much larger, the whole cloud.
 Box view(const std::vector<ServoState>& steps, const Box& all) {
   Box box;
@@ -65,7 +65,7 @@ std::vector<float> thinned(const std::vector<float>& values) {
   return result;
 }
 
-// x, y, z, normal and source of a point, from a place.
+// x, y, z, normal and source of a point, relative to `from`.
 void append(std::vector<float>& values, const SurfacePoints& points, std::size_t i,
             const Vector3d& from, std::size_t source) {
   const Eigen::Vector3f p =

@@ -58,7 +58,7 @@ class HandOutputs {
   std::optional<Picture> picture_;
 };
 
-/// Everything that a run's report tells.
+/// Everything that a run's report contains.
 struct TouchReport {
   const LoadedScene& loaded;  ///< as the run left it
   bool paper = false;         ///< the preset paper

@@ -33,12 +33,12 @@ void Opening::begin(Wanted wanted) {
   share_ = 0;
   std::string name = wanted.name;
   work_ = std::async(std::launch::async, [this, wanted = std::move(wanted)]() mutable {
-    prepare_(std::move(wanted), [this](double share) { tell(share); });
+    prepare_(std::move(wanted), [this](double share) { notify(share); });
   });
   name_ = std::move(name);
 }
 
-void Opening::tell(double share) {
+void Opening::notify(double share) {
   if (given_up_) throw Error("given up");
   share_ = share;
 }

@@ -33,11 +33,11 @@ class Opening {
     std::variant<Bytes, Sources, OtherUnit> what;
   };
 
-  /// Says what share of the file is read, 0 to 1; throws where nobody waits for it any more.
-  using Told = std::function<void(double share)>;
+  /// Reports what share of the file is read, 0 to 1; throws where nobody waits for it any more.
+  using Notify = std::function<void(double share)>;
 
   /// Throws what is wrong with it.
-  using Prepare = std::function<void(Wanted wanted, const Told& told)>;
+  using Prepare = std::function<void(Wanted wanted, const Notify& notify)>;
 
   /// How it goes.
   struct News {
@@ -49,7 +49,7 @@ class Opening {
   };
 
   explicit Opening(Prepare prepare) : prepare_(std::move(prepare)) {}
-  /// Gives up what is being read. Waits for a surface that is being prepared, and says so on
+  /// Gives up what is being read. Waits for a surface that is being prepared, and reports it on
   /// standard error if that takes long.
   ~Opening();
   Opening(const Opening&) = delete;
@@ -58,12 +58,12 @@ class Opening {
   /// Any thread; returns at once. @throws Error while there is another one.
   void begin(Wanted wanted);
 
-  /// How the file under way goes, its end once; unset: there is none. After `prepared` no other
+  /// How the current file goes, its end once; unset: there is none. After `prepared` no other
   /// begins.
   [[nodiscard]] std::optional<News> look();
 
  private:
-  void tell(double share);
+  void notify(double share);
 
   Prepare prepare_;
   std::mutex mutex_;

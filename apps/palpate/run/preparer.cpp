@@ -79,13 +79,13 @@ void Preparer::prepare(const Preparation& wanted) {
   }
 }
 
-// Prepares what was cancelled while it was on its way, by what holds.
+// Prepares what was cancelled while it was being prepared, by what holds.
 void Preparer::finish_cut_off() {
   for (const std::size_t i : std::exchange(cut_off_, {})) {
     try {
       run_.loaded.scene.source(i).set(*run_.loaded.sources[i].cloud);
     } catch (const std::exception&) {
-      continue;  // the part that was there stays, and why is said already
+      continue;  // the part that was there stays, and why is reported already
     }
   }
 }

@@ -29,7 +29,7 @@ class Preparer {
   Preparer(const Preparer&) = delete;
   Preparer& operator=(const Preparer&) = delete;
 
-  /// Waits for what is under way and begins nothing any more.
+  /// Waits for the current preparation and begins nothing any more.
   void stop();
 
   /// Any thread; returns at once.
@@ -44,7 +44,7 @@ class Preparer {
   Run& run_;
   Preparation initial_;
   Preparation held_;               // the last that sources could be prepared by
-  std::set<std::size_t> cut_off_;  // sources that were being prepared when another way was wanted
+  std::set<std::size_t> cut_off_;  // sources whose preparation other options stopped
   Failed failed_;
   std::mutex mutex_;
   std::condition_variable_any changed_;

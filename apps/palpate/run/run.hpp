@@ -61,14 +61,14 @@ struct Run {
 using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
 
 /// Reads the trajectory of `motion`; empty: none is named, or no device follows one.
-/// @throws Error as reading does, and when a place is farther from the origin than surfaces can be
-/// felt; UsageError when it lasts longer than a day and is to be simulated.
+/// @throws Error as reading does, and when a position is farther from the origin than surfaces can
+/// be felt; UsageError when it lasts longer than a day and is to be simulated.
 [[nodiscard]] Trajectory trajectory_of(const MotionPlan& motion,
                                        const std::vector<DevicePlan>& devices);
 
 /// A hand for each of `devices`. Those of other programs and those that hold hardware have their
 /// device: it is opened before anything is read. `clock` is the run's and outlives them; null:
-/// simulated time. Says on standard error where devices listen, and what was opened.
+/// simulated time. Prints on standard error where devices listen, and what was opened.
 /// @throws Error when a socket or hardware cannot be had.
 [[nodiscard]] std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices,
                                            const MotionPlan& motion, const TimePlan& time,
@@ -92,7 +92,7 @@ void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajector
 void place(Workspace& workspace, const PlacementOptions& placement, const Scene& scene);
 
 /// Makes the frames of `from` part of `to` and notes in `from.feed` what they were like, with their
-/// preparation's time as `computing` tells it (s). Both outlive the sink; until its stream has
+/// preparation's time as `computing` reports it (s). Both outlive the sink; until its stream has
 /// ended the notes are the stream's.
 [[nodiscard]] Stream::Sink feeding(LoadedSource& from, Source& to, double (*computing)());
 

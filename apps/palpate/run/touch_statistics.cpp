@@ -99,9 +99,9 @@ void TouchStatistics::add(const ServoState& step) {
   const bool first = steps_ == 0;
   if (first) first_time_ = step.time;
   if (!first) {
-    const Eigen::Vector3d way = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
-    given_energy_ += last_.force.dot(way);
-    path_energy_ += 0.5 * (last_.force + step.force).dot(way);
+    const Eigen::Vector3d path = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
+    given_energy_ += last_.force.dot(path);
+    path_energy_ += 0.5 * (last_.force + step.force).dot(path);
     largest_jump_ = std::max(largest_jump_, (step.force - last_.force).norm());
   }
   if (contact.touching) {

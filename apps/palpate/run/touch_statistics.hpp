@@ -45,7 +45,7 @@ class TouchStatistics {
   /// F_k . (h_{k+1} - h_k). Negative: taken from the hand. Sampling alone makes it positive: of a
   /// spring, by K / 2 |h_{k+1} - h_k|^2 a step.
   [[nodiscard]] double given_energy() const { return given_energy_; }
-  /// The integral of F . dh along the way by trapezoids, J, as if forces changed without steps. It
+  /// The integral of F . dh along the path by trapezoids, J, as if forces changed without steps. It
   /// shows whether the surface is passive, not whether a device is.
   [[nodiscard]] double path_energy() const { return path_energy_; }
   /// Notes of contacts and of the field, counted.
@@ -70,8 +70,8 @@ class TouchStatistics {
   std::array<std::size_t, 16> notes_{};  // steps with each
 };
 
-/// What a guard would have made of a run that has none: its slew and its clamp, on the way that the
-/// hand went without them. Damper and soft start, which change every force a little, are left out.
+/// What a guard would have made of a run that has none: its slew and its clamp, along the path of
+/// the hand without them. Damper and soft start, which change every force a little, are left out.
 class Unguarded {
  public:
   /// With the limits that a run in real time would have. `scale` is the workspace's.

@@ -21,9 +21,9 @@ constexpr std::ptrdiff_t kOutliers = 1000;  // one in so many may be, at either 
 
 double at_share(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
 }
 
 double farthest(const Box& bounds) {
@@ -46,7 +46,7 @@ UnitsGuess survey_units(const Box& bounds) {
 }
 
 // The unit that a file states, which the description of its format repeats. `rescaled`: the
-// caller gave the scale, and so knows the unit.
+// caller gave the scale, and so states the unit.
 std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
   const bool feet = format.find(", in feet") != std::string::npos;
   if (!feet && format.find(", in metres") == std::string::npos) return {};
@@ -122,9 +122,9 @@ UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& r
 bool on_a_line(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3f along = Eigen::Vector3f::Zero();
   for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3f way = point - points.front();
-    if (way.cross(along).norm() > 1e-4f * way.norm() * along.norm()) return false;
-    if (way.squaredNorm() > along.squaredNorm()) along = way;
+    const Eigen::Vector3f offset = point - points.front();
+    if (offset.cross(along).norm() > 1e-4f * offset.norm() * along.norm()) return false;
+    if (offset.squaredNorm() > along.squaredNorm()) along = offset;
   }
   return true;
 }

@@ -33,7 +33,7 @@ inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
 [[nodiscard]] UnitsGuess units_of(const CloudFile& file, const Box& core,
                                   const ReadOptions& reading);
 
-/// Are they all at one place or on a line, where no surface is? So are none.
+/// Are they all at one position or on a line, where no surface is? So are none.
 [[nodiscard]] bool on_a_line(std::span<const Eigen::Vector3f> points);
 
 /// How far points are from one another, m; medians over a sample that is spread over the cloud.
@@ -55,7 +55,7 @@ struct SpacingFacts {
 [[nodiscard]] Box bounds_of(const PointCloud& cloud);
 
 /// The box of all points but the outermost thousandth at either end of each axis where those make
-/// the box more than twice as long, m: a few outliers say nothing of what a cloud is.
+/// the box more than twice as long, m: a few outliers do not show what a cloud is.
 [[nodiscard]] Box core_of(const PointCloud& cloud);
 
 }  // namespace palpate::app

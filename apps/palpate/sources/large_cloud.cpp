@@ -26,7 +26,7 @@ PointCloud in_file(PointCloud cloud, const Eigen::Isometry3d& T_world_file) {
   return cloud;
 }
 
-void tell(const std::string& problem) {
+void warn(const std::string& problem) {
   fmt::print(stderr, "{}\n", without_controls(problem));
 }
 
@@ -45,7 +45,7 @@ const Source& first_surface(Scene& scene, LoadedSource& result) {
     }
   }
   if (is_empty() && first) std::rethrow_exception(first);
-  for (const std::string& problem : problems) tell(problem);
+  for (const std::string& problem : problems) warn(problem);
   return source;
 }
 
@@ -77,7 +77,7 @@ bool advance(OnDemand& cloud, Source& source, double now) {
   try {
     return cloud.advance(source, now, false);
   } catch (const std::exception& error) {
-    tell(missing_part(source, error));
+    warn(missing_part(source, error));
     return true;
   }
 }

@@ -20,10 +20,10 @@ const Source& add_on_demand(Scene& scene, const std::shared_ptr<const PointCloud
 /// @throws Error as open_store() and OnDemand do, and where the run needs all of its points.
 [[nodiscard]] bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result);
 
-/// What is said where a part of a cloud could not be read or prepared.
+/// What is reported where a part of a cloud could not be read or prepared.
 [[nodiscard]] std::string missing_part(const Source& source, const std::exception& error);
 
-/// Reads what tools may need; says on standard error what could not be read, and goes on.
+/// Reads what tools may need; reports on standard error what could not be read, and goes on.
 bool advance(OnDemand& cloud, Source& source, double now);
 
 /// Shows a source of a new run what was prepared so far, and what is missing. @return false:

@@ -32,7 +32,7 @@ CloudFile make_synthetic(const std::string& name, double scale) {
 }
 
 // Opening a named pipe waits for who writes; what a shell has opened (/dev/fd/63) does not.
-void tell_of_pipe(const std::string& path) {
+void note_pipe(const std::string& path) {
   std::error_code unknown;
   if (path.starts_with("/dev/") || !std::filesystem::is_fifo(path, unknown)) return;
   fmt::print(stderr, "{}: waiting for a program that writes to this pipe\n",
@@ -43,7 +43,7 @@ CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   if (argument.path.starts_with(kSynthetic)) {
     return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale);
   }
-  tell_of_pipe(argument.path);
+  note_pipe(argument.path);
   ReadOptions shown = options;
   Progress progress(fmt::format("reading {}", argument.path));
   shown.progress = [&](double done) {
@@ -62,7 +62,7 @@ bool is_unitless_file(const std::string& path) {
   return (type == ".stl" || type == ".obj") && std::filesystem::is_regular_file(path, unknown);
 }
 
-// A spacing of points is in metres, which are known once the cloud was read without it.
+// A spacing of points is in metres, which are fixed once the cloud was read without it.
 CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options) {
   const double spacing = options.mesh_spacing;
   const bool twice = spacing > 0 && is_unitless_file(argument.path);
@@ -84,7 +84,7 @@ CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options
   return file;
 }
 
-// A camera whose frames say where they were taken in a frame of its own (a recording with poses):
+// A camera whose frames store where they were taken in a frame of its own (a recording with poses):
 // puts that frame where the user wants it in the world. Frames without a pose are left as they
 // are: the source's pose holds for them.
 class PosedCamera final : public DepthCamera {
@@ -114,7 +114,7 @@ constexpr double kAnswerWait = 0.1;  // s, for one answer
 // Answers of a camera that waits for nothing: of a recording whose first minutes are of no use.
 constexpr int kAnswerTries = 5000;
 
-void tell_meanwhile(const CameraInfo& camera, const std::string& problem) {
+void warn_meanwhile(const CameraInfo& camera, const std::string& problem) {
   fmt::print(stderr, "{}: {}\n", without_controls(camera.name), without_controls(problem));
 }
 
@@ -209,7 +209,7 @@ DepthFrame first_frame(DepthCamera& camera, std::size_t* failures) {
     if (failures != nullptr && is_failure(status)) ++*failures;
     if (!camera.reason().empty() && problem != camera.reason()) {
       problem = camera.reason();
-      if (info.awaits_sender) tell_meanwhile(info, problem);
+      if (info.awaits_sender) warn_meanwhile(info, problem);
     }
     if (status == DepthCamera::Status::ended) break;
   }

@@ -19,7 +19,7 @@ struct LoadedCloud {
 };
 
 /// Reads one cloud, file, standard input or synthetic, with progress on standard error; where
-/// nobody said what its unit is, in the likely_unit() of its format and size.
+/// nobody stated its unit, in the likely_unit() of its format and size.
 /// @throws Error as read_cloud_file() does, and when it holds no point.
 [[nodiscard]] LoadedCloud load(const CloudArgument& argument, const FileReading& options);
 
@@ -34,13 +34,13 @@ void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options);
 [[nodiscard]] DepthFrame load_depth_image(const std::string& path, const ReadOptions& options);
 
 /// Opens the camera or recording that `source` names. Its frames come as they happen on `clock`,
-/// which outlives it, or as fast as they are asked for without one; its poses, where it tells any,
+/// which outlives it, or as fast as they are requested without one; its poses, where it has any,
 /// are put where the user wants them.
 /// @throws Error when it is not there or, without a clock, cannot do but keep its own time.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream(const SourcePlan& source,
                                                        const Clock* clock);
 
-/// The same at its own pace where it has one, else as fast as it is asked.
+/// The same at its own pace where it has one, else as fast as it is requested.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source);
 
 /// The next frame of use, waiting for some seconds at most; where who sends them may come at any

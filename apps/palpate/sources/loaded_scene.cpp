@@ -42,7 +42,7 @@ double middle_depth(const DepthFrame& frame) {
   return median(depths);
 }
 
-// What sets the metres a step of a source's depths, as words after others; cameras know theirs.
+// What sets the metres a step of a source's depths, as words after others; cameras report theirs.
 std::string unit_advice(const std::string& path) {
   const std::string name = path.starts_with(kCamera) ? path.substr(kCamera.size()) : path;
   if (name.starts_with(kBag) || name.starts_with(kRos)) {
@@ -69,7 +69,7 @@ void check_range(const CloudArgument& source, const DepthFrame& frame,
 }
 
 // Farther away the proxy would fault in every step.
-void check_place(const CloudArgument& cloud, const Source& source) {
+void check_position(const CloudArgument& cloud, const Source& source) {
   const Box box = bounds_of(source);
   const double far = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
   if (box.empty() || far <= Proxy::kLargestCoordinate) return;
@@ -101,7 +101,7 @@ void check_felt(const Source& source, LoadedSource& result) {
         "{} contains no surface, so there is nothing to touch; check its units and range",
         result.plan.argument.path));
   }
-  check_place(result.plan.argument, source);
+  check_position(result.plan.argument, source);
   check_radius(result.plan.argument, result.plan.options.prepare, points->grid);
   result.state = source.state();
 }
@@ -139,7 +139,7 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.state = source.state();
   result.depth_image = result.state.depth > 0;
   if (result.depth_image) result.lens = depth_frame_of(*cloud).frame->camera;
-  check_place(plan.argument, source);
+  check_position(plan.argument, source);
   if (options.keep_clouds || large) result.cloud = cloud;
 }
 
@@ -173,11 +173,11 @@ void add_depth_image(Scene& scene, bool keep, LoadedSource& result) {
 }
 
 // Makes it the first frame of the source. False: it shows no surface; `problem` gets the reason, if
-// one is told.
+// one is reported.
 bool shows(const DepthFrame& frame, const LoadedSource& result, Source& source,
            std::string& problem) {
   try {
-    push_frame(result, source, frame, [] { return 0.0; });  // in which no tool is known yet
+    push_frame(result, source, frame, [] { return 0.0; });  // in which there is no tool yet
   } catch (const Error& error) {
     problem = error.what();
     return false;
@@ -209,13 +209,13 @@ void add_stream(Scene& scene, const LoadOptions& options, LoadedSource& result) 
   DepthFrame first = first_frame(*result.camera);
   const double latest = first.stamp + kFirstLook;
   plan.as_cloud |= first.cloud != nullptr;
-  const DepthFilterOptions asked = plan.options.depth;
+  const DepthFilterOptions given = plan.options.depth;
   Source& source = scene.add(plan.argument.name, plan.options);
   std::string problem;
   do {
     result.lens = lens_of(first);
     result.posed = first.T_world_sensor.has_value();
-    plan.options.depth = asked;
+    plan.options.depth = given;
     believe_no_farther(first, plan);
     source.change(plan.options);  // forgets the frames before
     if (first.T_world_sensor) source.set_pose(*first.T_world_sensor);

@@ -30,7 +30,7 @@ struct FeedReport {
 
 /// One source of a run. Points themselves live in the scene.
 struct LoadedSource {
-  SourcePlan plan;  ///< of a camera with the range of depths that its first frame asks for
+  SourcePlan plan;  ///< of a camera with the range of depths that its first frame requires
   Prepared::Report prepared;  ///< of a cloud
   Source::State state;        ///< of a depth image; of a stream, after the run
 
@@ -52,14 +52,14 @@ struct LoadedSource {
   // Streams:
   std::unique_ptr<DepthCamera> camera;  ///< null: it stands still
   CameraModel lens;                     ///< of its first frame; of an organised cloud, too
-  bool posed = false;                   ///< its frames say where it stands
+  bool posed = false;                   ///< its frames store where it stands
   FeedReport feed;                      ///< after the run
 };
 
-/// The scene, and all that is known of it before the first step.
+/// The scene, and all that is measured of it before the first step.
 struct LoadedScene {
   std::vector<LoadedSource> sources;
-  /// Prepared surfaces; for cameras the first frame and its pose, if `explored` was asked for.
+  /// Prepared surfaces; for cameras the first frame and its pose, if `explored` was requested.
   Scene scene;
 };
 
@@ -85,7 +85,7 @@ struct LoadOptions {
                                        const LoadOptions& options);
 
 /// Makes the scene what a run begins with: clouds as they were prepared, with another soft material
-/// (how hard the hardest points are may be known after preparation only); cameras without a
+/// (how hard the hardest points are may be measured after preparation only); cameras without a
 /// surface.
 void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft);
 

@@ -55,7 +55,7 @@ class LiveHand {
   void begin(double start);
 
   // Hands its new steps to `each`, with times from 0.
-  // Says in `status` what `each` throws, and goes on.
+  // Reports in `status` what `each` throws, and goes on.
   void take_steps(const EachStep& each, LiveStatus& status);
 
   // Has it come to its end, whatever ended it?
@@ -108,7 +108,7 @@ void LiveHand::take_steps(const EachStep& each, LiveStatus& status) {
     try {
       each(index_, *step);
     } catch (const Error& error) {
-      status.tell(error.what() + std::string("; the run goes on"));
+      status.print(error.what() + std::string("; the run goes on"));
     }
   }
 }
@@ -186,36 +186,36 @@ LiveMoment moment_of(LiveHands& hands, const LiveFeed& feed,
   return moment;
 }
 
-// Says once of each hand that its device failed, where others go on, and of a cloud what of it
+// Reports once of each hand that its device failed, where others go on, and of a cloud what of it
 // cannot be read.
 class FailureWatch {
  public:
   void look(const LiveHands& hands, const LiveFeed& feed, double now, LiveStatus& status) {
     const std::vector<std::string> problems = feed.problems();
-    for (; problems_ < problems.size(); ++problems_) status.tell(problems[problems_]);
-    told_.resize(hands.size());
+    for (; problems_ < problems.size(); ++problems_) status.print(problems[problems_]);
+    reported_.resize(hands.size());
     if (!any_goes_on(hands, now)) return;
     for (std::size_t i = 0; i < hands.size(); ++i) {
-      const std::string failure = told_[i] ? "" : hands[i].failure();
+      const std::string failure = reported_[i] ? "" : hands[i].failure();
       if (failure.empty()) continue;
-      told_[i] = true;
-      status.tell(failure + "; it gets no more force, the other hands continue");
+      reported_[i] = true;
+      status.print(failure + "; it gets no more force, the other hands continue");
     }
   }
 
  private:
-  std::vector<bool> told_;
-  std::size_t problems_ = 0;  // of the feed, told
+  std::vector<bool> reported_;
+  std::size_t problems_ = 0;  // of the feed, reported
 };
 
 // Topics are named hand, or hand1, hand2, ... where there are several.
-std::vector<RosBridge::Hand> told_hands(LiveHands& hands) {
-  std::vector<RosBridge::Hand> told;
+std::vector<RosBridge::Hand> ros_hands(LiveHands& hands) {
+  std::vector<RosBridge::Hand> found;
   for (LiveHand& hand : hands) {
-    const std::string number = hands.size() > 1 ? std::to_string(told.size() + 1) : "";
-    told.push_back({"hand" + number, &hand.servo()});
+    const std::string number = hands.size() > 1 ? std::to_string(found.size() + 1) : "";
+    found.push_back({"hand" + number, &hand.servo()});
   }
-  return told;
+  return found;
 }
 
 }  // namespace
@@ -234,11 +234,11 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   LiveOutcome outcome;
   if (run.ros.wanted()) {
     bridge.emplace(
-        told_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.options());
+        ros_hands(hands), run.loaded.scene, [&] { return feed.states(); }, run.ros.options());
   }
   const auto robot = [&] { return bridge ? bridge->robot() : std::nullopt; };
   if (run.page.served) view.emplace(run, servos_of(hands), feed, bridge ? &*bridge : nullptr);
-  while (any_goes_on(hands, clock.now()) && !interruption.asked() && !outcome.next_page) {
+  while (any_goes_on(hands, clock.now()) && !interruption.requested() && !outcome.next_page) {
     std::this_thread::sleep_for(kLook);
     for (LiveHand& hand : hands) hand.take_steps(each, status);
     if (view) outcome.next_page = view->look();
@@ -252,9 +252,9 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   for (LiveHand& hand : hands) hand.stop();
   for (LiveHand& hand : hands) hand.take_steps(each, status);
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
-  outcome.interrupted = interruption.asked();
+  outcome.interrupted = interruption.requested();
   failures.look(hands, feed, clock.now(), status);
-  if (bridge && !bridge->problem().empty()) status.tell("ROS 2: " + bridge->problem());
+  if (bridge && !bridge->problem().empty()) status.print("ROS 2: " + bridge->problem());
   view.reset();  // it looks at the bridge, and both at what the feed takes down
   bridge.reset();
   feed.finish();

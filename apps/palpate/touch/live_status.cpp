@@ -21,12 +21,12 @@ void to_terminal(const std::string& text) {
 
 constexpr double kTerminalPeriod = 0.1;  // s
 constexpr double kLinePeriod = 1;        // s
-constexpr std::size_t kColumns = 80;     // of a terminal that does not tell
+constexpr std::size_t kColumns = 80;     // of a terminal that does not report them
 
 std::size_t columns() {
   winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : kColumns;
+  const bool measured = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return measured ? size.ws_col : kColumns;
 }
 
 std::string hand_words(const HandMoment& moment) {
@@ -114,7 +114,7 @@ void LiveStatus::show(const LiveMoment& moment) {
   shown_ = true;
 }
 
-void LiveStatus::tell(const std::string& words) {
+void LiveStatus::print(const std::string& words) {
   to_terminal(fmt::format("{}{}\n", terminal_ && shown_ ? "\r\033[K" : "", words));
 }
 

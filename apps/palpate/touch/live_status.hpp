@@ -17,7 +17,7 @@ struct HandMoment {
   double force = 0;         ///< the longest since the moment before, N
   double rate = 0;          ///< steps a second since then, Hz
   StepDurations durations;  ///< of the steps since then
-  std::string silence;      ///< why its device is not heard; empty: it is
+  std::string silence;      ///< why its device is silent; empty: it is not
   bool ended = false;
 };
 
@@ -31,8 +31,8 @@ struct LiveMoment {
 };
 
 /// One line: "12.3 s  1.42 N  1000 Hz, 24 us (p99 61), late p99 0.09 ms | table 30.0 Hz, 11 ms".
-/// Several hands are told by name. A stream that does not run, a device that is not heard, a servo
-/// that holds back and a robot that is told nothing say why.
+/// Several hands are named. A stream that does not run, a device that is silent, a servo that
+/// holds back and a robot that gets no targets are shown with the reason.
 [[nodiscard]] std::string in_words(const LiveMoment& moment);
 
 /// Shows moments on standard error: in one line that is rewritten ten times a second on a terminal,
@@ -49,7 +49,7 @@ class LiveStatus {
   void show(const LiveMoment& moment);
 
   /// Something that happened, in a line that stays.
-  void tell(const std::string& words);
+  void print(const std::string& words);
 
  private:
   bool terminal_;

@@ -38,7 +38,7 @@ void read_around_tools(Run& run, double time, const Interruption& interruption) 
     OnDemand* const cloud = run.loaded.sources[i].on_demand.get();
     if (cloud == nullptr) continue;
     Source& source = run.loaded.scene.source(i);
-    while (!interruption.asked() && advance(*cloud, source, time)) continue;
+    while (!interruption.requested() && advance(*cloud, source, time)) continue;
   }
 }
 
@@ -60,7 +60,7 @@ bool run_simulated(Run& run, const EachStep& each) {
     }
     for (SimulatedStream& stream : streams) stream.advance(state.time);
     read_around_tools(run, state.time, interruption);
-    if (interruption.asked()) break;
+    if (interruption.requested()) break;
     const double start = thread_cpu_seconds();
     const ServoState& step = servo.step(state, state.time);
     const double computing = thread_cpu_seconds() - start;
@@ -72,7 +72,7 @@ bool run_simulated(Run& run, const EachStep& each) {
   std::vector<StreamState> states;
   for (const SimulatedStream& stream : streams) states.push_back(stream.state());
   keep_states(run.loaded, states);
-  return !interruption.asked();
+  return !interruption.requested();
 }
 
 }  // namespace palpate::app

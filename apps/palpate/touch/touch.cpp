@@ -34,7 +34,7 @@
 namespace palpate::app {
 namespace {
 
-// Every file is made before the work: a place that does not exist is told at once.
+// Every file is made before the work: a path that does not exist is reported at once.
 struct TouchOutputs {
   std::deque<HandOutputs> hands;
   std::vector<std::string> unlogged;  // of each hand: why its log is not whole
@@ -140,7 +140,7 @@ void check_hands(const std::vector<HandReport>& hands) {
 }
 
 // The pictures come last: everything else is there if they cannot be drawn.
-void tell(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
+void write_report(const TouchReport& report, std::FILE* stream, TouchOutputs& outputs) {
   const Json data = report_on(report, stream);
   write_whole(outputs.json, text_of(data));
   for (std::size_t i = 0; i < report.hands.size(); ++i) {
@@ -189,12 +189,12 @@ struct Start {
   std::shared_ptr<TemporaryFolder> folder;  // of a file that a page sent, for as long as it is felt
 };
 
-// Without the folder that a file was put into: a person knows it by its name.
+// Without the folder that a file was put into: a person recognises it by its name.
 std::string without_folder(std::string text, const std::shared_ptr<TemporaryFolder>& folder) {
   if (!folder) return text;
-  const std::string place = folder->file("");
-  for (std::size_t at = 0; (at = text.find(place)) != std::string::npos;) {
-    text.erase(at, place.size());
+  const std::string path = folder->file("");
+  for (std::size_t at = 0; (at = text.find(path)) != std::string::npos;) {
+    text.erase(at, path.size());
   }
   return text;
 }
@@ -216,11 +216,11 @@ TouchPlan plan_of(const TouchPlan& plan, Opening::Wanted& wanted,
 }
 
 std::unique_ptr<Start> opened(const Start& before, Opening::Wanted wanted, WaitingClock* clock,
-                              const Opening::Told& told) {
+                              const Opening::Notify& notify) {
   std::shared_ptr<TemporaryFolder> folder = before.folder;
   try {
     TouchPlan next = plan_of(before.plan, wanted, folder);
-    for (SourcePlan& source : next.sources) source.reading.progress = told;
+    for (SourcePlan& source : next.sources) source.reading.progress = notify;
     auto start = std::make_unique<Start>(std::move(next), clock);
     start->folder = folder;
     for (LoadedSource& source : start->loaded.sources) {
@@ -237,8 +237,8 @@ std::unique_ptr<Start> opened(const Start& before, Opening::Wanted wanted, Waiti
 
 // Runs, and reports on all that came of it. Where a page opened a file meanwhile: what comes next.
 // @throws Error when something failed, after `next` was set.
-void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>& interruption,
-                  std::unique_ptr<Start>& next) {
+void run_and_report(Start& start, WaitingClock* clock, std::optional<Interruption>& interruption,
+                    std::unique_ptr<Start>& next) {
   const TouchPlan& plan = start.plan;
   TouchOutputs& outputs = start.outputs;
   Run run{plan.time,
@@ -250,8 +250,8 @@ void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>
           plan.surface.proxy_of(start.hands.front().stiffness),
           outputs.recorder ? &*outputs.recorder : nullptr};
   std::unique_ptr<Start> prepared;
-  Opening opening([&](Opening::Wanted wanted, const Opening::Told& told) {
-    prepared = opened(start, std::move(wanted), clock, told);
+  Opening opening([&](Opening::Wanted wanted, const Opening::Notify& notify) {
+    prepared = opened(start, std::move(wanted), clock, notify);
   });
   if (can_open_files(plan)) run.opening = &opening;
   LiveOutcome outcome = play(run, clock, interruption ? &*interruption : nullptr, outputs);
@@ -264,10 +264,10 @@ void run_and_tell(Start& start, WaitingClock* clock, std::optional<Interruption>
   }
   std::vector<RecordReport> recorded;
   if (outputs.recorder) recorded = outputs.recorder->finish();
-  tell({start.loaded, plan.surface.paper, plan.surface.field, run.proxy,
-        hand_reports(run, outputs, outcome), outcome.robot, recorded},
-       plan.outputs.takes_stdout() ? stderr : stdout, outputs);
-  if (!next) interruption.reset();  // all is said: nothing needs to wait for what is being opened
+  write_report({start.loaded, plan.surface.paper, plan.surface.field, run.proxy,
+                hand_reports(run, outputs, outcome), outcome.robot, recorded},
+               plan.outputs.takes_stdout() ? stderr : stdout, outputs);
+  if (!next) interruption.reset();  // all is reported: nothing waits for what is being opened
 }
 
 }  // namespace
@@ -282,10 +282,10 @@ void touch(const TouchPlan& plan) {
   std::optional<Interruption> interruption;  // of all runs
   if (clock != nullptr) interruption.emplace();
   bool failed = false;
-  while (start && !(interruption && interruption->asked())) {
+  while (start && !(interruption && interruption->requested())) {
     std::unique_ptr<Start> next;
     try {
-      run_and_tell(*start, clock, interruption, next);
+      run_and_report(*start, clock, interruption, next);
     } catch (const Error& error) {
       if (!next) throw;
       fmt::print(stderr, "{}\n", without_controls(error.what()));

@@ -18,12 +18,12 @@ std::string address_of(const ifaddrs& interface) {
   const bool up = (interface.ifa_flags & IFF_UP) != 0 && (interface.ifa_flags & IFF_LOOPBACK) == 0;
   if (!up || interface.ifa_addr == nullptr || interface.ifa_addr->sa_family != AF_INET) return {};
   std::array<char, NI_MAXHOST> text{};
-  const bool told = getnameinfo(interface.ifa_addr, sizeof(sockaddr_in), text.data(), text.size(),
-                                nullptr, 0, NI_NUMERICHOST) == 0;
-  return told ? text.data() : std::string();
+  const bool found = getnameinfo(interface.ifa_addr, sizeof(sockaddr_in), text.data(), text.size(),
+                                 nullptr, 0, NI_NUMERICHOST) == 0;
+  return found ? text.data() : std::string();
 }
 
-void tell_others(const std::string& url) {
+void announce_others(const std::string& url) {
   ifaddrs* all = nullptr;
   if (getifaddrs(&all) != 0) return;
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> freed(all, &freeifaddrs);
@@ -41,9 +41,9 @@ void tell_others(const std::string& url) {
 
 }  // namespace
 
-void tell_page(const std::string& url, const std::string& listened) {
+void announce_page(const std::string& url, const std::string& listened) {
   fmt::print(stderr, "page: {}\n", url);
-  if (listened == "0.0.0.0" || listened == "::") tell_others(url);
+  if (listened == "0.0.0.0" || listened == "::") announce_others(url);
 }
 
 }  // namespace palpate::app

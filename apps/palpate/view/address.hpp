@@ -4,10 +4,10 @@
 
 namespace palpate::app {
 
-/// Says on standard error where a page is, and where other machines find it: on each network
+/// Prints on standard error where a page is, and where other machines find it: on each network
 /// interface that is up, if it is served on all (`listened`). On a terminal the first of these is
 /// a QR code, too, for a phone's camera.
-void tell_page(const std::string& url, const std::string& listened);
+void announce_page(const std::string& url, const std::string& listened);
 
 /// The token in a page's address: what stands behind `#`.
 [[nodiscard]] inline std::string token_of(const std::string& url) {

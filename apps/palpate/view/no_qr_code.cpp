@@ -1,4 +1,4 @@
-// In place of qr_code.cpp where libqrencode is absent.
+// Replaces qr_code.cpp where libqrencode is absent.
 #include "apps/palpate/view/address.hpp"
 
 namespace palpate::app {

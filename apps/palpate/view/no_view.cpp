@@ -1,4 +1,4 @@
-// In place of view.cpp where there is no viewer.
+// Replaces view.cpp where there is no viewer.
 #include "apps/palpate/view/view.hpp"
 #include "palpate/base/error.hpp"
 

@@ -1,4 +1,4 @@
-// Tells pages how far reading and preparing are.
+// Shows pages how far reading and preparing are.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace palpate::app {
 
-/// Tells pages how far something is, once for each percent.
-class ToldProgress {
+/// Shows pages how far something is, once for each percent.
+class PageProgress {
  public:
   /// `share`: as Viewer::progress() takes it.
   void show(Viewer& viewer, const std::string& what, double share) {
-    // What is at its end is told as 100 % only then.
+    // What is at its end is shown as 100 % only then.
     const double percent = std::floor(100 * share);
     if (percent == percent_ && (what == what_ || percent == 100)) return;
     percent_ = percent;

@@ -85,24 +85,24 @@ void refuse_paged(const LoadedScene& loaded) {
 
 }  // namespace
 
-// Tells pages how reading and preparing go, and what went wrong.
+// Shows pages how reading and preparing go, and what went wrong.
 struct PageNews {
-  // Tells what of a cloud could not be read, each thing once.
-  void tell_problems() {
+  // Shows what of a cloud could not be read, each thing once.
+  void show_problems() {
     const std::vector<std::string> problems = feed.problems();
-    for (; told < problems.size(); ++told) {
-      viewer.notice(Viewer::NoticeLevel::warning, problems[told]);
+    for (; shown < problems.size(); ++shown) {
+      viewer.notice(Viewer::NoticeLevel::warning, problems[shown]);
     }
   }
 
   // Around a store there is always something to come.
-  void tell_prepared() {
+  void show_prepared() {
     const auto paged = [](const LoadedSource& source) { return source.paged; };
     if (std::ranges::any_of(run.loaded.sources, paged)) return;
     surface.show(viewer, "preparing the surface, first where the tools are", feed.prepared());
   }
 
-  // Has what a page sent been prepared? Tells pages how that goes.
+  // Has what a page sent been prepared? Shows pages how that goes.
   bool has_opened() {
     if (run.opening == nullptr) return false;
     const std::optional<Opening::News> news = run.opening->look();
@@ -122,9 +122,9 @@ struct PageNews {
   const Run& run;
   const LiveFeed& feed;
   Viewer& viewer;
-  std::size_t told = 0;      // problems of the feed
-  ToldProgress opened = {};  // how far a file is that a page sent
-  ToldProgress surface = {};
+  std::size_t shown = 0;     // problems of the feed
+  PageProgress opened = {};  // how far a file is that a page sent
+  PageProgress surface = {};
 };
 
 struct View::Parts {
@@ -144,7 +144,7 @@ struct View::Parts {
     if (run.recorder->recording().empty()) viewer.record_ended();
   }
 
-  // These tell the viewer.
+  // These notify the viewer.
   ~Parts() {
     run.recorder->on_broken({});
     preparer.stop();
@@ -268,7 +268,7 @@ View::View(Run& run, std::vector<Servo*> servos, const LiveFeed& feed, const Ros
   for (Servo* servo : parts_->servos) {
     if (run.page.paused) servo->pause(true);
   }
-  if (run.page.token.empty()) tell_page(parts_->viewer.url(), run.page.address);
+  if (run.page.token.empty()) announce_page(parts_->viewer.url(), run.page.address);
   if (!run.page.headless) parts_->browser.emplace(parts_->viewer.url());
 }
 
@@ -278,8 +278,8 @@ std::optional<PagePlan> View::look() {
   for (PageHold& hold : parts_->holds) {
     if (hold.possible()) hold.keep();
   }
-  parts_->news.tell_problems();
-  parts_->news.tell_prepared();
+  parts_->news.show_problems();
+  parts_->news.show_prepared();
   if (!parts_->news.has_opened()) return {};
   return parts_->next_page();
 }

@@ -1,4 +1,4 @@
-// Serves a page that says how far the clouds of a run are read.
+// Serves a page that shows how far the clouds of a run are read.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -36,7 +36,7 @@ struct WaitingPage::Parts {
     options.scene = scene_name;
     viewer.emplace(scene, std::vector<Servo*>{}, options);
     const std::string url = viewer->url();
-    tell_page(url, page.address);
+    announce_page(url, page.address);
     if (!page.headless) browser.emplace(url);
     page.headless = true;
     page.port = viewer->port();
@@ -44,17 +44,17 @@ struct WaitingPage::Parts {
     page.token = token_of(url);
   }
 
-  void tell(const std::string& name, double share) {
+  void show(const std::string& name, double share) {
     if (!page.served || std::chrono::steady_clock::now() < opens_at) return;
     if (!viewer) open();
-    told.show_cloud(*viewer, name, share);
+    progress.show_cloud(*viewer, name, share);
   }
 
   PagePlan page;
   std::string scene_name;
   std::chrono::steady_clock::time_point opens_at;
   Scene scene;  // without a source yet
-  ToldProgress told;
+  PageProgress progress;
   std::optional<Browser> browser;
   std::optional<Viewer> viewer;  // last: it uses the scene
 };
@@ -67,7 +67,7 @@ WaitingPage::~WaitingPage() = default;
 TouchPlan WaitingPage::watching(TouchPlan plan) {
   for (SourcePlan& source : plan.sources) {
     source.reading.progress = [parts = parts_.get(), name = source.argument.name](double share) {
-      parts->tell(name, share);
+      parts->show(name, share);
     };
   }
   return plan;

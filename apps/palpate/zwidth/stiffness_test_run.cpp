@@ -86,12 +86,12 @@ void ask(const StiffnessTestRunOptions& options) {
 
 // Prints what the hand should do, when that changes.
 StiffnessTest::State lead(TrialThread& thread, const Interruption& interruption) {
-  std::string said;
-  while (thread.runs() && !interruption.asked()) {
+  std::string printed;
+  while (thread.runs() && !interruption.requested()) {
     const StiffnessTest::State state = thread.state();
     std::string words = fmt::format("{:4.0f} N/m: {}", state.wall, in_words(state.phase));
-    if (words != said) fmt::print(stderr, "{}\n", words);
-    said = std::move(words);
+    if (words != printed) fmt::print(stderr, "{}\n", words);
+    printed = std::move(words);
     std::this_thread::sleep_for(kLookAtTrial);
   }
   thread.stop();
@@ -112,7 +112,7 @@ std::string found(const StiffnessTestRunOptions& options, const DeviceInfo& info
   return facts.dump(2) + "\n";
 }
 
-void tell(const StiffnessTest::State& state, double damping, std::FILE* out) {
+void print_result(const StiffnessTest::State& state, double damping, std::FILE* out) {
   const Style style(out);
   fmt::print(
       out,
@@ -145,7 +145,7 @@ void run_stiffness_test(const StiffnessTestRunOptions& options) {
   const StiffnessTest::State state = lead(thread, interruption);
   if (json) write_whole(json, found(options, device->info(), state));
   if (state.stable > 0)
-    return tell(state, options.trial.damping, options.json == "-" ? stderr : stdout);
+    return print_result(state, options.trial.damping, options.json == "-" ? stderr : stdout);
   const std::string reason = device->reason();
   throw Error(
       fmt::format("no wall was pressed: {}", reason.empty() ? in_words(state.phase) : reason));

@@ -38,7 +38,7 @@ struct ZWidthMap {
   std::vector<ZWidthRow> rows;
 };
 
-// The name of a profile for which none was asked.
+// The name of a profile for which none was requested.
 std::string usual_profile(const std::string& file, const std::vector<DeviceProfile>& among) {
   if (file.empty()) return "simulated";
   if (among.size() == 1) return among.front().name;
@@ -104,7 +104,7 @@ std::string stiffness(double newtons_per_metre) {
   return fmt::format("{:.0f}", newtons_per_metre);
 }
 
-// Simulates every combination of rate, delay and damping. `progress` is told 0 to 1.
+// Simulates every combination of rate, delay and damping. `progress` gets 0 to 1.
 ZWidthMap measure_zwidth(const ZWidthOptions& options,
                          const std::function<void(double)>& progress) {
   ZWidthMap map;

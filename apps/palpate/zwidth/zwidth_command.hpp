@@ -32,7 +32,7 @@ struct StiffnessTestRunOptions {
   std::string json;  ///< file for what was found; "-": standard output; empty: none
 };
 
-/// Measures on hardware how stiff a wall may be: tells what comes, asks unless `confirmed`, and
+/// Measures on hardware how stiff a wall may be: explains what comes, asks unless `confirmed`, and
 /// leads the hand step by step.
 /// @throws UsageError when nobody has confirmed, Error when there is no such device, when it failed
 ///   or nothing was measured.
@@ -45,7 +45,7 @@ struct ZWidthChoices {
 
 void add_zwidth_options(CLI::App& command, ZWidthChoices& choices);
 
-/// Simulates, or measures on hardware, how stiff a wall may be, and tells it as asked.
+/// Simulates, or measures on hardware, how stiff a wall may be, and reports it as requested.
 /// @throws Error, UsageError.
 void zwidth(const ZWidthChoices& choices);
 
