@@ -15,22 +15,22 @@ constexpr float kWithin2 = 0.98f;
 
 }  // namespace
 
-void BlockFates::settle(std::size_t begin, std::size_t end, SettledPlaces& to) const {
+void BlockFates::settle(std::size_t begin, std::size_t end, SettledBlocks& to) const {
   to.advancing.clear();
   to.shown.clear();
   to.unseen.clear();
-  for (std::size_t place = begin; place < end; place += kLanes) {
-    const std::uint32_t first = place + kLanes <= end && !blocks_.hide(place)
-                                    ? matches_.four_at(place)
+  for (std::size_t index = begin; index < end; index += kLanes) {
+    const std::uint32_t first = index + kLanes <= end && !blocks_.hide(index)
+                                    ? matches_.four_at(index)
                                     : BlockEntries::kNone;
     PointMotion4& motions = to.advancing.emplace_back();
-    motions.place = static_cast<std::uint32_t>(place);
+    motions.index = static_cast<std::uint32_t>(index);
     const bool live = first != BlockEntries::kNone && are_live(first, motions);
-    if (live && blocks_.keeps(place) && advance(first, motions)) continue;
-    const SeenFour four = blocks_.four_at(place);
+    if (live && blocks_.keeps(index) && advance(first, motions)) continue;
+    const SeenFour four = blocks_.four_at(index);
     if (live && update(four, motions)) continue;
     to.advancing.pop_back();
-    for (int l = 0; l < kLanes && place + l < end; ++l) settle(four.lane(l), to);
+    for (int l = 0; l < kLanes && index + l < end; ++l) settle(four.lane(l), to);
   }
 }
 
@@ -61,9 +61,10 @@ bool BlockFates::advance(std::uint32_t first, PointMotion4& motions) const {
 /// decide. Worth 16 to 29 % of a frame (bench/notes/2026-11-25-points-in-fours.md).
 bool BlockFates::update(const SeenFour& seen, PointMotion4& motions) const {
   if (any(~seen.edges)) return false;
-  const Vectors way = motions.from.position - seen.position;
+  const Vectors offset = motions.from.position - seen.position;
   const Vectors& normal = motions.from.normal;
-  const Ints near = (seen.radius > 0) & (dot(way, way) <= kWithin2 * (seen.radius * seen.radius));
+  const Ints near =
+      (seen.radius > 0) & (dot(offset, offset) <= kWithin2 * (seen.radius * seen.radius));
   const Ints turns = ~normal.zero() &
                      (dot(seen.normal, normal) < SeenPoint::kTurns * dot(seen.normal, seen.normal));
   if (!all(near & ~turns)) return false;
@@ -72,10 +73,10 @@ bool BlockFates::update(const SeenFour& seen, PointMotion4& motions) const {
 }
 
 /// Decides on the point that the frame has at a block, and on the old ones there.
-void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
+void BlockFates::settle(const SeenPoint& seen, SettledBlocks& to) const {
   std::optional<BlockMatches::Partner> partner;
   if (seen.state.radius > 0) partner = matches_.partner_of(seen);
-  const bool shown = seen.state.radius > 0 && is_sure(seen, partner);
+  const bool shown = seen.state.radius > 0 && is_confident(seen, partner);
   if (!shown) partner.reset();
   float at = blocks_.depth_of(seen.state.position);
   if (shown && !partner) add(moves_.appear(seen), seen, to);
@@ -87,9 +88,9 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
     add(next == Fate::update ? moves_.update(seen, i, before) : moves_.confirm(i, before), seen,
         to);
   }
-  const std::span<const std::uint32_t> old = matches_.at(seen.place);
+  const std::span<const std::uint32_t> old = matches_.at(seen.index);
   const std::optional<std::uint32_t> own = partner ? std::optional(partner->i) : std::nullopt;
-  const std::optional<std::uint32_t> behind = settle_behind(seen.place, own, to);
+  const std::optional<std::uint32_t> behind = settle_behind(seen.index, own, to);
   bool held = false;
   for (const std::uint32_t i : old) {
     if (i == own || i == behind) continue;
@@ -108,16 +109,16 @@ void BlockFates::settle(const SeenPoint& seen, SettledPlaces& to) const {
 /// Lets a plane go on behind what the block shows, which is the old point `shown`, unless the block
 /// remembers what was seen there, or what it shows comes from there.
 /// @return the old point of that plane.
-std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t place,
+std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t index,
                                                        std::optional<std::uint32_t> shown,
-                                                       SettledPlaces& to) const {
-  const SeenPoint behind = blocks_.behind(place);
+                                                       SettledBlocks& to) const {
+  const SeenPoint behind = blocks_.behind(index);
   if (!(behind.state.radius > 0)) return {};
   std::optional<std::uint32_t> old;
-  for (const std::uint32_t i : matches_.at(place)) {
+  for (const std::uint32_t i : matches_.at(index)) {
     const EntryKind kind = shown_.entries()[i].kind;
-    const float way = (shown_.at(i).position - behind.state.position).norm();
-    const bool same = way <= behind.state.radius;
+    const float distance = (shown_.at(i).position - behind.state.position).norm();
+    const bool same = distance <= behind.state.radius;
     if (kind == EntryKind::hidden || (kind == EntryKind::live && same)) return {};
     if (kind == EntryKind::supposed && same && i != shown) old = i;
   }
@@ -129,17 +130,17 @@ std::optional<std::uint32_t> BlockFates::settle_behind(std::uint32_t place,
 
 /// Is the surface that the block shows there, rather than a pixel between two surfaces or a normal
 /// that noise has turned within a frame? One that turns for longer is believed after a while.
-bool BlockFates::is_sure(const SeenPoint& seen,
-                         const std::optional<BlockMatches::Partner>& partner) const {
+bool BlockFates::is_confident(const SeenPoint& seen,
+                              const std::optional<BlockMatches::Partner>& partner) const {
   if (partner) return !(seen.turns_from(partner->before.normal) && moves_.is_fresh(partner->i));
-  return !shown_.any() || blocks_.vouching(seen.place) >= kVouch;
+  return !shown_.any() || blocks_.vouching(seen.index) >= kVouch;
 }
 
 /// Is the old point elsewhere than what is seen now, within noise, and hardly a block around it
 /// shows that, too? Such a frame does not show where the surface is.
 bool BlockFates::is_doubtful(const SeenPoint& seen, const PointState& before) const {
   return (before.position - seen.state.position).norm() > seen.state.radius &&
-         blocks_.vouching(seen.place) < FrameBlocks::kVouchToMove;
+         blocks_.vouching(seen.index) < FrameBlocks::kVouchToMove;
 }
 
 /// A block remembers one hidden surface: the one that was hidden first. What moves before it leaves
@@ -154,10 +155,10 @@ bool BlockFates::may_hide(std::span<const std::uint32_t> old, std::uint32_t i) c
   });
 }
 
-void BlockFates::add(PointMotion motion, const SeenPoint& at, SettledPlaces& to) const {
+void BlockFates::add(PointMotion motion, const SeenPoint& at, SettledBlocks& to) const {
   if (PointMoves::is_gone(motion)) return;
-  motion.entry.place = at.place;
-  motion.code = blocks_.order().codes[at.place];
+  motion.entry.index = at.index;
+  motion.code = blocks_.order().codes[at.index];
   (motion.entry.kind == EntryKind::live ? to.shown : to.unseen).push_back(motion);
 }
 

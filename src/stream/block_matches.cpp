@@ -19,12 +19,12 @@ constexpr float kFastest = 1;
 void BlockEntries::sort(std::span<const Entry> entries, std::size_t blocks) {
   begin_.resize(blocks + 2);
   std::fill(begin_.begin(), begin_.end(), 0u);
-  for (const Entry& entry : entries) ++begin_[entry.place + 2];
-  for (std::size_t place = 2; place < begin_.size(); ++place) begin_[place] += begin_[place - 1];
+  for (const Entry& entry : entries) ++begin_[entry.index + 2];
+  for (std::size_t index = 2; index < begin_.size(); ++index) begin_[index] += begin_[index - 1];
   sorted_.resize(entries.size());
-  // begin_[place + 1] runs from where the place's entries begin to where they end.
+  // begin_[index + 1] runs from where the index's entries begin to where they end.
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    sorted_[begin_[entries[i].place + 1]++] = static_cast<std::uint32_t>(i);
+    sorted_[begin_[entries[i].index + 1]++] = static_cast<std::uint32_t>(i);
   }
 }
 
@@ -47,15 +47,15 @@ void BlockMatches::follow_camera(const Pinhole& pinhole) {
   const auto last = static_cast<std::uint32_t>(blocks_.order().size() - 1);
   std::uint32_t i = 0;
   for (Entry& entry : shown_.entries()) {
-    const std::uint32_t place = blocks_.place_of(shown_.at(i++).position, pinhole);
-    if (place != FrameBlocks::kNone) {
-      entry.place = place;
+    const std::uint32_t index = blocks_.index_of(shown_.at(i++).position, pinhole);
+    if (index != FrameBlocks::kNone) {
+      entry.index = index;
       if (entry.kind == EntryKind::out_of_range) entry.kind = EntryKind::live;
     } else {
       const bool stays = entry.kind == EntryKind::live || entry.kind == EntryKind::hidden;
       if (stays) entry.kind = EntryKind::out_of_range;
       if (entry.kind == EntryKind::supposed) entry.kind = EntryKind::going;
-      entry.place = std::min<std::uint32_t>(entry.place, last);
+      entry.index = std::min<std::uint32_t>(entry.index, last);
     }
   }
 }
@@ -66,7 +66,7 @@ std::optional<BlockMatches::Partner> BlockMatches::partner_of(const SeenPoint& s
   const float same2 = std::max(seen.state.radius * seen.state.radius, kDeviations2 * seen.variance);
   std::optional<Partner> partner;
   float nearest = std::numeric_limits<float>::infinity();
-  for (const std::uint32_t i : at(seen.place)) {
+  for (const std::uint32_t i : at(seen.index)) {
     const EntryKind kind = shown_.entries()[i].kind;
     if (kind == EntryKind::removed || kind == EntryKind::out_of_range) continue;
     const PointState state = shown_.at(i);
@@ -88,15 +88,15 @@ bool BlockMatches::may_move(const SeenPoint& seen, std::uint32_t i,
   const float sped_up = kFastest * std::min(duration_, static_cast<float>(kUsualInterval));
   return !seen.turns_from(before.normal) &&
          seen.advance_from(before.position) <= sped_up + went_on &&
-         blocks_.vouching(seen.place) >= FrameBlocks::kVouchToMove && !came_aside(seen);
+         blocks_.vouching(seen.index) >= FrameBlocks::kVouchToMove && !came_aside(seen);
 }
 
 /// Was what a block shows now beside it before? Then the rim of something moved, or is noisy.
 bool BlockMatches::came_aside(const SeenPoint& seen) const {
   const BlockOrder& order = blocks_.order();
   bool found = false;
-  visit_beside(order.columns, order.rows, order.blocks[seen.place], [&](std::size_t other) {
-    for (const std::uint32_t i : at(order.places[other])) {
+  visit_beside(order.columns, order.rows, order.blocks[seen.index], [&](std::size_t other) {
+    for (const std::uint32_t i : at(order.indices[other])) {
       const float apart =
           blocks_.depth_of(shown_.at(i).position) - blocks_.depth_of(seen.state.position);
       const bool same = std::abs(apart) < kBeside * seen.state.radius;

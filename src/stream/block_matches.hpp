@@ -19,21 +19,21 @@ namespace palpate {
 /// Lists which entries are at which block.
 class BlockEntries {
  public:
-  /// Entries by their places on the curve, equal places in rising order of entries.
+  /// Entries by their indices on the curve, equal indices in rising order of entries.
   void sort(std::span<const Entry> entries, std::size_t blocks);
 
-  /// Numbers of the entries at a place of the curve.
-  [[nodiscard]] std::span<const std::uint32_t> at(std::size_t place) const {
-    return std::span(sorted_).subspan(begin_[place], begin_[place + 1] - begin_[place]);
+  /// Numbers of the entries at an index of the curve.
+  [[nodiscard]] std::span<const std::uint32_t> at(std::size_t index) const {
+    return std::span(sorted_).subspan(begin_[index], begin_[index + 1] - begin_[index]);
   }
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no entry
 
-  /// The first of four entries that follow one another, one at each of four places; else kNone.
-  [[nodiscard]] std::uint32_t four_at(std::size_t place) const {
-    const std::uint32_t begin = begin_[place];
-    if (begin_[place + kLanes] != begin + kLanes) return kNone;
-    const Ints one = load<Ints>(&begin_[place + 1]) - load<Ints>(&begin_[place]) == 1;
+  /// The first of four entries that follow one another, one at each of four indices; else kNone.
+  [[nodiscard]] std::uint32_t four_at(std::size_t index) const {
+    const std::uint32_t begin = begin_[index];
+    if (begin_[index + kLanes] != begin + kLanes) return kNone;
+    const Ints one = load<Ints>(&begin_[index + 1]) - load<Ints>(&begin_[index]) == 1;
     const auto entries = load<Ints>(&sorted_[begin]);
     return all(one & (entries == entries[0] + Ints{0, 1, 2, 3})) ? sorted_[begin] : kNone;
   }
@@ -43,8 +43,8 @@ class BlockEntries {
   std::vector<std::uint32_t> sorted_;
 };
 
-/// Who is who: matches what the blocks of a frame show with the points that were shown last. Knows
-/// nothing of what becomes of them.
+/// Matches what the blocks of a frame show with the points that were shown last. Does not decide
+/// what becomes of them.
 class BlockMatches {
  public:
   /// Both have to last as long.
@@ -60,14 +60,14 @@ class BlockMatches {
   /// What was shown is forgotten.
   void forget() { listed_ = false; }
 
-  /// The old points at a place of the curve.
-  [[nodiscard]] std::span<const std::uint32_t> at(std::size_t place) const {
-    return by_block_.at(place);
+  /// The old points at an index of the curve.
+  [[nodiscard]] std::span<const std::uint32_t> at(std::size_t index) const {
+    return by_block_.at(index);
   }
 
-  /// The first of four old points that follow one another, each alone at its place; else
+  /// The first of four old points that follow one another, each alone at its index; else
   /// BlockEntries::kNone.
-  [[nodiscard]] std::uint32_t four_at(std::size_t place) const { return by_block_.four_at(place); }
+  [[nodiscard]] std::uint32_t four_at(std::size_t index) const { return by_block_.four_at(index); }
 
   /// An old point, and how it was.
   struct Partner {

@@ -21,18 +21,18 @@ std::uint32_t curve_code(int column, int row) {
 }
 
 BlockOrder make_block_order(int columns, int rows) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // code, block
-  places.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // code, block
+  pairs.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for (int v = 0; v < rows; ++v) {
     for (int u = 0; u < columns; ++u) {
-      places.emplace_back(curve_code(u, v), static_cast<std::uint32_t>(v * columns + u));
+      pairs.emplace_back(curve_code(u, v), static_cast<std::uint32_t>(v * columns + u));
     }
   }
-  std::sort(places.begin(), places.end());
-  BlockOrder order{.columns = columns, .rows = rows, .blocks = {}, .codes = {}, .places = {}};
-  order.places.resize(places.size());
-  for (const auto& [code, block] : places) {
-    order.places[block] = static_cast<std::uint32_t>(order.blocks.size());
+  std::sort(pairs.begin(), pairs.end());
+  BlockOrder order{.columns = columns, .rows = rows, .blocks = {}, .codes = {}, .indices = {}};
+  order.indices.resize(pairs.size());
+  for (const auto& [code, block] : pairs) {
+    order.indices[block] = static_cast<std::uint32_t>(order.blocks.size());
     order.blocks.push_back(block);
     order.codes.push_back(code);
   }

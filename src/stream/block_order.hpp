@@ -13,9 +13,9 @@ namespace palpate {
 struct BlockOrder {
   int columns = 0;
   int rows = 0;
-  std::vector<std::uint32_t> blocks;  ///< at each place of the curve: the block's row-by-row number
+  std::vector<std::uint32_t> blocks;  ///< at each index of the curve: the block's row-by-row number
   std::vector<std::uint32_t> codes;   ///< of these, where on the curve, rising; two bits a level
-  std::vector<std::uint32_t> places;  ///< of each block: where it is in that order
+  std::vector<std::uint32_t> indices;  ///< of each block: where it is in that order
 
   [[nodiscard]] std::size_t size() const { return blocks.size(); }
 };

@@ -14,11 +14,11 @@ constexpr float kShareOfAround = 0.8f;
 
 /// Are the blocks at `at` outside of a ball, by more than single precision may err?
 bool are_far(const PaddedBlocks& padded, std::size_t at, const Ball& ball) {
-  const Vectors place{load<Floats>(&padded.x[at]), load<Floats>(&padded.y[at]),
-                      load<Floats>(&padded.z[at])};
-  const Vectors way = place - all_lanes(ball.center.cast<float>());
+  const Vectors position{load<Floats>(&padded.x[at]), load<Floats>(&padded.y[at]),
+                         load<Floats>(&padded.z[at])};
+  const Vectors offset = position - all_lanes(ball.center.cast<float>());
   const double reach = 1.001 * ball.radius + 1e-5 * ball.center.norm();
-  return all(dot(way, way) > static_cast<float>(reach * reach));
+  return all(dot(offset, offset) > static_cast<float>(reach * reach));
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of,
   each_row(depth, [&](std::size_t v) {
     std::int32_t* const sums = &rims_[(v + 1) * width];
     sums[0] = 0;
-    const float* const z = &padded.z[padded.place(0, static_cast<int>(v))];
+    const float* const z = &padded.z[padded.index(0, static_cast<int>(v))];
     const float* const above = z - padded.stride;
     const float* const radii = &of[v * (width - 1)];
     for (std::ptrdiff_t u = 0; u < columns; ++u) {
@@ -52,8 +52,8 @@ void BlockRims::mark(const FilteredDepth& depth, std::span<const float> of,
 int BlockRims::half_window(const FilteredDepth& depth, std::size_t block, float radius) const {
   const double side = depth.pitch * static_cast<double>(depth.positions[block].z());
   const double half = std::ceil(static_cast<double>(radius) / side);
-  const double asked = std::ceil(static_cast<double>(minimum_radius_) / side);
-  return static_cast<int>(std::clamp(half, 1.0, std::max<double>(kLargestWindow, asked)));
+  const double requested = std::ceil(static_cast<double>(minimum_radius_) / side);
+  return static_cast<int>(std::clamp(half, 1.0, std::max<double>(kLargestWindow, requested)));
 }
 
 bool BlockRims::near_rim(const FilteredDepth& depth, std::size_t block, int half) const {
@@ -86,7 +86,7 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
     const std::size_t row = static_cast<std::size_t>(v) * columns;
     const std::size_t end = row + first + count;
     for (std::size_t b = row + first; b < end; ++b) {
-      const std::size_t at = padded.place(static_cast<int>(b - row), v);
+      const std::size_t at = padded.index(static_cast<int>(b - row), v);
       if (exact == Exact::within && b + kLanes <= end && all_far(at)) {
         b += kLanes - 1;
         continue;
@@ -106,7 +106,7 @@ void BlockRims::find(const FilteredDepth& depth, std::span<const float> radii,
   for (const int half : row_halves_) largest_half_ = std::max(largest_half_, half);
 }
 
-// Calls take(block, place, sum) for each block whose sum over what is around it is wanted: of
+// Calls take(block, index, sum) for each block whose sum over what is around it is wanted: of
 // weights times what stands in `factors`.
 template <class Take>
 void BlockRims::sum_around(const FilteredDepth& depth, const PaddedBlocks& padded,
@@ -118,7 +118,7 @@ void BlockRims::sum_around(const FilteredDepth& depth, const PaddedBlocks& padde
       const std::int32_t* const halves = &halves_[first];
       if (std::all_of(halves, halves + simd::kRimLanes, [](int half) { return half == 0; }))
         continue;
-      const std::size_t at = padded.place(u, v);
+      const std::size_t at = padded.index(u, v);
       float sums[simd::kRimLanes];
       best.around({&padded.x[at], &padded.y[at], &padded.z[at], &padded.per_r2[at], factors + at,
                    static_cast<std::ptrdiff_t>(padded.stride)},

@@ -19,7 +19,7 @@ constexpr float kSlope = 0.5f;     // of R over distance
 // than half by Wyvill's kernel (judgement; docs/method.md 6.7).
 constexpr float kCertain = 0.157f;
 
-// Deviations of a place within R, so that R shows a layer of noise as a layer: as many as in clouds
+// Deviations of a point within R, so that R shows a layer of noise as a layer: as many as in clouds
 // (docs/method.md 5.3).
 constexpr float kLayer = 4;
 
@@ -58,7 +58,7 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
   // What tiles around a kept one have changed reaches it when it is filtered again.
   bool whole = padded_.make_room(depth, std::max(padded_.margin, BlockRims::kLargestWindow));
   each_other(depth, whole, [&](int v, int first, int count) {
-    padded_.lay_out_places(depth, v, first, count);
+    padded_.lay_out_positions(depth, v, first, count);
     start(depth, v, first, count);
   });
   limit_radii(depth);
@@ -67,7 +67,7 @@ void BlockSurface::measure(const FilteredDepth& depth, std::span<const Ball> bal
   if (rims_.largest_half() > padded_.margin) {
     whole = padded_.make_room(depth, rims_.largest_half());
     each_row(depth, [&](std::size_t v) {
-      padded_.lay_out_places(depth, static_cast<int>(v), 0, depth.columns);
+      padded_.lay_out_positions(depth, static_cast<int>(v), 0, depth.columns);
     });
   }
   each_other(depth, whole, [&](int v, int first, int count) { lay_out(depth, v, first, count); });
@@ -117,7 +117,7 @@ void BlockSurface::find_steep(const FilteredDepth& depth, int v) {
   for (std::ptrdiff_t u = kLanes; u + kLanes < columns; u += kLanes) {
     const float* const at = &radii_[v * columns + u];
     const auto own = load<Floats>(at);
-    const Floats room = step * load<Floats>(&padded_.z[padded_.place(static_cast<int>(u), v)]);
+    const Floats room = step * load<Floats>(&padded_.z[padded_.index(static_cast<int>(u), v)]);
     Ints limited{};
     for (const std::ptrdiff_t by : {std::ptrdiff_t{-1}, std::ptrdiff_t{1}, -columns, columns}) {
       const auto other = load<Floats>(at + by);
@@ -134,9 +134,9 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
   const auto limit = [&](std::ptrdiff_t b, std::ptrdiff_t by) {
     const float room = radii_[b] - radii_[by];
     if (room <= step * depth.positions[b].z() || radii_[by] == 0) return false;
-    const float way = kSlope * (depth.positions[b] - depth.positions[by]).norm();
-    if (!(way < room)) return false;
-    radii_[b] = radii_[by] + way;
+    const float rise = kSlope * (depth.positions[b] - depth.positions[by]).norm();
+    if (!(rise < room)) return false;
+    radii_[b] = radii_[by] + rise;
     return true;
   };
   const auto steep = [&](std::ptrdiff_t u, std::ptrdiff_t v) -> std::uint8_t& {
@@ -164,14 +164,14 @@ void BlockSurface::carry(const FilteredDepth& depth, std::ptrdiff_t sign) {
 
 // Puts side by side what sums over neighbours need.
 void BlockSurface::lay_out(const FilteredDepth& depth, int v, int first, int count) {
-  std::size_t at = padded_.place(first, v);
+  std::size_t at = padded_.index(first, v);
   std::size_t b = static_cast<std::size_t>(v) * depth.columns + first;
   const auto take = [&](const auto& radius, const auto& deviation, const auto& area, auto lanes) {
     using Lanes = decltype(lanes);
-    const Lanes sure = kCertain * radius;
+    const Lanes least = kCertain * radius;
     const Lanes spread = kDeviations * deviation;
     const Lanes sum = radius * radius / area;
-    const Lanes precision = 1 / (deviation * deviation + sure * sure);
+    const Lanes precision = 1 / (deviation * deviation + least * least);
     const auto there = radius > 0;
     const Lanes nothing{};
     put(padded_.reaches, at, radius < spread ? spread : radius);
@@ -195,10 +195,10 @@ void BlockSurface::measure_trust(const FilteredDepth& depth, int v, int first, i
   const std::ptrdiff_t beside[] = {-stride - 1, -stride,    -stride + 1, -1,
                                    1,           stride - 1, stride,      stride + 1};
   for (int u = first; u < first + count; u += kLanes) {
-    const float* const z = &padded_.z[padded_.place(u, v)];
-    const float* const precisions = &padded_.precisions[padded_.place(u, v)];
+    const float* const z = &padded_.z[padded_.index(u, v)];
+    const float* const precisions = &padded_.precisions[padded_.index(u, v)];
     const auto own = load<Floats>(precisions);
-    const auto reach = load<Floats>(&padded_.reaches[padded_.place(u, v)]);
+    const auto reach = load<Floats>(&padded_.reaches[padded_.index(u, v)]);
     Floats same_surface{};
     Floats sum{};
     for (const std::ptrdiff_t by : beside) {

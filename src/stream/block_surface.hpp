@@ -16,8 +16,8 @@
 
 namespace palpate {
 
-/// How far the points of a depth frame reach and what they weigh, from the image alone: neighbours
-/// are known without a search.
+/// How far the points of a depth frame reach and what they weigh, from the image alone, which
+/// gives the neighbours without a search.
 class BlockSurface {
  public:
   /// Two frames or neighbours of one surface differ by at most this many deviations of a block
@@ -38,7 +38,7 @@ class BlockSurface {
   void measure(const FilteredDepth& depth);
 
   /// R_i, m: the largest of 2.5 s, 2.2 times the largest spacing of rows, the minimum, and four
-  /// deviations of the place or half a wave of the noise, whichever is less; limited so that it
+  /// deviations of the point or half a wave of the noise, whichever is less; limited so that it
   /// grows by half the distance at most from block to block; 0 where there is no point.
   [[nodiscard]] float radius(std::size_t block) const { return radii_[block]; }
 
@@ -80,7 +80,7 @@ class BlockSurface {
 
 /// Finds where the faces of a fitted depth image meet, and gives each block beside an edge or a
 /// crease the plane of a block of the other face: the one that lies to the edge as it does itself,
-/// so that planes of many blocks take part.
+/// so that planes of many blocks are used.
 class EdgeFinder {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no edge
@@ -93,36 +93,36 @@ class EdgeFinder {
 
   /// The plane beyond an edge, in the sensor's frame.
   [[nodiscard]] const SurfacePoints::EdgePlane& plane(std::uint32_t number) const {
-    return told_[number].plane;
+    return found_[number].plane;
   }
 
  private:
   /// Two blocks of a row or column whose faces meet between them.
   struct Meeting {
     std::size_t a, b;
-    Eigen::Vector3f edge;  // a place on it, m
+    Eigen::Vector3f edge;  // a point on it, m
     bool in_row;
     float share;
 
     [[nodiscard]] Meeting from_b() const { return {b, a, edge, in_row, share}; }
   };
-  struct Told {
+  struct Found {
     SurfacePoints::EdgePlane plane;
     float away;  // squared, of the block from where its faces meet, m^2
   };
 
   void look_at(const BlockFaces& faces, int v);
   [[nodiscard]] static bool meets(const BlockFaces& faces, std::size_t a, int x, int y);
-  void tell_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y);
-  void tell(const BlockFaces& faces, std::size_t block, std::size_t apart, int x, int y);
+  void write_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y);
+  void write(const BlockFaces& faces, std::size_t block, std::size_t apart, int x, int y);
   [[nodiscard]] static Meeting meeting_of(const BlockFaces& faces, std::size_t a, int x, int y);
   void spread(const BlockFaces& faces, const Meeting& meeting, int x, int y);
-  void tell_one(const BlockFaces& faces, const Meeting& meeting, int x, int y);
+  void write_one(const BlockFaces& faces, const Meeting& meeting, int x, int y);
 
   std::vector<std::uint8_t> meets_;      // of each block, with one to its right or below it;
-                                         // behind them some that are read and not told
+                                         // behind them some that are read and not written
   std::vector<std::uint32_t> of_block_;  // number(): the block's own, or kNone
-  std::vector<Told> told_;               // of each block
+  std::vector<Found> found_;             // of each block
 };
 
 }  // namespace palpate

@@ -29,8 +29,8 @@ bool goes_on(const BlockFaces& faces, std::size_t block, int x, int y) {
   for (int k = 1; k <= kMostAway; ++k) {
     const std::size_t next = faces.beside(block, k * x, k * y);
     if (!faces.shares_face(next, block)) return false;
-    const Vector3f way = faces.depth.positions[next] - faces.depth.positions[block];
-    if (way.squaredNorm() >= reach * reach) return true;
+    const Vector3f offset = faces.depth.positions[next] - faces.depth.positions[block];
+    if (offset.squaredNorm() >= reach * reach) return true;
   }
   return true;
 }
@@ -40,16 +40,16 @@ bool goes_on(const BlockFaces& faces, std::size_t block, int x, int y) {
 void EdgeFinder::look(const FilteredDepth& depth, const BlockSurface& surface) {
   meets_.resize(depth.size() + kTogether);
   of_block_.resize(depth.size());
-  told_.resize(depth.size());
+  found_.resize(depth.size());
   const BlockFaces faces{depth, surface.radii()};
   const auto columns = static_cast<std::size_t>(depth.columns);
   const auto rows = static_cast<std::size_t>(depth.rows);
   each_row(depth, [&](std::size_t v) { look_at(faces, static_cast<int>(v)); });
   each_row(depth, [&](std::size_t v) {
-    for (std::size_t u = 0; u < columns; u += kTogether) tell_some(faces, u, v, 1, 0);
+    for (std::size_t u = 0; u < columns; u += kTogether) write_some(faces, u, v, 1, 0);
   });
   detail::parallel_each((columns + kTogether - 1) / kTogether, 1, [&](std::size_t strip) {
-    for (std::size_t v = 0; v < rows; ++v) tell_some(faces, strip * kTogether, v, 0, 1);
+    for (std::size_t v = 0; v < rows; ++v) write_some(faces, strip * kTogether, v, 0, 1);
   });
 }
 
@@ -105,7 +105,7 @@ bool EdgeFinder::meets(const BlockFaces& faces, std::size_t a, int x, int y) {
 
 /// Writes to rows (1, 0) or columns (0, 1) what lies beyond the edges at a few blocks of a row. No
 /// other lines are written, so that threads may share them.
-void EdgeFinder::tell_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y) {
+void EdgeFinder::write_some(const BlockFaces& faces, std::size_t u, std::size_t v, int x, int y) {
   const auto columns = static_cast<std::size_t>(faces.depth.columns);
   const std::size_t apart = kApart * (x != 0 ? columns : 1);
   const std::size_t first = v * columns + u;
@@ -113,10 +113,11 @@ void EdgeFinder::tell_some(const BlockFaces& faces, std::size_t u, std::size_t v
   const std::size_t before = first < apart ? first : first - apart;
   const auto eight = [&](std::size_t at) { return load<std::uint64_t>(&meets_[at]); };
   if ((eight(first) | eight(before)) == 0) return;
-  for (std::size_t block = first; block < end; ++block) tell(faces, block, apart, x, y);
+  for (std::size_t block = first; block < end; ++block) write(faces, block, apart, x, y);
 }
 
-void EdgeFinder::tell(const BlockFaces& faces, std::size_t block, std::size_t apart, int x, int y) {
+void EdgeFinder::write(const BlockFaces& faces, std::size_t block, std::size_t apart, int x,
+                       int y) {
   const std::uint8_t along = x != 0 ? kInRow : kInColumn;
   const std::uint8_t across = kInRow + kInColumn - along;
   if ((meets_[block] & along) != 0) {
@@ -145,25 +146,25 @@ void EdgeFinder::spread(const BlockFaces& faces, const Meeting& meeting, int x, 
   const float reach = faces.radii[meeting.a];
   const float side = static_cast<float>(faces.depth.pitch) * faces.depth.positions[meeting.a].z();
   const int half = static_cast<int>(std::min(float{kMostAway}, std::ceil(reach / side)));
-  for (int k = -half; k <= half; ++k) tell_one(faces, meeting, k * x, k * y);
+  for (int k = -half; k <= half; ++k) write_one(faces, meeting, k * x, k * y);
 }
 
 /// Writes it to the block (x, y) from a, unless that has an edge that is as near: of two in its row
 /// and in its column, that in its row counts.
-void EdgeFinder::tell_one(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
+void EdgeFinder::write_one(const BlockFaces& faces, const Meeting& meeting, int x, int y) {
   const FilteredDepth& depth = faces.depth;
   const std::size_t block = faces.beside(meeting.a, x, y);
   if (block == depth.size()) return;
   const float reach = faces.radii[meeting.a];
   const float away = (depth.positions[block] - meeting.edge).squaredNorm();
-  const bool nearer = of_block_[block] != kNone && told_[block].away <= away;
+  const bool nearer = of_block_[block] != kNone && found_[block].away <= away;
   if (nearer || away > reach * reach || !faces.shares_face(block, meeting.a)) return;
   if (meeting.share * faces.height(block, meeting.b) > faces.room(block, meeting.b)) return;
   const std::size_t mirrored =
       faces.beside(meeting.b, meeting.in_row ? -x : x, meeting.in_row ? y : -y);
   const std::size_t other = faces.shares_face(mirrored, meeting.b) ? mirrored : meeting.b;
   of_block_[block] = static_cast<std::uint32_t>(block);
-  told_[block] = {{depth.normals[other], faces.height(block, other), meeting.share}, away};
+  found_[block] = {{depth.normals[other], faces.height(block, other), meeting.share}, away};
 }
 
 }  // namespace palpate

@@ -11,7 +11,7 @@ namespace palpate {
 enum class Fate : std::uint8_t {
   update,   ///< goes to where its block shows the surface now
   confirm,  ///< is seen where it was
-  retain,   ///< stays for a while, as nothing is known of it
+  retain,   ///< stays for a while, as nothing shows where it is
   hide,     ///< stays behind what hides it, and fades slowly
   go,       ///< has been seen through, and fades quickly
   remove,   ///< loses its weight in this frame
@@ -32,7 +32,7 @@ struct FateFacts {
 
 /// Share of R: a supposed point that lies farther behind what its block shows is not that
 /// (judgement: half of what makes one).
-inline constexpr float kSurelyBehind = 0.5f;
+inline constexpr float kClearlyBehind = 0.5f;
 
 /// Total: every combination of facts has a fate.
 [[nodiscard]] constexpr Fate fate(const FateFacts& facts) {
@@ -44,7 +44,7 @@ inline constexpr float kSurelyBehind = 0.5f;
   if (facts.same) return facts.vouched ? Fate::update : Fate::confirm;
   if (kind == EntryKind::out_of_range) return Fate::retain;
   // A plane that is hidden by about R goes on in some frames and not in others.
-  if (kind == EntryKind::supposed && facts.beyond > kSurelyBehind * facts.radius)
+  if (kind == EntryKind::supposed && facts.beyond > kClearlyBehind * facts.radius)
     return Fate::retain;
   const bool within = -facts.radius <= facts.beyond && facts.beyond <= facts.radius;
   if (kind == EntryKind::removed || within) return Fate::remove;

@@ -31,13 +31,13 @@ Floats gather(const std::array<std::size_t, kLanes>& at, const std::vector<float
 }  // namespace
 
 float SeenPoint::advance_from(const Eigen::Vector3f& from) const {
-  const Eigen::Vector3f way = state.position - from;
-  return std::max(std::abs(way.dot(state.normal)), kGrazing * way.norm());
+  const Eigen::Vector3f offset = state.position - from;
+  return std::max(std::abs(offset.dot(state.normal)), kGrazing * offset.norm());
 }
 
 SeenPoint SeenFour::lane(int l) const {
   SeenPoint point;
-  point.place = place + static_cast<std::uint32_t>(l);
+  point.index = index + static_cast<std::uint32_t>(l);
   if (!(radius[l] > 0)) return point;
   point.state = {.position = position.lane(l),
                  .normal = normal.lane(l),
@@ -75,7 +75,7 @@ bool FrameBlocks::put(const FilteredDepth& depth, const Eigen::Vector3d& origin,
   const Eigen::Isometry3d& T_world_sensor = depth.T_world_sensor;
   const bool resized = std::exchange(resized_, false);
   const bool moved = resized || T_world_sensor.matrix() != T_world_sensor_.matrix();
-  if (moved) std::ranges::fill(kept_, 0);  // a frame may have been lost on the way
+  if (moved) std::ranges::fill(kept_, 0);  // a frame may have been lost in between
   depth_ = &depth;
   streams_ = streams;
   T_world_sensor_ = T_world_sensor;
@@ -96,31 +96,31 @@ void FrameBlocks::note_kept(const KeptTiles& kept) {
 void FrameBlocks::note_hidden() {
   hide_.assign(order_.size() / kLanes + 1, 0);
   for (const std::uint32_t block : surface_.hidden().blocks()) {
-    hide_[order_.places[block] / kLanes] = 1;
+    hide_[order_.indices[block] / kLanes] = 1;
   }
 }
 
-SeenPoint FrameBlocks::behind(std::uint32_t place) const {
-  const HiddenPlanes::Point& point = surface_.hidden().at(order_.blocks[place]);
+SeenPoint FrameBlocks::behind(std::uint32_t index) const {
+  const HiddenPlanes::Point& point = surface_.hidden().at(order_.blocks[index]);
   SeenPoint seen;
-  seen.place = place;
+  seen.index = index;
   if (!(point.radius > 0)) return seen;
   seen.state = {.position = turn_ * point.position + shift_,
                 .normal = turn_ * point.normal,
                 .radius = point.radius,
                 .confidence = point.confidence};
   seen.area = point.area;
-  // Whatever is seen is surer.
+  // Whatever is seen is more certain.
   seen.variance = point.radius * point.radius;
   seen.state.weight = seen.weight(point.radius);
   return seen;
 }
 
-SeenFour FrameBlocks::four_at(std::size_t place) const {
+SeenFour FrameBlocks::four_at(std::size_t index) const {
   std::array<std::size_t, kLanes> at;
   SeenFour four;
   for (std::size_t k = 0; k < kLanes; ++k) {
-    at[k] = order_.blocks[std::min(place + k, order_.size() - 1)];
+    at[k] = order_.blocks[std::min(index + k, order_.size() - 1)];
     four.edges[static_cast<int>(k)] = static_cast<std::int32_t>(edges_.number(at[k]));
   }
   four.position = turn_ * gather(at, depth_->positions) + all_lanes(shift_);
@@ -131,12 +131,12 @@ SeenFour FrameBlocks::four_at(std::size_t place) const {
   four.trust = streams_ ? gather(at, surface_.trusts()) : Floats{} + 1.0f;
   const Floats deviation = gather(at, depth_->deviations);
   four.variance = deviation * deviation;
-  four.place = static_cast<std::uint32_t>(place);
+  four.index = static_cast<std::uint32_t>(index);
   return four;
 }
 
-float FrameBlocks::vouching(std::size_t place) const {
-  const std::size_t block = order_.blocks[place];
+float FrameBlocks::vouching(std::size_t index) const {
+  const std::size_t block = order_.blocks[index];
   float count = 0;
   float all = 0;
   visit_beside(order_.columns, order_.rows, block, [&](std::size_t other) {
@@ -148,7 +148,7 @@ float FrameBlocks::vouching(std::size_t place) const {
   return all > 0 ? count / all : 1;
 }
 
-std::uint32_t FrameBlocks::place_of(const Eigen::Vector3f& position, const Pinhole& p) const {
+std::uint32_t FrameBlocks::index_of(const Eigen::Vector3f& position, const Pinhole& p) const {
   const Eigen::Array2f focal = Eigen::Array2d(p.fx, p.fy).cast<float>() / 2;
   const Eigen::Array2f center = Eigen::Array2d(p.cx - 0.5, p.cy - 0.5).cast<float>() / 2;
   const Eigen::Array2f size(static_cast<float>(order_.columns), static_cast<float>(order_.rows));
@@ -157,7 +157,7 @@ std::uint32_t FrameBlocks::place_of(const Eigen::Vector3f& position, const Pinho
   const Eigen::Array2f block = local.head<2>().array() * (1 / local.z()) * focal + center + 0.5f;
   if (!(local.z() > 0 && (block >= 0).all() && (block < size).all())) return kNone;
   const Eigen::Array2i at = block.cast<int>();
-  return order_.places[static_cast<std::size_t>(at.y() * order_.columns + at.x())];
+  return order_.indices[static_cast<std::size_t>(at.y() * order_.columns + at.x())];
 }
 
 SurfacePoints::EdgePlane FrameBlocks::edge_of(const SeenPoint& seen) const {

@@ -17,13 +17,13 @@
 
 namespace palpate {
 
-/// The point that a frame shows at a place of the curve; R = 0: none.
+/// The point that a frame shows at an index of the curve; R = 0: none.
 struct alignas(64) SeenPoint {
   PointState state;
   float area = 0;  ///< a_i R_i^2
   float trust = 1;
   float variance = 0;  ///< along the ray, m^2
-  std::uint32_t place = 0;
+  std::uint32_t index = 0;
   std::uint32_t edge = EdgeFinder::kNone;  ///< the finder's
 
   /// The least cosine of the angle between the normals of one surface before and after a frame: 60
@@ -45,12 +45,12 @@ struct alignas(64) SeenPoint {
   }
 };
 
-/// The same of four places.
+/// The same of four blocks that follow one another.
 struct SeenFour {
   Vectors position, normal;
   Floats radius, confidence, area, trust, variance;
   Ints edges;
-  std::uint32_t place;  ///< the first
+  std::uint32_t index;  ///< the first
 
   [[nodiscard]] SeenPoint lane(int l) const;
 };
@@ -59,7 +59,7 @@ struct SeenFour {
 /// origin.
 class FrameBlocks {
  public:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no place
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  // no block
 
   /// Share of the blocks around one that have to show what moves: most (judgement).
   static constexpr float kVouchToMove = 0.6f;
@@ -76,32 +76,32 @@ class FrameBlocks {
 
   [[nodiscard]] const BlockOrder& order() const { return order_; }
 
-  /// Does the frame show at the blocks of four places what the frame before showed?
-  [[nodiscard]] bool keeps(std::size_t place) const {
-    const std::size_t last = std::min(place + kLanes, order_.size()) - 1;
-    // Four places are in two tiles at most, but for the last ones of the image's corner.
-    return kept_[order_.codes[place] / kInTile] != 0 && kept_[order_.codes[last] / kInTile] != 0;
+  /// Does the frame show at four blocks what the frame before showed?
+  [[nodiscard]] bool keeps(std::size_t index) const {
+    const std::size_t last = std::min(index + kLanes, order_.size()) - 1;
+    // Four blocks are in two tiles at most, but for the last ones of the image's corner.
+    return kept_[order_.codes[index] / kInTile] != 0 && kept_[order_.codes[last] / kInTile] != 0;
   }
 
-  /// What four places show that follow one another; the last place stands for those beyond it.
-  [[nodiscard]] SeenFour four_at(std::size_t place) const;
+  /// What four blocks show that follow one another; the last index stands for those beyond it.
+  [[nodiscard]] SeenFour four_at(std::size_t index) const;
 
-  /// Does a plane go on behind one of four places?
-  [[nodiscard]] bool hide(std::size_t place) const { return hide_[place / kLanes] != 0; }
+  /// Does a plane go on behind one of four blocks?
+  [[nodiscard]] bool hide(std::size_t index) const { return hide_[index / kLanes] != 0; }
 
-  /// The point of a plane that goes on behind what the block of a place shows; R = 0: none does.
-  [[nodiscard]] SeenPoint behind(std::uint32_t place) const;
+  /// The point of a plane that goes on behind what the block of a index shows; R = 0: none does.
+  [[nodiscard]] SeenPoint behind(std::uint32_t index) const;
 
   /// The share of blocks around one that show the same surface: what flies between two has few.
-  [[nodiscard]] float vouching(std::size_t place) const;
+  [[nodiscard]] float vouching(std::size_t index) const;
 
   /// Along the camera's axis, m.
   [[nodiscard]] float depth_of(const Eigen::Vector3f& position) const {
     return turn_.col(2).dot(position - shift_);
   }
 
-  /// The place of the block that sees a position; kNone: outside the image.
-  [[nodiscard]] std::uint32_t place_of(const Eigen::Vector3f& position,
+  /// The index of the block that sees a position; kNone: outside the image.
+  [[nodiscard]] std::uint32_t index_of(const Eigen::Vector3f& position,
                                        const Pinhole& pinhole) const;
 
   /// The edge beside a point that the frame shows, in the world frame.
@@ -122,7 +122,7 @@ class FrameBlocks {
   Eigen::Matrix3f turn_ = Eigen::Matrix3f::Identity();  // sensor to world
   Eigen::Vector3f shift_ = Eigen::Vector3f::Zero();
   std::vector<std::uint8_t> kept_;  // of tiles along the curve
-  std::vector<std::uint8_t> hide_;  // of four places each
+  std::vector<std::uint8_t> hide_;  // of four blocks each
   bool streams_ = false;
   bool resized_ = false;  // the image, since the frame before was put
 };

@@ -92,7 +92,7 @@ void HiddenPlanes::each_noted(std::size_t first, std::size_t count, std::uint8_t
 // Where is a block of a row apart from the one to its left or above it, or one of the two empty?
 void HiddenPlanes::mark(const BlockFaces& faces, const PaddedBlocks& padded, int v) {
   const std::ptrdiff_t columns = faces.depth.columns;
-  const float* const z = &padded.z[padded.place(0, v)];
+  const float* const z = &padded.z[padded.index(0, v)];
   const float* const radii = &faces.radii[static_cast<std::size_t>(v * columns)];
   std::uint8_t* const jumps = &notes_[static_cast<std::size_t>(v * columns)];
   const auto jump = [&](std::ptrdiff_t u, float other, float other_radius) {
@@ -120,16 +120,16 @@ void HiddenPlanes::look_at(const Line& line, int i) {
 }
 
 /// Does the plane beside `far` go on in that direction until it is seen again?
-std::optional<HiddenPlanes::Gap> HiddenPlanes::gap_at(const Line& line, int far, int way) {
+std::optional<HiddenPlanes::Gap> HiddenPlanes::gap_at(const Line& line, int far, int step) {
   const BlockFaces& faces = line.faces;
-  const int seen = far - kAside * way;
+  const int seen = far - kAside * step;
   if (!line.holds(seen) || !faces.fitted(line.at(seen))) return {};
   const std::size_t plane = line.at(seen);
-  if (!faces.shares_face(line.at(far - way), plane)) return {};
+  if (!faces.shares_face(line.at(far - step), plane)) return {};
   Gap gap{seen, far, far};
   int again = 0;
   int empty = 0;
-  for (int i = far + way; line.holds(i) && std::abs(i - far) <= kReach; i += way) {
+  for (int i = far + step; line.holds(i) && std::abs(i - far) <= kReach; i += step) {
     const std::size_t block = line.at(i);
     if (line.empty(i)) {
       again = 0;
@@ -150,14 +150,14 @@ std::optional<HiddenPlanes::Gap> HiddenPlanes::gap_at(const Line& line, int far,
 }
 
 void HiddenPlanes::fill(const Line& line, const Gap& gap) {
-  const int way = gap.again > gap.seen ? 1 : -1;
-  const int far = gap.seen + kAside * way;
-  const int other = gap.again - way;
-  for (int i = far + way; i != gap.again; i += way) {
+  const int step = gap.again > gap.seen ? 1 : -1;
+  const int far = gap.seen + kAside * step;
+  const int other = gap.again - step;
+  for (int i = far + step; i != gap.again; i += step) {
     const Point point = between(line, gap, i);
     if (!is_hidden(line, gap, i, point)) continue;
-    if (std::abs(i - far) <= 1 + kMostEmpty) join(line, far, -way, point);
-    if (std::abs(i - other) <= 1 + kMostEmpty) join(line, other, way, point);
+    if (std::abs(i - far) <= 1 + kMostEmpty) join(line, far, -step, point);
+    if (std::abs(i - other) <= 1 + kMostEmpty) join(line, other, step, point);
     if (!(point.length < points_[line.at(i)].length)) continue;
     points_[line.at(i)] = point;
     notes_[line.at(i)] |= kPoint;
@@ -165,9 +165,9 @@ void HiddenPlanes::fill(const Line& line, const Gap& gap) {
 }
 
 /// Notes the blocks from i on that lie within R of a point of their surface.
-void HiddenPlanes::join(const Line& line, int i, int way, const Point& point) {
+void HiddenPlanes::join(const Line& line, int i, int step, const Point& point) {
   const float within = point.radius * point.radius;
-  for (; line.holds(i) && !line.empty(i); i += way) {
+  for (; line.holds(i) && !line.empty(i); i += step) {
     const std::size_t block = line.at(i);
     if ((line.faces.depth.positions[block] - point.position).squaredNorm() > within) return;
     notes_[block] |= kJoins;
@@ -208,9 +208,9 @@ bool HiddenPlanes::is_hidden(const Line& line, const Gap& gap, int i, const Poin
   const Vector3f away = depth.positions[line.at(gap.seen)] - depth.positions[line.at(gap.again)];
   const bool beside = (point.position - depth.positions[line.at(gap.rim)]).dot(away) >= 0;
   if (line.empty(i)) return beside;
-  const Vector3f way = point.position - depth.positions[block];
-  if (!(way.z() > point.radius)) return false;
-  return beside || depth.normals[block].dot(way) < -point.radius;
+  const Vector3f offset = point.position - depth.positions[block];
+  if (!(offset.z() > point.radius)) return false;
+  return beside || depth.normals[block].dot(offset) < -point.radius;
 }
 
 }  // namespace palpate

@@ -56,16 +56,16 @@ class HiddenPlanes {
     [[nodiscard]] std::size_t at(int i) const { return first + static_cast<std::size_t>(i * by); }
     [[nodiscard]] bool empty(int i) const { return faces.radii[at(i)] == 0; }
   };
-  /// Places on a line: where the plane is seen, is hidden first, and is seen again.
+  /// Indices on a line: where the plane is seen, is hidden first, and is seen again.
   struct Gap {
     int seen, rim, again;
   };
 
   void mark(const BlockFaces& faces, const PaddedBlocks& padded, int v);
   void look_at(const Line& line, int i);
-  [[nodiscard]] static std::optional<Gap> gap_at(const Line& line, int far, int way);
+  [[nodiscard]] static std::optional<Gap> gap_at(const Line& line, int far, int step);
   void fill(const Line& line, const Gap& gap);
-  void join(const Line& line, int i, int way, const Point& point);
+  void join(const Line& line, int i, int step, const Point& point);
   [[nodiscard]] Point between(const Line& line, const Gap& gap, int i) const;
   template <class Visit>
   void each_noted(std::size_t first, std::size_t count, std::uint8_t what,

@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-// Places that are settled together: as many as a processor's cache holds, for so many threads.
-constexpr std::size_t kPlaces = 512;
+// Blocks that are settled together: as many as a processor's cache holds, for so many threads.
+constexpr std::size_t kBlocks = 512;
 constexpr std::size_t kPieces = 16;  // judgement
 
 // Single precision resolves a micrometre as far from the points' origin as this, m.
@@ -27,7 +27,7 @@ Morph::Morph(const MorphOptions& options)
 
 void Morph::look(const MorphInput& input) {
   blocks_.look(input.depth, input.reach, input.everywhere);
-  // An image without a block has no place for old points.
+  // An image without a block cannot hold old points.
   if (blocks_.order().size() == 0) forget();
 }
 
@@ -48,10 +48,10 @@ void Morph::fill(const MorphInput& input, const FrameTiming& moment,
   start(input, moment, *points);
   PointWriter::Extremes extremes;
   const std::size_t size = blocks_.order().size();
-  for (std::size_t place = 0; place < size; place += kPieces * kPlaces) {
-    const std::size_t end = std::min(size, place + kPieces * kPlaces);
-    const std::span pieces = std::span(pieces_).first((end - place + kPlaces - 1) / kPlaces);
-    settle(place, end, pieces);
+  for (std::size_t index = 0; index < size; index += kPieces * kBlocks) {
+    const std::size_t end = std::min(size, index + kPieces * kBlocks);
+    const std::span pieces = std::span(pieces_).first((end - index + kBlocks - 1) / kBlocks);
+    settle(index, end, pieces);
     for (const Piece& piece : pieces) extremes.add(piece.extremes);
   }
   unseen_.write(writer_, extremes, entries_);
@@ -81,12 +81,12 @@ void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoi
   writer_.begin(points, std::max(old + old / 16, blocks / 2));
 }
 
-/// Shares places of the curve out among threads: decides what becomes of their points, counts
-/// these, so that each piece knows where its own begin, and writes them.
+/// Divides the blocks of the curve among threads, decides what becomes of their points, counts
+/// these, so that each piece gets the index of its first point, and writes them.
 void Morph::settle(std::size_t begin, std::size_t end, std::span<Piece> pieces) {
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
-    const std::size_t first = begin + k * kPlaces;
-    fates_.settle(first, std::min(end, first + kPlaces), pieces[k].settled);
+    const std::size_t first = begin + k * kBlocks;
+    fates_.settle(first, std::min(end, first + kBlocks), pieces[k].settled);
   });
   for (Piece& piece : pieces) {
     piece.first = writer_.append(piece.settled.count());
@@ -104,13 +104,13 @@ void Morph::write(Piece& piece) {
   piece.edges.clear();
   std::size_t at = piece.first;
   auto four = piece.settled.advancing.begin();
-  const auto write_fours_before = [&](std::size_t place) {
-    for (; four != piece.settled.advancing.end() && four->place < place; ++four, at += kLanes) {
+  const auto write_fours_before = [&](std::size_t index) {
+    for (; four != piece.settled.advancing.end() && four->index < index; ++four, at += kLanes) {
       write(at, *four, piece);
     }
   };
   for (const PointMotion& motion : piece.settled.shown) {
-    write_fours_before(motion.entry.place);
+    write_fours_before(motion.entry.index);
     write(at++, motion, piece);
   }
   write_fours_before(blocks_.order().size());
@@ -124,11 +124,11 @@ void Morph::write(std::size_t at, const PointMotion& motion, Piece& piece) {
 }
 
 void Morph::write(std::size_t at, const PointMotion4& motions, Piece& piece) {
-  writer_.write(at, &blocks_.order().codes[motions.place], motions.from, motions.to,
+  writer_.write(at, &blocks_.order().codes[motions.index], motions.from, motions.to,
                 piece.extremes);
   for (std::uint32_t k = 0; k < kLanes; ++k) {
     entries_[at + k] = moves_.seen_entry(motions.variance[k]);
-    entries_[at + k].place = motions.place + k;
+    entries_[at + k].index = motions.index + k;
   }
 }
 

@@ -36,7 +36,7 @@ struct MorphInput {
 /// whenever a frame comes, the surface goes on without a step.
 ///
 /// A point's identity is its block, or where a moving camera sees it now. What a block shows next
-/// decides: about the same place, or what moves as fast as a hand, and the point goes there;
+/// decides: about the same position, or what moves as fast as a hand, and the point goes there;
 /// something nearer, and it is hidden and stays, trusted ever less over a minute; something
 /// farther, and it is gone. Nothing at all, or a camera that looks elsewhere: it stays for a while.
 /// Points appear and go by their presence, which is stiffness.
@@ -69,9 +69,9 @@ class Morph {
   }
 
  private:
-  /// Some places of the curve, one thread's at a time.
+  /// Some blocks of the curve, one thread's at a time.
   struct Piece {
-    SettledPlaces settled;
+    SettledBlocks settled;
     std::vector<std::pair<std::size_t, EdgeMotion>> edges;  // of points
     std::size_t first = 0;                                  // of the points that blocks show
     PointWriter::Extremes extremes;

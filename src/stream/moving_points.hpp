@@ -23,7 +23,7 @@ enum class EntryKind : std::uint8_t {
 struct Entry {
   double confirmed = 0;          ///< stamp of the last frame that showed it, or what hides it, s
   float variance = 0;            ///< of where it is along its ray, m^2
-  std::uint32_t place : 29 = 0;  ///< of its block on the curve
+  std::uint32_t index : 29 = 0;  ///< of its block on the curve
   EntryKind kind : 3 = EntryKind::live;
 };
 
@@ -55,7 +55,7 @@ struct PointMotion {
   PointState to;
   EdgeMotion edge;
   Entry entry;
-  std::uint32_t code = 0;  ///< of its place in the index, never falling from point to point
+  std::uint32_t code = 0;  ///< of its position in the index, never falling from point to point
   /// Unit, to where it was seen from; of an old point that no block shows. Zero: from here.
   Eigen::Vector3f to_eye = Eigen::Vector3f::Zero();
 };
@@ -64,7 +64,7 @@ struct PointMotion {
 struct PointMotion4 {
   PointStates from, to;
   Floats variance;
-  std::uint32_t place;  ///< the first
+  std::uint32_t index;  ///< the first
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Decides whether a cloud was seen from one place.
+// Decides whether a cloud was seen from one position.
 #include "stream/one_view.hpp"
 
 #include "palpate/depth/depth_frame.hpp"
@@ -30,7 +30,7 @@ bool normals_face_viewpoint(const PointCloud& cloud) {
 }
 
 /// Do normals get their signs from where the sensor is?
-bool knows_sides(const PrepareOptions& options) {
+bool finds_sides(const PrepareOptions& options) {
   using Orientation = PrepareOptions::Orientation;
   return options.orientation == Orientation::automatic ||
          options.orientation == Orientation::viewpoint;
@@ -40,7 +40,7 @@ bool knows_sides(const PrepareOptions& options) {
 
 std::optional<SurfaceEye> OneView::eye_of(const PointCloud& cloud, const PrepareOptions& options,
                                           const Eigen::Isometry3d& T_world_sensor) {
-  if (!knows_sides(options)) return {};
+  if (!finds_sides(options)) return {};
   if (options.viewpoint) return SurfaceEye{T_world_sensor * *options.viewpoint, {}};
   const bool given = !cloud.normals.empty();
   if (!given) proved_ = proved_ || is_view(cloud);

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Finds the eye of clouds that were seen from one place: a requested one, or the viewpoint of a
+/// Finds the eye of clouds that were seen from one position: a requested one, or the viewpoint of a
 /// cloud that proves it.
 class OneView {
  public:

@@ -18,10 +18,10 @@ bool PaddedBlocks::make_room(const FilteredDepth& depth, int blocks) {
   return true;
 }
 
-void PaddedBlocks::lay_out_places(const FilteredDepth& depth, int v, int first, int count) {
+void PaddedBlocks::lay_out_positions(const FilteredDepth& depth, int v, int first, int count) {
   const Eigen::Vector3f* position =
       depth.positions.data() + static_cast<std::ptrdiff_t>(v) * depth.columns + first;
-  const std::size_t begin = place(first, v);
+  const std::size_t begin = index(first, v);
   for (std::size_t at = begin; at < begin + static_cast<std::size_t>(count); ++at) {
     x[at] = position->x();
     y[at] = position->y();

@@ -29,8 +29,7 @@ void each_other(const FilteredDepth& depth, bool whole, const Take& take) {
   });
 }
 
-/// Columns of blocks with a margin of nothing all around, so that neighbours are there without
-/// asking.
+/// Columns of blocks with a margin of nothing all around, so that all blocks have neighbours.
 struct PaddedBlocks {
   int margin = 0;  ///< blocks
   std::size_t stride = 0;
@@ -44,7 +43,7 @@ struct PaddedBlocks {
   static constexpr float kNowhere = 1e30f;  ///< 1 / R^2 of no point, 1/m^2
 
   /// Where a block stands in the columns.
-  [[nodiscard]] std::size_t place(int u, int v) const {
+  [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v + margin) * stride + static_cast<std::size_t>(u + margin);
   }
 
@@ -53,7 +52,7 @@ struct PaddedBlocks {
   bool make_room(const FilteredDepth& depth, int blocks);
 
   /// Copies the positions of some blocks of a row into the columns.
-  void lay_out_places(const FilteredDepth& depth, int v, int first, int count);
+  void lay_out_positions(const FilteredDepth& depth, int v, int first, int count);
 };
 
 }  // namespace palpate

@@ -20,18 +20,18 @@ constexpr float kLeastShare = 0.01f;  // of an edge; with less it is none
 // Share by which a point's radius, confidence and edge follow a frame (docs/method.md 7.3).
 constexpr float kShare = 0.25f;
 
-// A block is much less certain than what is known from this ratio of variances on, and agrees with
+// A block is much less certain than the prior from this ratio of variances on, and agrees with
 // it within so many deviations of the difference.
 constexpr float kUncertain = 4;
 constexpr float kAgree = 5;  // judgement, both (docs/method.md 7.3)
 
 // How far along its normal a point goes to where it is seen, as a share: a block that is much less
-// sure than what is known, as beside what begins to hide it or when it is seen again, counts for
+// certain than the prior, as beside what begins to hide it or when it is seen again, counts for
 // as much less while the two agree (the gain of a Kalman filter).
-float gain_of(const SeenPoint& seen, float known, float advance) {
-  const float both = known + seen.variance;
-  const bool uncertain = seen.variance > kUncertain * known;
-  return uncertain && advance * advance < kAgree * kAgree * both ? known / both : 1;
+float gain_of(const SeenPoint& seen, float prior, float advance) {
+  const float both = prior + seen.variance;
+  const bool uncertain = seen.variance > kUncertain * prior;
+  return uncertain && advance * advance < kAgree * kAgree * both ? prior / both : 1;
 }
 
 }  // namespace
@@ -68,35 +68,35 @@ PointMotion PointMoves::appear(const SeenPoint& seen) const {
 PointMotion PointMoves::update(const SeenPoint& seen, std::uint32_t i,
                                const PointState& from) const {
   PointState to = seen.state;
-  const float known = shown_.entries()[i].variance * doubt_;
+  const float prior = shown_.entries()[i].variance * doubt_;
   const float apart = (to.position - from.position).dot(to.normal);
-  const float gain = gain_of(seen, known, apart);
+  const float gain = gain_of(seen, prior, apart);
   to.position -= (1 - gain) * apart * to.normal;
-  const Eigen::Vector3f way = to.position - from.position;
-  if (way.squaredNorm() > to.radius * to.radius) {
+  const Eigen::Vector3f offset = to.position - from.position;
+  if (offset.squaredNorm() > to.radius * to.radius) {
     const float fastest = shown_.speed_of(i) + ShownPoints::kSudden;
     const float most = fastest * static_cast<float>(moment_.duration);
     const float advance = std::max(seen.advance_from(from.position), to.radius);
-    to.position = from.position + std::min(1.0f, std::max(most, to.radius) / advance) * way;
+    to.position = from.position + std::min(1.0f, std::max(most, to.radius) / advance) * offset;
   }
   to.radius = from.radius + kShare * (to.radius - from.radius);
   to.confidence = from.confidence + kShare * (to.confidence - from.confidence);
   to.weight = seen.weight(to.radius);
   if (to.normal.isZero(0)) to.normal = from.normal;
   to.presence = std::min(1.0f, from.presence + comes_);
-  return {from, to, edge_of(seen, i), seen_entry(gain < 1 ? known : seen.variance)};
+  return {from, to, edge_of(seen, i), seen_entry(gain < 1 ? prior : seen.variance)};
 }
 
 void PointMoves::update(const SeenFour& seen, PointMotion4& motions) const {
   const Floats whole = Floats{} + 1.0f;
   const PointStates& from = motions.from;
-  const Floats known = motions.variance * doubt_;
-  const Floats both = known + seen.variance;
+  const Floats prior = motions.variance * doubt_;
+  const Floats both = prior + seen.variance;
   const Floats apart = dot(seen.position - from.position, seen.normal);
   const Ints uncertain =
-      (seen.variance > kUncertain * known) & (apart * apart < kAgree * kAgree * both);
-  const Floats gain = uncertain ? known / both : whole;
-  motions.variance = gain < 1 ? known : seen.variance;
+      (seen.variance > kUncertain * prior) & (apart * apart < kAgree * kAgree * both);
+  const Floats gain = uncertain ? prior / both : whole;
+  motions.variance = gain < 1 ? prior : seen.variance;
   motions.to.position = seen.position - ((1 - gain) * apart) * seen.normal;
   motions.to.normal = choose(seen.normal.zero(), from.normal, seen.normal);
   motions.to.radius = from.radius + kShare * (seen.radius - from.radius);
@@ -144,9 +144,9 @@ PointMotion PointMoves::retain(std::uint32_t i) const {
   // Stamps may go back.
   const double confirmed = std::min(entry.confirmed, moment_.stamp);
   const double uncertain = moment_.stamp + moment_.duration - confirmed - options_.silence;
-  const auto sure = static_cast<float>(std::clamp(1 - uncertain / options_.fade, 0.0, 1.0));
+  const auto confidence = static_cast<float>(std::clamp(1 - uncertain / options_.fade, 0.0, 1.0));
   const PointState from = shown_.at(i);
-  const float most = std::min(from.presence, sure);
+  const float most = std::min(from.presence, confidence);
   const float presence = std::max(most, from.presence - share_of(options_.fade));
   return retained(i, from, presence, entry.kind, confirmed);
 }

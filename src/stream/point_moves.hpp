@@ -72,7 +72,7 @@ class PointMoves {
   const FrameBlocks& blocks_;
   FrameTiming moment_;
   float comes_ = 1;  // presence that what is seen gains
-  float doubt_ = 1;  // by which variances of what is known grow
+  float doubt_ = 1;  // by which prior variances grow
   bool ends_ = false;
   bool still_ = false;
 };

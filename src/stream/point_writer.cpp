@@ -53,9 +53,9 @@ void PointWriter::make_room(std::size_t room) {
 
 void PointWriter::add_eye(const PointMotion& motion) {
   SurfaceEye& eye = *points_->eye;
-  const Eigen::Vector3d place = points_->origin + motion.from.position.cast<double>();
+  const Eigen::Vector3d position = points_->origin + motion.from.position.cast<double>();
   const bool is_new = motion.to_eye.isZero(0);
-  eye.remembered.push_back(is_new ? (eye.place - place).normalized().cast<float>().eval()
+  eye.remembered.push_back(is_new ? (eye.place - position).normalized().cast<float>().eval()
                                   : motion.to_eye);
 }
 
@@ -125,7 +125,7 @@ void PointWriter::end(const Extremes& extremes) {
   measure_radii();
 }
 
-// For each cell the largest R_i in it: its box holds the points' ways.
+// For each cell the largest R_i in it: its box contains the points' paths.
 void PointWriter::measure_reach() {
   const std::span<const CellGrid::Cell> cells = points_->grid.cells();
   std::vector<float>& reach = points_->cell_reach;

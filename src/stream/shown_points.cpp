@@ -57,8 +57,8 @@ Eigen::Vector3f ShownPoints::to_eye(std::uint32_t i) const {
   const auto& remembered = points_->eye->remembered;
   const std::size_t first = points_->size() - remembered.size();
   if (i >= first) return remembered[i - first];
-  const Eigen::Vector3d place = points_->origin + points_->grid.points()[i].cast<double>();
-  return (points_->eye->place - place).normalized().cast<float>();
+  const Eigen::Vector3d position = points_->origin + points_->grid.points()[i].cast<double>();
+  return (points_->eye->place - position).normalized().cast<float>();
 }
 
 void ShownPoints::forget() {
@@ -112,8 +112,8 @@ PointStates ShownPoints::four_at(std::uint32_t i) const {
 
 float ShownPoints::speed_of(std::uint32_t i) const {
   if (!(moment_.duration > 0)) return 0;
-  const Eigen::Vector3f way = points_->end_positions[i] - points_->grid.points()[i];
-  return std::abs(way.dot(points_->end_normals[i])) / static_cast<float>(moment_.duration);
+  const Eigen::Vector3f offset = points_->end_positions[i] - points_->grid.points()[i];
+  return std::abs(offset.dot(points_->end_normals[i])) / static_cast<float>(moment_.duration);
 }
 
 SurfacePoints::EdgePlane ShownPoints::edge_of(std::uint32_t i) const {

@@ -19,14 +19,14 @@
 
 namespace palpate {
 
-/// A frame or cloud on its way into a source.
+/// A frame or cloud that enters a source.
 struct Arrival {
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   std::span<const Reach> reach;  ///< of all fields, world frame
   const Source::StartTime& start;
 };
 
-/// What is known of a cloud besides its surface.
+/// What is stored of a cloud besides its surface.
 struct CloudNotes {
   Prepared::Report report = {};                     ///< of the preparation
   std::shared_ptr<const PointCloud> overview = {};  ///< of what was left out, thinned, world frame
@@ -117,15 +117,15 @@ struct Streaming {
   [[nodiscard]] static Streaming& of(const Source& source);
 
   void take_change(const Source::Inside& source);
-  /// May one more snapshot be made? If not, the source's state says whom it waits for.
+  /// May one more snapshot be made? If not, the source's state contains whom it waits for.
   [[nodiscard]] bool room_for(bool clouds, Source::Inside& source);
   /// `cloud`: null for a frame.
   void hand_over(std::shared_ptr<Snapshot> snapshot, const CloudNotes* cloud, const Source& source);
   /// Notes in the source's state which points the snapshot ends with.
   static void note_surface(const Snapshot& snapshot, Source::Inside& source);
-  /// Notes there what a snapshot of the newest frame says.
+  /// Notes there what a snapshot of the newest frame reports.
   void note(const Snapshot& snapshot, Source::Inside& source) const;
-  /// Lets the frame decide which places are free.
+  /// Lets the frame decide which regions are free.
   void show(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor);
   /// The ages up to which a frame can show what is free.
   [[nodiscard]] FrameLimits frame_limits(const Source::Inside& source) const;

@@ -27,7 +27,7 @@ class UnseenPoints {
   std::size_t most_ = 0;
   std::size_t held_ = 0;
   std::vector<PointMotion> motions_;
-  std::vector<std::uint64_t> order_;  // their codes, and places among them
+  std::vector<std::uint64_t> order_;  // their codes, and indices among them
   std::vector<std::uint64_t> sorting_;
 };
 

@@ -33,7 +33,7 @@ class BlockMatchesTest : public testing::Test {
     morph.look({depth, pinhole_});
     morph.fill_still({depth, pinhole_}, {0, 0, kFrame}, points);
     std::vector<Entry> entries(points->size());
-    for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i].place = i;
+    for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i].index = i;
     origin_ = points->origin;
     shown_.replace(std::move(points), {0, 0, kFrame}, entries);
     show(wall(0.5), false);
@@ -52,8 +52,8 @@ class BlockMatchesTest : public testing::Test {
     matches_.begin(moved, pinhole_, duration);
   }
 
-  [[nodiscard]] SeenPoint seen(std::uint32_t place) const { return blocks_.four_at(place).lane(0); }
-  [[nodiscard]] std::size_t middle() const { return blocks_.order().places[depth_.size() / 2]; }
+  [[nodiscard]] SeenPoint seen(std::uint32_t index) const { return blocks_.four_at(index).lane(0); }
+  [[nodiscard]] std::size_t middle() const { return blocks_.order().indices[depth_.size() / 2]; }
 
   Pinhole pinhole_ = small_camera().pinhole;
   Eigen::Isometry3d T_world_sensor_ = looking_down();
@@ -65,11 +65,11 @@ class BlockMatchesTest : public testing::Test {
 };
 
 TEST_F(BlockMatchesTest, ABlockThatShowsThePointAgainIsItsPartner) {
-  for (std::uint32_t place = 0; place < blocks_.order().size(); ++place) {
-    const auto partner = matches_.partner_of(seen(place));
-    ASSERT_TRUE(partner) << place;
-    EXPECT_EQ(partner->i, place);
-    EXPECT_EQ(partner->before.position, seen(place).state.position);
+  for (std::uint32_t index = 0; index < blocks_.order().size(); ++index) {
+    const auto partner = matches_.partner_of(seen(index));
+    ASSERT_TRUE(partner) << index;
+    EXPECT_EQ(partner->i, index);
+    EXPECT_EQ(partner->before.position, seen(index).state.position);
   }
   EXPECT_EQ(matches_.four_at(4), 4u);
 }
@@ -108,7 +108,7 @@ TEST_F(BlockMatchesTest, AMovingCameraFindsPointsAtTheBlocksThatSeeThemNow) {
       ++outside;
       continue;
     }
-    const auto partner = matches_.partner_of(seen(entry.place));
+    const auto partner = matches_.partner_of(seen(entry.index));
     ASSERT_TRUE(partner) << i;
     EXPECT_LT((partner->before.position - shown_.at(i).position).norm(), seen(i).state.radius);
     ++matched;
@@ -122,7 +122,7 @@ TEST_F(BlockMatchesTest, WhatWasListedBeforeTheFrameIsWhereItIs) {
   const auto all_at = [&](std::size_t shift) {
     bool all = true;
     for (std::uint32_t i = 0; i < turned.size(); ++i) {
-      const auto there = matches_.at((turned[i].place + shift) % turned.size());
+      const auto there = matches_.at((turned[i].index + shift) % turned.size());
       all = all && there.size() == 1 && there[0] == i;
     }
     return all;
@@ -134,7 +134,7 @@ TEST_F(BlockMatchesTest, WhatWasListedBeforeTheFrameIsWhereItIs) {
   EXPECT_TRUE(all_at(0));
 
   // Nothing is listed twice: what changes afterwards is told.
-  for (Entry& entry : shown_.entries()) entry.place = (entry.place + 1) % turned.size();
+  for (Entry& entry : shown_.entries()) entry.index = (entry.index + 1) % turned.size();
   show(wall(0.5), false);
   EXPECT_TRUE(all_at(1));
   matches_.end(turned);
@@ -148,7 +148,7 @@ TEST_F(BlockMatchesTest, NothingIsListedBeforehandForACameraThatMoves) {
   show(wall(0.5), true);
   const std::vector<Entry> none;
   matches_.end(none);
-  EXPECT_FALSE(matches_.at(shown_.entries()[middle()].place).empty());
+  EXPECT_FALSE(matches_.at(shown_.entries()[middle()].index).empty());
 }
 
 TEST_F(BlockMatchesTest, APointThatComesBackIntoTheImageIsLiveAgain) {

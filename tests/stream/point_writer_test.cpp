@@ -40,16 +40,16 @@ TEST(BlockOrder, ABlockHasEightOthersBesideItAndFewerAtTheImagesEdge) {
   EXPECT_EQ(beside(0), (std::vector<std::size_t>{1, 3, 4}));
 }
 
-BlockEntries entries_at(const std::vector<std::uint32_t>& places, std::size_t blocks) {
+BlockEntries entries_at(const std::vector<std::uint32_t>& indices, std::size_t blocks) {
   std::vector<Entry> entries;
-  for (const std::uint32_t place : places) entries.push_back(Entry{.place = place});
+  for (const std::uint32_t index : indices) entries.push_back(Entry{.index = index});
   BlockEntries listed;
   listed.sort(entries, blocks);
   return listed;
 }
 
-std::vector<std::uint32_t> at(const BlockEntries& entries, std::size_t place) {
-  return {entries.at(place).begin(), entries.at(place).end()};
+std::vector<std::uint32_t> at(const BlockEntries& entries, std::size_t index) {
+  return {entries.at(index).begin(), entries.at(index).end()};
 }
 
 TEST(BlockEntries, AreListedByPlaceInRisingOrder) {
