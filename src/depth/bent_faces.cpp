@@ -11,10 +11,10 @@ namespace {
 // Are a quadric's slopes about as certain as those by the block's window? Where no plane serves
 // windows are farther off than their variance states: there a quadric that explains more than a
 // plane need not be.
-bool knows_enough(const Quadric::Sight& sight, const BlockFits& fits, std::size_t i) {
+bool is_precise(const Quadric::Sight& sight, const BlockFits& fits, std::size_t i) {
   const double step = std::min(std::abs(fits.grid.step_x), std::abs(fits.grid.step_y));
   return fits.confidences[i] == 0 || is_bent(fits, i) ||
-         sight.slope_variance <= kLessSure * fits.slope_variance[i] * step * step;
+         sight.slope_variance <= kLessPrecise * fits.slope_variance[i] * step * step;
 }
 
 // Gives a block the first of some quadrics that explains what is around it.
@@ -32,7 +32,7 @@ void give(std::span<const Quadric* const> faces, const simd::FitInput& input,
     const auto sight = face->at(u, v);
     if (!sight || !(sight->variance > 0 && sight->slope_variance > 0)) continue;
     const double off = sight->rho - rho;
-    if (off * off > square || !knows_enough(*sight, fits, i)) continue;
+    if (off * off > square || !is_precise(*sight, fits, i)) continue;
     fits.set(i, sight->rho, sight->variance, sight->x, sight->y, sight->slope_variance);
     return;
   }
@@ -44,22 +44,22 @@ void BentFaces::find(const simd::FitInput& input, const NoiseModel& noise, const
                      const BlockFits& fits, int tile_row) {
   const simd::WindowTable& table = input.table;
   const BlockRange range{table.first_column, table.first_row, table.columns, table.rows};
-  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t place, int column, int row) {
+  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t index, int column, int row) {
     const bool bent = is_bent(fits, fits.grid.index(column, row));
     if (bent && kept.at(column, row)) return;  // it was fitted last time
-    found_[place] = 0;
+    found_[index] = 0;
     if (!bent || !range.overlaps({column, row, 1, 1})) return;
     const auto face = fit_quadric(input, noise, fits, column, row);
     if (!face) return;
-    faces_[place] = *face;
-    found_[place] = 1;
+    faces_[index] = *face;
+    found_[index] = 1;
   });
 }
 
 // Blocks of each tile with bent ones take the quadric that explains them and most around, the first
-// of equals. The surer one would be a bad choice: a strip of another surface makes it so. In small
-// windows a plane serves for some of a ball's blocks, so these take them, too. Straight blocks,
-// whose largest window is a plane, take none.
+// of equals. The more precise one would be a bad choice: a strip of another surface makes it so. In
+// small windows a plane serves for some of a ball's blocks, so these take them, too. Straight
+// blocks, whose largest window is a plane, take none.
 void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, const KeptTiles& kept,
                       int tile_row, BlockFits& fits) const {
   const SameSurface same(noise, fits.grid);
@@ -73,8 +73,8 @@ void BentFaces::share(const simd::FitInput& input, const NoiseModel& noise, cons
     if (!bent || !changed) continue;
     const Quadric* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
-    tiles_.each_near(tile, tile_row, [&](std::size_t place) {
-      if (found_[place]) near[count++] = &faces_[place];
+    tiles_.each_near(tile, tile_row, [&](std::size_t index) {
+      if (found_[index]) near[count++] = &faces_[index];
     });
     if (count == 0) continue;
     std::sort(near, near + count, [](const Quadric* a, const Quadric* b) {

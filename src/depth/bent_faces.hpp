@@ -12,10 +12,10 @@ namespace palpate::depth {
 /// its blocks the one that explains most.
 ///
 /// Windows of single blocks are a few blocks large where a ball or a bottle turns away from the
-/// camera, and noise leaves little of their slopes. What the whole thing shows is known several
-/// times as well. One block in each 8 x 8 looks for a quadric. Only fitted blocks count, so up to
-/// 50 blocks from the rim of the fitted region less is known. Threads share the tiles; results do
-/// not depend on how.
+/// camera, and noise leaves little of their slopes. What the whole thing shows is several times
+/// as precise. One block in each 8 x 8 looks for a quadric. Only fitted blocks count, so up to
+/// 50 blocks from the rim of the fitted region fits are less precise. Threads share the tiles;
+/// results do not depend on how.
 class BentFaces {
  public:
   /// `input`: what the fits were made from. Quadrics and fits of kept tiles stay.

@@ -96,7 +96,7 @@ void for_rows(const BlockGrid& grid, const Body& body) {
 }
 
 /// The measured means of 2x2 blocks, in rows with a margin of empty blocks all around so that
-/// neighbours may be looked at without asking where the image ends.
+/// neighbours may be looked at without a check of where the image ends.
 struct Blocks {
   static constexpr int kMargin = 8;  ///< blocks on each side; kPlainLanes requires it (derived)
 
@@ -107,7 +107,7 @@ struct Blocks {
   std::vector<float> measured;       ///< `rho` before reject_flying()
 
   void resize(const BlockGrid& new_grid);
-  /// Place of a block in the columns; from -kMargin to columns + kMargin - 1, rows alike.
+  /// Index of a block in the columns; from -kMargin to columns + kMargin - 1, rows alike.
   [[nodiscard]] std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(row + kMargin) * stride +
            static_cast<std::size_t>(column + kMargin);
@@ -149,7 +149,7 @@ void average_blocks(const float* image, int width, const NoiseModel& noise,
 
 inline constexpr double kOffFace = 16;  ///< four deviations, squared (docs/method.md 6.4)
 /// Times the variance of slopes by a window; a vaguer face adds nothing (judgement).
-inline constexpr double kLessSure = 2;
+inline constexpr double kLessPrecise = 2;
 
 /// Deviation of the mean of a full block, 1/m, at inverse depth rho.
 [[nodiscard]] inline float block_sigma(const NoiseModel& noise, float rho) {

@@ -38,11 +38,11 @@ std::array<double, 5> powers(int from, int to) {
 // inverse depths as the table has them.
 void add_strip(const simd::WindowTable& table, int column, int row, const int (&u)[2],
                const int (&v)[2], Sums& sums) {
-  const auto place = [&](int k, int l) {
+  const auto corner = [&](int k, int l) {
     return table.sums + simd::kWindowSums * (std::ptrdiff_t{row + v[l] + l} * (table.columns + 1) +
                                              column + u[k] + k);
   };
-  const double* corners[] = {place(0, 0), place(1, 0), place(0, 1), place(1, 1)};
+  const double* corners[] = {corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)};
   const auto sum = [&](int k) {
     return (corners[3][k] - corners[2][k]) - (corners[1][k] - corners[0][k]);
   };
@@ -114,9 +114,10 @@ std::optional<FacePlane> clipped_fit(const simd::FitInput& input, const NoiseMod
   const Vector3d plane = (before + change) / simd::kRhoUnits;
   const double sigma = simd::kRhoUnits * block_sigma(noise, static_cast<float>(plane[0]));
   const double variance = std::max(sigma * sigma * weights / (3 * n), 1. / 12);
-  const double told = s.r.head<3>().dot(change);
-  if (exceeds_noise(s.rr - told - (n - 3) * variance, n - 3, variance, input.shared)) return {};
-  const double bent = s.r.dot(s.products.ldlt().solve(s.r)) - told;
+  const double explained = s.r.head<3>().dot(change);
+  if (exceeds_noise(s.rr - explained - (n - 3) * variance, n - 3, variance, input.shared))
+    return {};
+  const double bent = s.r.dot(s.products.ldlt().solve(s.r)) - explained;
   const double bend = variance * shared_error(noise.correlation, 2, n);
   if (!(bent <= kBent * bend)) return {};
   const double unit = variance / (simd::kRhoUnits * simd::kRhoUnits);

@@ -88,8 +88,9 @@ void resize(const BlockGrid& grid, FilteredDepth& out) {
   out.spacings.resize(size);
 }
 
-// Writes states, places, normals, deviations and spacings of blocks from their fits. A block that a
-// fit puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out` alone.
+// Writes states, positions, normals, deviations and spacings of blocks from their fits. A block
+// that a fit puts clearly out of range, or behind the camera, is empty. Leaves the rest of `out`
+// alone.
 void write(const BlockFits& fits, int row, int first, int count, const DepthFilterOptions& range,
            FilteredDepth& out) {
   const BlockGrid& grid = fits.grid;
@@ -105,9 +106,9 @@ void write(const BlockFits& fits, int row, int first, int count, const DepthFilt
     const bool sane = fits.rho[i] >= farthest && fits.rho[i] <= nearest;
     out.states[i] = sane ? fits.states[i] : FilteredDepth::State::empty;
     out.positions[i] = part.z[k] * Vector3f(part.x[k], rays.y, 1);
-    const bool known = fits.confidences[i] > 0;
+    const bool has_normal = fits.confidences[i] > 0;
     const Vector3f normal(part.normal_x[k], part.normal_y[k], part.normal_z[k]);
-    out.normals[i] = known ? normal : Vector3f(Vector3f::Zero());
+    out.normals[i] = has_normal ? normal : Vector3f(Vector3f::Zero());
     out.confidences[i] = fits.confidences[i];
   }
 }

@@ -3,7 +3,7 @@
 #include "base/description.hpp"
 #include "palpate/depth/depth_filter.hpp"
 
-/// What is said of the options of the depth filter.
+/// Descriptions of the options of the depth filter.
 namespace palpate {
 
 template <EitherConst<DepthFilterOptions> Options>

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kWays[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+constexpr int kDirections[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
+                                   {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
 constexpr int kBehind = 4;  // blocks from a face's end to one that shows what is beyond (judgement)
 constexpr int kLook = 2;    // blocks around the meeting line: 5 x 5 (docs/method.md 6.4)
 constexpr int kFarLook = 6;  // blocks; largest reach of the paraboloid (judgement)
@@ -18,7 +19,7 @@ constexpr int kFarLook = 6;  // blocks; largest reach of the paraboloid (judgeme
 constexpr double kTurnedSquare = 0.5;
 // Variances: three deviations squared between planes, and by which a paraboloid has to fit better
 // (docs/method.md 6.4)
-constexpr double kSurelyAhead = 9;
+constexpr double kClearlyAhead = 9;
 
 FacePlane face_plane(const BlockFits& fits, int column, int row) {
   const std::size_t i = fits.grid.index(column, row);
@@ -60,12 +61,12 @@ struct FaceFits::Search {
   double variance;   // of a block's measurement
   bool met = false;  // another face
 
-  // Looks in all directions, then fits the face. True when more is known of it then.
+  // Looks in all directions, then fits the face. True when that makes it more precise.
   bool run() {
     const std::size_t i = fits.grid.index(own.column, own.row);
     const int u = 2 * fits.reach_u[i];
     const int v = 2 * fits.reach_v[i];
-    for (const auto& [x, y] : kWays) look(x, y, x == 0 ? v : y == 0 ? u : std::min(u, v));
+    for (const auto& [x, y] : kDirections) look(x, y, x == 0 ? v : y == 0 ? u : std::min(u, v));
     if (!met) return false;
     for (int size = simd::kSizes - 1; size >= 0; --size) {  // the largest that is explained
       const auto reach_u = static_cast<int>(std::lround(simd::kRatios[size] * u));
@@ -73,7 +74,7 @@ struct FaceFits::Search {
       const auto fit = clipped_fit(in, noise, own, reach_u, reach_v, face.sides());
       if (!fit) continue;
       face.plane = *fit;
-      return fit->slope_variance <= kLessSure * own.slope_variance;
+      return fit->slope_variance <= kLessPrecise * own.slope_variance;
     }
     return false;
   }
@@ -84,7 +85,7 @@ struct FaceFits::Search {
     return column >= 0 && row >= 0 && column < in.table.columns && row < in.table.rows;
   }
 
-  // Adds the border on the way along (x, y), if one is found.
+  // Adds the border in the direction (x, y), if one is found.
   void look(int x, int y, int reach) {
     int d = 1;
     for (; inside(d * x, d * y); ++d) {
@@ -108,7 +109,7 @@ struct FaceFits::Search {
     const double cosine = here.dot(there);
     const double same = kTurnedSquare * here.squaredNorm() * there.squaredNorm();
     const double ahead = other.rho - own.at(u, v);
-    const double room = kSurelyAhead * (other.variance + own.variance_at(u, v));
+    const double room = kClearlyAhead * (other.variance + own.variance_at(u, v));
     if ((cosine > 0 && cosine * cosine > same) || !(ahead * ahead > room)) return false;
     other.rho -= other.x * u + other.y * v;
     const double sign = ahead > 0 ? 1 : -1;  // the larger inverse depth is seen in a crease
@@ -159,7 +160,7 @@ struct FaceFits::Search {
            left.squares <= (left.count + 3 * std::sqrt(2.0 * left.count)) * variance;
   }
 
-  // Does one bent surface explain it surely better than both do, moved along the ray together?
+  // Does one bent surface explain it clearly better than both do, moved along the ray together?
   [[nodiscard]] bool is_round(const FacePlane& other, double sign, int u, int v, int reach) const {
     FacePlane here = own;
     here.column += u;
@@ -168,15 +169,15 @@ struct FaceFits::Search {
     const auto bent = left_by_paraboloid(in, here, reach);
     const Left left = left_by_both(other, sign, u, v, reach);
     const double both = left.squares - left.sum * left.sum / std::max(left.count, 1);
-    return bent && *bent + kSurelyAhead * variance < both;
+    return bent && *bent + kClearlyAhead * variance < both;
   }
 };
 
 void FaceFits::find(const simd::FitInput& input, const Blocks& filled, const NoiseModel& noise,
                     const KeptTiles& kept, const BlockFits& fits, int tile_row) {
-  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t place, int column, int row) {
+  tiles_.each_middle(fits.grid, tile_row, [&](std::size_t index, int column, int row) {
     if (kept.at(column, row) && is_flat(fits, column, row)) return;  // it was fitted last time
-    Face& face = faces_[place];
+    Face& face = faces_[index];
     face.count = 0;
     face.found = false;
     if (!is_flat(fits, column, row) || fits.reach_u[fits.grid.index(column, row)] == 0) return;
@@ -211,8 +212,8 @@ void FaceFits::share(const simd::FitInput& input, const NoiseModel& noise, const
     if (kept.at(tile * kTile, tile_row * kTile)) continue;
     const Face* near[(2 * kAround + 1) * (2 * kAround + 1)];
     std::size_t count = 0;
-    tiles_.each_near(tile, tile_row, [&](std::size_t place) {
-      if (faces_[place].found) near[count++] = &faces_[place];
+    tiles_.each_near(tile, tile_row, [&](std::size_t index) {
+      if (faces_[index].found) near[count++] = &faces_[index];
     });
     if (count == 0) continue;
     tiles_.each_block(fits.grid, tile, tile_row, [&](int column, int row) {

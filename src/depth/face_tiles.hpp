@@ -23,10 +23,10 @@ struct FaceTiles {
     columns = (grid.columns + side - 1) / side;
     first_row = table.first_row / side;
     end_row = (table.first_row + table.rows + side - 1) / side;
-    return place(0, end_row);
+    return index(0, end_row);
   }
 
-  [[nodiscard]] std::size_t place(int column, int row) const {
+  [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * columns + column;
   }
 
@@ -37,23 +37,23 @@ struct FaceTiles {
                           [&](std::size_t row) { body(first_row + static_cast<int>(row)); });
   }
 
-  /// Calls look(place, column, row) for the block in the middle of each tile of a row.
+  /// Calls look(index, column, row) for the block in the middle of each tile of a row.
   template <class Look>
   void each_middle(const BlockGrid& grid, int tile_row, const Look& look) const {
     const int row = std::min(tile_row * side + side / 2, grid.rows - 1);
     for (int tile = 0; tile < columns; ++tile) {
-      look(place(tile, tile_row), std::min(tile * side + side / 2, grid.columns - 1), row);
+      look(index(tile, tile_row), std::min(tile * side + side / 2, grid.columns - 1), row);
     }
   }
 
-  /// Calls take(place) for the tiles around one and for itself.
+  /// Calls take(index) for the tiles around one and for itself.
   template <class Take>
   void each_near(int tile, int tile_row, const Take& take) const {
     const int bottom = std::min(tile_row + around, end_row - 1);
     const int right = std::min(tile + around, columns - 1);
     for (int row = std::max(tile_row - around, first_row); row <= bottom; ++row) {
       for (int column = std::max(tile - around, 0); column <= right; ++column) {
-        take(place(column, row));
+        take(index(column, row));
       }
     }
   }

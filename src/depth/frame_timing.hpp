@@ -77,16 +77,16 @@ class FrameIntervalFilter {
 class FrameLifetime {
  public:
   /// A frame came: how much later than the one before its stamp is, and how old it was when it was
-  /// first asked, s.
+  /// first read, s.
   void add(double gap, double delay) { frames_[count_++ % kFrames] = {gap, delay}; }
 
   /// Between stamps where no frame is lost, s. Nothing: too few have come.
   [[nodiscard]] std::optional<double> interval() const {
-    const std::size_t known = std::min(count_, kFrames);
-    if (known < kFrames / 2) return std::nullopt;
+    const std::size_t count = std::min(count_, kFrames);
+    if (count < kFrames / 2) return std::nullopt;
     std::array<Frame, kFrames> frames = frames_;
-    const auto quarter = frames.begin() + static_cast<std::ptrdiff_t>(known / 4);
-    std::nth_element(frames.begin(), quarter, frames.begin() + static_cast<std::ptrdiff_t>(known),
+    const auto quarter = frames.begin() + static_cast<std::ptrdiff_t>(count / 4);
+    std::nth_element(frames.begin(), quarter, frames.begin() + static_cast<std::ptrdiff_t>(count),
                      [](const Frame& a, const Frame& b) { return a.gap < b.gap; });
     return quarter->gap;
   }

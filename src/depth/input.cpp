@@ -100,14 +100,14 @@ bool grows(const CameraModel::Distortion& d, double x, double y) {
 }
 
 // A coordinate between the pixels of a row or a column.
-struct Place {
+struct Position {
   bool inside = false;
   int nearest = 0;
   int next = 0;     // on the side where it lies; at the image's border the nearest one itself
   float apart = 0;  // from the nearest one towards the next
 };
 
-Place place(double coordinate, int size) {
+Position position_of(double coordinate, int size) {
   const double nearest = std::round(coordinate);
   if (!(nearest >= 0 && nearest < size)) return {};
   const double apart = coordinate - nearest;
@@ -145,8 +145,8 @@ Undistorter::Origin Undistorter::origin_of(const CameraModel& camera, int u, int
   const double x = (u - p.cx) / p.fx;
   const double y = (v - p.cy) / p.fy;
   const ImagePoint at = distort(camera.distortion, x, y);
-  const Place across = place(at.x * p.fx + p.cx, camera.width);
-  const Place down = place(at.y * p.fy + p.cy, camera.height);
+  const Position across = position_of(at.x * p.fx + p.cx, camera.width);
+  const Position down = position_of(at.y * p.fy + p.cy, camera.height);
   if (!across.inside || !down.inside || !grows(camera.distortion, x, y)) return {};
   const auto pixel = [&](int column, int row) { return row * camera.width + column; };
   return {pixel(across.nearest, down.nearest), pixel(across.next, down.nearest),

@@ -35,7 +35,7 @@ void check(const Eigen::Isometry3d& T_world_sensor);
 class Undistorter {
  public:
   /// The image without distortion: `depth` itself when the camera has none, else 0 where nothing
-  /// in range is known. Valid until the next call. Computes its map when the camera is another one
+  /// in range was measured. Valid until the next call. Computes its map when the camera is another one
   /// than before.
   const float* undistort(const CameraModel& camera, const std::vector<float>& depth,
                          const NoiseModel& noise, const DepthFilterOptions& range);
@@ -49,7 +49,7 @@ class Undistorter {
     float across = 0;         // to the pixel beside, pixels: 0 to 0.5
     float down = 0;
 
-    /// Depth at this place of the image, m; 0: nothing in range.
+    /// Depth at this position in the image, m; 0: nothing in range.
     [[nodiscard]] float depth_in(const float* image, const simd::DepthGate& gate) const;
   };
 

@@ -87,7 +87,7 @@ struct NoiseTracker::State {
   NoiseModel prior;
   NoiseModel model;        // handed out
   std::size_t waited = 0;  // frames that gave no samples
-  bool told = false;
+  bool reported = false;
   WindowVisits visits;
   NoiseSurvey of_single;
   NoiseSurvey of_differences;
@@ -186,19 +186,19 @@ void NoiseTracker::State::choose_samples() {
 }
 
 // n_c of the whole noise, by that of the frames' differences, which hold no shape, but no pattern
-// either: they count by their part of the noise.
+// either: they count by their share of the noise.
 double NoiseTracker::State::shared(const NoiseModel& noise) const {
-  double parts = 0;  // of the noise, that they show
+  double shares = 0;  // of the noise, that they show
   double weights = 0;
   for (const NoiseSample& pair : changes()) {
-    const double part = pair.sigma / noise.sigma(pair.z);
-    if (part > kMoved) continue;
-    parts += pair.weight * part * part;
+    const double share = pair.sigma / noise.sigma(pair.z);
+    if (share > kMoved) continue;
+    shares += pair.weight * share * share;
     weights += pair.weight;
   }
   double from_single = of_single.noise().samples.empty() ? 0 : of_single.noise().shared;
   if (weights == 0) return std::max(1.0, from_single);
-  const double from_pairs = parts / weights * of_differences.noise().shared;
+  const double from_pairs = shares / weights * of_differences.noise().shared;
   return std::max({1.0, from_pairs, std::min(from_single, kPattern * kPattern * from_pairs)});
 }
 
@@ -209,12 +209,12 @@ void NoiseTracker::State::conclude() {
   if (samples.empty()) return;
   NoiseModel next = fit_noise_curve(samples, prior);
   next.correlation = std::max(kLeastCorrelation, std::sqrt(shared(next)));
-  bool changed = !told || differs(next.correlation, model.correlation);
+  bool changed = !reported || differs(next.correlation, model.correlation);
   for (const NoiseSample& sample : samples) {
     changed = changed || differs(next.sigma(sample.z), model.sigma(sample.z));
   }
   if (changed) model = next;
-  told = true;
+  reported = true;
 }
 
 void NoiseTracker::State::update(const DepthView& frame) {
@@ -223,7 +223,7 @@ void NoiseTracker::State::update(const DepthView& frame) {
     visits.resize(frame);
   }
   visits.compare(frame);
-  const bool all = !told && waited++ % kPatience == 0;
+  const bool all = !reported && waited++ % kPatience == 0;
   const std::size_t count = visits.windows.size();
   for (std::size_t w = all ? 0 : visits.turn; w < count; w += all ? 1 : kShares) {
     visits.look(frame, w);

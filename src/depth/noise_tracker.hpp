@@ -67,7 +67,7 @@ class NoiseFit {
   [[nodiscard]] Coefficients project(float limit);
 
   int size_;
-  std::array<Row, kDegrees> polynomials_{};  // orthonormal over the places of a row
+  std::array<Row, kDegrees> polynomials_{};  // orthonormal over the pixels of a row
   std::vector<float> residuals_;             // NaN where there is no value
   std::vector<float> sorted_;
   float reference_ = 0;  // that values count from
@@ -77,7 +77,7 @@ class NoiseFit {
 
 /// A square of pixels whose upper left one is (u, v).
 struct NoiseWindow {
-  std::size_t level = 0;  ///< says the size: kNoiseSizes
+  std::size_t level = 0;  ///< sets the size: kNoiseSizes
   int u = 0;
   int v = 0;
 };
@@ -115,7 +115,7 @@ class NoiseSurvey {
   /// Noise measured in windows of one size.
   struct Level {
     std::array<NoiseSample, kNoiseBins> bins{};  // weight 0: nothing
-    double power = 0;  // of the cubic terms, over the variance; 0: nothing is known
+    double power = 0;  // of the cubic terms, over the variance; 0: none was measured
 
     /// Share of the noise that the fits have taken for shape.
     [[nodiscard]] double missing(int size) const;

@@ -80,10 +80,10 @@ struct Samples {
 // Variance of a block that a quadric shows: the noise's, or what it leaves where that is more;
 // nullopt where it is no better than the best plane, which leaves `plane`. What errs together,
 // `shared` blocks, is one sample, and each term takes the power of one: of both sums of squares
-// only n / shared are told, and the terms beyond the plane's take so many times `shared` of the
+// only n / shared are counted, and the terms beyond the plane's take so many times `shared` of the
 // noise alone. That is an F test, whose limit does not grow with the assumed noise.
-std::optional<double> told_variance(double n, double plane, double quadric, double variance,
-                                    double shared) {
+std::optional<double> tested_variance(double n, double plane, double quadric, double variance,
+                                      double shared) {
   const double free = n - kFree * shared;
   if (!(free > 0)) return {};
   const double seen = std::max(variance, quadric / free);
@@ -105,7 +105,7 @@ struct Fitting {
   Moments gather(const Samples& s, Samples& held) const;
   std::optional<double> solve(const Moments& moments);
   [[nodiscard]] double left_by_plane(const Moments& moments) const;
-  bool know(double n, double variance);
+  bool set_spread(double n, double variance);
   bool run(double variance, double correlation);
 };
 
@@ -177,9 +177,8 @@ double Fitting::left_by_plane(const Moments& moments) const {
   return moments.product(6, 6) - with_r.dot(products.topLeftCorner<3, 3>().ldlt().solve(with_r));
 }
 
-// Sets what is known of the quadric, from so many blocks of this variance, what they share
-// included.
-bool Fitting::know(double n, double variance) {
+// Sets the quadric's spread, from so many blocks of this variance, what they share included.
+bool Fitting::set_spread(double n, double variance) {
   products += n * q.a * q.a.transpose();  // regular along a, too
   const Eigen::LLT<Products> root(products);
   if (root.info() != Eigen::Success) return false;
@@ -212,8 +211,8 @@ bool Fitting::run(double variance, double correlation) {
   const double apart = correlation / held.step;  // blocks in between do not count
   const double excess = n * *left - (n - kFree) * variance;
   if (exceeds_noise(excess, n - kFree, variance, shared_error(apart))) return false;
-  const auto told = told_variance(n, plane, n * *left, variance, shared_error(apart));
-  return told && know(n, *told * shared_error(apart, 1, n));
+  const auto tested = tested_variance(n, plane, n * *left, variance, shared_error(apart));
+  return tested && set_spread(n, *tested * shared_error(apart, 1, n));
 }
 
 }  // namespace

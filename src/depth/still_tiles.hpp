@@ -9,7 +9,7 @@
 namespace palpate::depth {
 
 /// Finds the tiles in which a still camera sees, within noise, what it saw when they were filtered
-/// last. Where all blocks average as many frames as they ever do, one more would tell next to
+/// last. Where all blocks average as many frames as they ever do, one more would add next to
 /// nothing.
 class StillTiles {
  public:

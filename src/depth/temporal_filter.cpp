@@ -14,7 +14,7 @@ constexpr float kLearn = 1 / 16.F;  // share of a frame in the learned scatter (
 // Times a variance s^2; learned scatter does not reach it by chance. A product of two moves has the
 // variance 5 s^4 and the covariance s^4 with the next; the running mean has 1/31 of the sum of 7.
 // Five deviations up: 1 + 5 sqrt(7 / 31) (derived).
-constexpr float kSure = 3.4F;
+constexpr float kExcess = 3.4F;
 
 float squared(float x) {
   return x * x;
@@ -70,15 +70,15 @@ void learn_scatter(const Measured& now, BlockMemory& m) {
 
 /// The variance of one frame that claims to have `claimed`.
 float believed(float claimed, float scatter) {
-  return scatter > kSure * claimed ? scatter : claimed;
+  return scatter > kExcess * claimed ? scatter : claimed;
 }
 
 /// Is the frame within the gate of what is remembered? Slopes that nothing vouches for are not
-/// asked.
+/// compared.
 bool agrees(const Measured& now, const BlockMemory& m, float gate2) {
   const float share = 1 / static_cast<float>(m.count);
-  const float place = m.variance * share + m.extra + now.variance;
-  if (squared(now.rho - m.rho) > gate2 * place) return false;
+  const float variance = m.variance * share + m.extra + now.variance;
+  if (squared(now.rho - m.rho) > gate2 * variance) return false;
   if (!(now.confidence > 0 && m.confidence > 0)) return true;
   const float slope = m.slope_variance * share + now.slope_variance;
   const float turned = squared(now.slope_x - m.slope_x) + squared(now.slope_y - m.slope_y);
@@ -119,8 +119,8 @@ bool average(const Measured& now, int memory, BlockMemory& m) {
 void follow(const Measured& now, float gate2, BlockMemory& m) {
   const float d = now.rho - m.rho;
   // A surface that approaches slowly looks calm in each single frame.
-  const float way = std::max(std::abs(d), std::abs(now.rho - m.calm_since));
-  const bool calm = squared(way) <= gate2 * (m.variance + now.variance);
+  const float change = std::max(std::abs(d), std::abs(now.rho - m.calm_since));
+  const bool calm = squared(change) <= gate2 * (m.variance + now.variance);
   const std::uint8_t calm_frames = calm ? m.calm + 1 : 0;
   restart(now, m);
   m.calm = calm_frames;

@@ -58,7 +58,7 @@ struct FacePlane {
 /// that a block lies on.
 ///
 /// Windows reach over an edge by as much as noise hides, and their planes lean by that; or they
-/// show what is hidden at their block. The line where the planes of two faces meet is known better.
+/// show what is hidden at their block. The line where the planes of two faces meet is more precise.
 /// So one block of each tile looks in eight directions for the end of its face, at a plane that
 /// meets its own or at anything else, and fits all blocks inside, up to twice a window's reach
 /// away. Blocks of its tile and of those around take the nearest plane whose face holds them. Where
@@ -143,7 +143,7 @@ class WindowFits {
                                const FitRegion& region, const KeptTiles& kept, BlockFits& fits);
 
  private:
-  struct alignas(64) Place {
+  struct alignas(64) Entry {
     double sums[simd::kWindowSums];
   };
 
@@ -151,7 +151,7 @@ class WindowFits {
                                      double normal_error, const BlockRange& range);
   const simd::FitFunctions* functions_;
   Blocks filled_;
-  std::vector<Place> table_;
+  std::vector<Entry> table_;
   std::vector<std::int32_t> columns_;  // of the region's blocks, with room for all of each row
   BentFaces bent_;
   FaceFits faces_;

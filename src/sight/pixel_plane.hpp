@@ -1,4 +1,4 @@
-// A plane through the pixels around a place of a depth image.
+// A plane through the pixels around a point of a depth image.
 #pragma once
 
 #include <array>
@@ -36,17 +36,17 @@ struct PixelPlane {
   double leverage = std::numeric_limits<double>::infinity();  // its variance over a pixel's
   double residual = 0;                                        // rms, 1/m
 
-  [[nodiscard]] bool told() const { return leverage <= kMostLeverage && inverse > 0; }
+  [[nodiscard]] bool valid() const { return leverage <= kMostLeverage && inverse > 0; }
 };
 
-/// The pixels around a place of the image that measured something, up to `half` to each side, which
+/// The pixels around a point of the image that measured something, up to `half` to each side, which
 /// is kWideWindow at most.
 [[nodiscard]] PixelWindow window_of(const DepthFrame& frame, double u, double v, int half);
 
 [[nodiscard]] PixelPlane plane_of(std::span<const Pixel> pixels);
 
 /// The pixels on one side of the widest gap between depths: the side of the pixel that is nearest
-/// to the place.
+/// to the point.
 [[nodiscard]] std::span<Pixel> own_surface(std::span<Pixel> pixels);
 
 }  // namespace palpate

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSure = 3;     // deviations: noise feigns more once in 700 frames, and by little
+constexpr double kGate = 3;     // deviations: noise feigns more once in 700 frames, and by little
 constexpr double kNoPlane = 2;  // sigma of residual: two surfaces are in the window (judgement)
 constexpr int kStride = 2;  // pixels between windows that look at a ball: what is as wide is seen
 constexpr int kRings = 16;  // windows from a ball's middle to its rim at most: 800 in all
@@ -48,10 +48,10 @@ struct Gap {
   double deviation = 0;  // m
   bool whole = true;     // one surface fills the window: it can be compared with another frame's
 
-  [[nodiscard]] bool free() const { return metres >= -kSure * deviation; }
+  [[nodiscard]] bool free() const { return metres >= -kGate * deviation; }
 };
 
-/// How far the surface at a place of the image lies beyond `reach` m. `stretch`: of the ray there,
+/// How far the surface at a point of the image lies beyond `reach` m. `stretch`: of the ray there,
 /// its length for one metre of depth.
 std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, double stretch,
                           double reach, int half) {
@@ -60,10 +60,10 @@ std::optional<Gap> gap_at(const PosedFrame& view, const Eigen::Vector2d& at, dou
     return view.noise.sigma(1 / plane.inverse) * plane.inverse * plane.inverse;
   };
   PixelPlane plane = plane_of(window.span());
-  if (!plane.told()) return std::nullopt;
+  if (!plane.valid()) return std::nullopt;
   const bool whole = plane.residual <= kNoPlane * sigma_of(plane);
   if (!whole) plane = plane_of(own_surface(window.span()));
-  if (!plane.told()) return std::nullopt;
+  if (!plane.valid()) return std::nullopt;
   // A window within one patch of pixels that err together errs as one of them.
   const double share = std::min(view.noise.correlation * std::sqrt(plane.leverage), 1.0);
   const double error = whole ? sigma_of(plane) : std::max(sigma_of(plane), plane.residual);
@@ -77,7 +77,7 @@ struct Look {
   std::optional<Gap> gap;
 };
 
-/// `x`: a place on the ray, world. `half`: of its window, pixels.
+/// `x`: a point on the ray, world. `half`: of its window, pixels.
 Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x, int half) {
   const Vector3d& eye = view.T_world_sensor.translation();
   const Matrix3d to_sensor = view.T_world_sensor.linear().transpose();
@@ -89,9 +89,9 @@ Look look(const PosedFrame& view, const Ball& ball, const Vector3d& x, int half)
   return {.outside = false, .gap = gap_at(view, *at, stretch, reach, half)};
 }
 
-/// Places on a disc through a ball's middle that faces `eye`, some `pitch` apart; the middle first.
-std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pitch) {
-  std::vector<Vector3d> places{ball.center};
+/// Points on a disc through a ball's middle that faces `eye`, some `pitch` apart; the middle first.
+std::vector<Vector3d> points_on(const Ball& ball, const Vector3d& eye, double pitch) {
+  std::vector<Vector3d> points{ball.center};
   const Vector3d ray = (ball.center - eye).normalized();
   const Vector3d side = ray.unitOrthogonal();
   const Vector3d other = ray.cross(side);
@@ -101,13 +101,13 @@ std::vector<Vector3d> places_on(const Ball& ball, const Vector3d& eye, double pi
       const double across = ball.radius * i / rings;
       const double down = ball.radius * j / rings;
       if ((i != 0 || j != 0) && std::hypot(across, down) <= ball.radius)
-        places.emplace_back(ball.center + across * side + down * other);
+        points.emplace_back(ball.center + across * side + down * other);
     }
   }
-  return places;
+  return points;
 }
 
-/// Adds what a ray shows to what is known of the ball: where the surface is and, if it goes on as
+/// Adds what a ray shows to what was seen of the ball: where the surface is and, if it goes on as
 /// it came since an earlier frame, where it will be. Three deviations of either may be noise.
 void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& seen) {
   double behind = 0;
@@ -117,14 +117,14 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
     behind = std::max(behind, depth - noise);
     lift = std::max(lift, depth - noise * noise / depth);
   };
-  measured(-gap.metres, kSure * gap.deviation);
+  measured(-gap.metres, kGate * gap.deviation);
   seen.measured = std::max(seen.measured, lift);
   const bool compares = before && before->whole && gap.whole;
   if (compares) {
     const double ahead = std::max(seen.age, 0.0) / span;
     const double error = std::hypot((1 + ahead) * gap.deviation, ahead * before->deviation);
     const double foreseen = ahead * (before->metres - gap.metres) - gap.metres;
-    measured(foreseen, kSure * error);
+    measured(foreseen, kGate * error);
   }
   seen.lift = std::max(seen.lift, lift);
   if (behind <= seen.behind) return;
@@ -146,12 +146,12 @@ Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball,
   const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
   const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
   seen.says = Seen::Says::free;
-  for (const Vector3d& place : places_on(ball, eye, pitch)) {
-    const Look told = look(newest, ball, place, half);
-    if (told.gap) {
-      add(*told.gap, span > 0 ? look(*before, ball, place, half).gap : std::nullopt, span, seen);
+  for (const Vector3d& point : points_on(ball, eye, pitch)) {
+    const Look shown = look(newest, ball, point, half);
+    if (shown.gap) {
+      add(*shown.gap, span > 0 ? look(*before, ball, point, half).gap : std::nullopt, span, seen);
     } else if (seen.says == Seen::Says::free) {
-      seen.says = told.outside ? Seen::Says::outside : Seen::Says::nothing;
+      seen.says = shown.outside ? Seen::Says::outside : Seen::Says::nothing;
     }
   }
   return seen;
@@ -177,7 +177,7 @@ void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor
   std::swap(before_, newest_);
   std::swap(newest_, spare_);
   frames_ = std::min(frames_ + 1, 3);
-  asked_before_ = std::exchange(asked_, false);
+  read_before_ = std::exchange(read_, false);
 }
 
 void Sight::forget() {
@@ -186,10 +186,10 @@ void Sight::forget() {
 }
 
 /// If the newest frame came after the last question, the one before is replaced now, unless nobody
-/// asked for that either. Who asks for a time of another clock does not count.
+/// read that either. A question for a time of another clock does not count.
 void Sight::note_question(double now) {
   if (now < newest_.frame.stamp - kOtherClock) return;
-  const bool replaces = !std::exchange(asked_, true) && asked_before_ && frames_ > 1;
+  const bool replaces = !std::exchange(read_, true) && read_before_ && frames_ > 1;
   const double gap = newest_.frame.stamp - before_.frame.stamp;
   if (replaces && gap > 0) lifetime_.add(gap, now - newest_.frame.stamp);
 }
@@ -202,7 +202,7 @@ double Sight::lasts(const FrameLimits& limits) const {
 }
 
 /// May the frame before the newest one count where that one measured nothing? Only if no frame is
-/// missing between them. Until that can be known, it counts as long as if it were the newest.
+/// missing between them. Until that is certain, it counts as long as if it were the newest.
 bool Sight::before_counts(double now, double lasts) const {
   if (frames_ < 2) return false;
   const std::optional<double> interval = lifetime_.interval();
@@ -228,7 +228,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& l
     return seen;
   }
   if (seen.says != Seen::Says::nothing || !before_counts(now, lasts)) return seen;
-  // Around the place the newest frame shows what came since the one before.
+  // Around the point the newest frame shows what came since the one before.
   if (judge(newest_, base, ball, now, kWideWindow).says != Seen::Says::free) return seen;
   const PosedFrame* earlier = frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr;
   return judge(before_, earlier, ball, now, kHalfWindow);

@@ -19,12 +19,12 @@ struct PosedFrame {
 
 /// Ages up to which a frame counts at most, s; infinite: it stays.
 struct FrameLimits {
-  double at_first = 0;  ///< while it is not known when frames are due
+  double at_first = 0;  ///< while it is uncertain when frames are due
   double later = 0;     ///< however late they are due then
 };
 
-/// Decides whether places are free, from a depth camera's newest raw frames alone. The surface
-/// takes no part in it. One thread adds frames, any thread reads.
+/// Decides whether positions are free, from a depth camera's newest raw frames alone. The surface
+/// is not involved. One thread adds frames, any thread reads.
 class Sight {
  public:
   /// Keeps a copy of the frame, which has passed depth::check(). `noise`: of its pixels. Once
@@ -36,7 +36,7 @@ class Sight {
   /// Forgets all frames.
   void forget();
 
-  /// Returns what is known of a ball at `now` (s, on the clock of the stamps). A frame counts until
+  /// Returns what was seen of a ball at `now` (s, on the clock of the stamps). A frame counts until
   /// the next one is due, and no longer than `limits`. Frequent calls let it measure when frames
   /// are due: by how old they are at the first call. Nothing: no frame has come.
   [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, const FrameLimits& limits);
@@ -48,11 +48,11 @@ class Sight {
 
   std::mutex mutex_;  // of what follows
   PosedFrame newest_;
-  PosedFrame before_;          // the one before
-  PosedFrame base_;            // an earlier one, that gives speeds where frames come quickly
-  int frames_ = 0;             // of the first three that have come
-  bool asked_ = false;         // has the newest one been read?
-  bool asked_before_ = false;  // and the one before?
+  PosedFrame before_;         // the one before
+  PosedFrame base_;           // an earlier one, that gives speeds where frames come quickly
+  int frames_ = 0;            // of the first three that have come
+  bool read_ = false;         // has the newest one been read?
+  bool read_before_ = false;  // and the one before?
   FrameLifetime lifetime_;
 
   PosedFrame spare_;   // the thread's that shows frames

@@ -33,7 +33,7 @@ struct NoiseModel {
 /// @throws Error that lists the names when it is none of them.
 [[nodiscard]] NoiseModel sensor_noise(std::string_view sensor);
 
-/// For a sensor of which nothing is known: as noisy as the worse of the common ones within a
+/// For an unknown sensor: as noisy as the worse of the common ones within a
 /// metre, so that a fit smooths too much rather than too little.
 [[nodiscard]] NoiseModel unknown_sensor_noise();
 
@@ -76,7 +76,7 @@ struct FilteredDepth {
   enum class State : std::uint8_t {
     empty,   ///< nothing measured, or rejected (flying pixels)
     plain,   ///< mean of its pixels, normal from its neighbours: outside the region to be fitted
-    fitted,  ///< place and normal from the noise-sized fit
+    fitted,  ///< position and normal from the noise-sized fit
   };
 
   double stamp = 0;                                                  ///< of the frame, s

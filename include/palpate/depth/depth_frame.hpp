@@ -51,7 +51,7 @@ struct DepthFrame {
       T_world_sensor;        ///< at the stamp; unset: where the source stands
   std::vector<float> depth;  ///< along the optical axis, m, row by row; 0: nothing measured
   std::vector<std::array<std::uint8_t, 3>> colors;  ///< of the same pixels; may be empty
-  /// Points in the sensor's frame, in place of depths and camera, if the sensor delivers points.
+  /// Points in the sensor's frame, instead of depths and camera, if the sensor delivers points.
   std::shared_ptr<const PointCloud> cloud;
 };
 
@@ -60,8 +60,8 @@ struct DepthFrame {
 ///   frame.depth.resize(samples.size());
 ///   to_metres(samples, 1e-3, frame.depth);  // millimetres
 ///
-/// `unit`: metres a step. 0 and 65535 become 0: nothing was measured there, or it was too far to
-/// tell. Other values that a sensor marks such pixels with are to be made 0 before. Takes no
+/// `unit`: metres a step. 0 and 65535 become 0: nothing was measured there, or it was too far
+/// away. Other values that a sensor marks such pixels with are to be made 0 before. Takes no
 /// memory; any thread; a row at a time where rows do not follow one another in memory.
 /// @throws Error when the unit is not finite or not above 0, or the two differ in size.
 void to_metres(std::span<const std::uint16_t> samples, double unit, std::span<float> depth);
@@ -75,9 +75,10 @@ struct OrganisedFrame {
   std::string why_none;  ///< why there is no frame, in words
 };
 
-/// Finds the camera, and which way it looked, from the points themselves: a pinhole sees each in
-/// its pixel. It has to have stood at the cloud's viewpoint or origin. Points that were moved,
-/// where they are no more than a hundredth, are left out. Any thread; some 50 ms for 640 x 480.
+/// Finds the camera, and the direction that it looked in, from the points themselves: a pinhole
+/// sees each in its pixel. It has to have stood at the cloud's viewpoint or origin. Points that
+/// were moved, where they are no more than a hundredth, are left out. Any thread; some 50 ms for
+/// 640 x 480.
 [[nodiscard]] OrganisedFrame depth_frame_of(const PointCloud& cloud);
 
 }  // namespace palpate

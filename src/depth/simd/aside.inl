@@ -1,7 +1,7 @@
 #pragma once
 
-// Up to 64 blocks of one row on their way through the fits, and windows around and beside them. In
-// an anonymous namespace: see windows.inl.
+// Up to 64 blocks of one row in the fits, and windows around and beside them. In an
+// anonymous namespace: see windows.inl.
 
 #include <cmath>
 
@@ -160,15 +160,15 @@ struct Aside {
   // Score of a window there that sees a plane, over the variance of the largest one's mean.
   double promise;
 };
-constexpr int kWays = 4;                 // half or whole, along axes or diagonals
-constexpr int kAsides = kWays * kSizes;  // each of them in each size
+constexpr int kVariants = 4;                 // half or whole, along axes or diagonals
+constexpr int kAsides = kVariants * kSizes;  // each of them in each size
 
 // The most promising first.
 struct Asides {
   Aside of[kAsides];
   constexpr Asides() : of{} {
     for (int n = 0; n < kAsides; ++n) {
-      Aside aside{n / kWays, n % 4 >= 2, n % 2 == 1, 0};
+      Aside aside{n / kVariants, n % 4 >= 2, n % 2 == 1, 0};
       const double share = double(kRatios[aside.size]) * double(kRatios[aside.size]);
       const double shift = (aside.whole ? 3 : 0.75) * (aside.diagonal ? 2 : 1);
       aside.promise = (1 + shift + 0.48 / share) / share;

@@ -26,7 +26,7 @@ struct FitRow {
   std::uint8_t* reach_v;
 };
 
-constexpr int kWindowSums = 8;         // doubles at each place of a table
+constexpr int kWindowSums = 8;         // doubles at each entry of a table
 constexpr int kLargestWindow = 40;     // blocks from a window's middle to its border, at most
 constexpr double kBlock = 1 << 20;     // what each block that is no hole adds to the last sum
 constexpr double kRhoUnits = 1 << 20;  // inverse depths are counted in 2^-20 / m
@@ -49,9 +49,9 @@ struct BlockRows {
   std::ptrdiff_t stride;       // from row to row
 };
 
-// Running sums over the blocks [first_column, first_column + columns) x [first_row, ...): place
+// Running sums over the blocks [first_column, first_column + columns) x [first_row, ...): entry
 // (c, r) has the sums over the c x r blocks left and above of it, so there are columns + 1 by
-// rows + 1 places. u and v count from the table's middle.
+// rows + 1 entries. u and v count from the table's middle.
 struct WindowTable {
   double* sums;
   int first_column, first_row;
@@ -73,7 +73,7 @@ struct FitInput {
 };
 
 struct FitFunctions {
-  // Writes all places of the table.
+  // Writes all entries of the table.
   void (*table)(const WindowTable& table, const BlockRows& filled) noexcept;
   // Fits `count` blocks of one row, rising columns. `out` holds plain fits on entry; states stay.
   void (*fit)(const FitInput& input, int row, const std::int32_t* columns, int count,

@@ -79,7 +79,7 @@ inline void grow_four(const FitInput& in, int row, const int four[kLanes], Chunk
 }
 
 // Writes a fit of a block. A surface more than four deviations away from what was measured gives
-// its slopes, but not its place.
+// its slopes, but not its position.
 inline void write(const FitInput& in, const Chunk& c, int i, const Surface& s, int lane,
                   const FitRow& out) {
   const int column = c.columns[i];

@@ -212,18 +212,18 @@ void fit(const float* rho, const std::uint8_t* counts, std::ptrdiff_t stride, in
     const Floats ur = s.ur - s.u * s.r * per_n;
     const Floats vr = s.vr - s.v * s.r * per_n;
     const Floats determinant = uu * vv - uv * uv;
-    const Ints known = measured & (determinant > kOnOneLine);
-    const Floats per_determinant = keep(known, 1.0F / larger(determinant, same(kOnOneLine)));
+    const Ints determined = measured & (determinant > kOnOneLine);
+    const Floats per_determinant = keep(determined, 1.0F / larger(determinant, same(kOnOneLine)));
     const Floats variance = sigma * sigma;
     const Floats pixels = larger(number(widened(counts + column)), same(1));
-    const Floats sure = smaller(.25F * (s.n - 2.0F), same(1));
+    const Floats confidence = smaller(.25F * (s.n - 2.0F), same(1));
     store_bytes(out.states + column, measured & int{kPlain}, count);
     store(out.rho + column, own, count);
     store(out.variance + column, variance * 4.0F / pixels, count);
     store(out.slope_x + column, (vv * ur - uv * vr) * per_determinant * per_x, count);
     store(out.slope_y + column, (uu * vr - uv * ur) * per_determinant * per_y, count);
     store(out.slope_variance + column, variance * larger(uu, vv) * per_determinant * spread, count);
-    store(out.confidences + column, keep(known, sure), count);
+    store(out.confidences + column, keep(determined, confidence), count);
   }
 }
 

@@ -127,10 +127,10 @@ struct Moments {
     const std::ptrdiff_t stride = table.columns + 1;
     const bool inside = column >= half_u && row >= half_v && column + half_u < table.columns &&
                         row + half_v < table.rows;
-    const std::ptrdiff_t place = inside ? (row - half_v) * stride + (column - half_u) : 0;
+    const std::ptrdiff_t offset = inside ? (row - half_v) * stride + (column - half_u) : 0;
     const std::ptrdiff_t across = inside ? kWindowSums * (2 * half_u + 1) : 0;
     const std::ptrdiff_t down = inside ? kWindowSums * stride * (2 * half_v + 1) : 0;
-    const double* top = table.sums + kWindowSums * place;
+    const double* top = table.sums + kWindowSums * offset;
     const double* bottom = top + down;
     low[lane] = (load(bottom + across) - load(bottom)) - (load(top + across) - load(top));
     high[lane] =
