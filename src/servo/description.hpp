@@ -4,7 +4,7 @@
 #include "palpate/servo/guard.hpp"
 #include "servo/passivity.hpp"
 
-/// What is said of the options of guards.
+/// Descriptions of the options of guards.
 namespace palpate {
 
 template <EitherConst<GuardOptions::Passivity> Options>

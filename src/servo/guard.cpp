@@ -57,8 +57,8 @@ class Guard::Inside {
  private:
   /// Motion of the hand against the surface since the step before.
   struct Motion {
-    Vector3d way;       // m
-    Vector3d velocity;  // smoothed, m/s
+    Vector3d displacement;  // m
+    Vector3d velocity;      // smoothed, m/s
   };
 
   void begin(const Guard::Input& input) noexcept;
@@ -123,9 +123,9 @@ Vector3d Guard::Inside::pass(const Guard::Input& input) noexcept {
   if (!options_.on) return input.felt ? input.force : Vector3d::Zero();
   if (!started_) begin(input);
   const Motion motion = follow(input);
-  sliding_.update(before_, input, motion.way);
+  sliding_.update(before_, input, motion.displacement);
   if (input.stiffness > 0) stiffness_ = input.stiffness;
-  passivity_.account(before_.force, motion.way, held(input), input.dt);
+  passivity_.account(before_.force, motion.displacement, held(input), input.dt);
   state_.energy = passivity_.energy();
   if (input.dt > options_.silence) {
     gain_ = 0;
@@ -164,7 +164,7 @@ double Guard::Inside::held(const Guard::Input& input) const noexcept {
   return std::max(stored(input.force, input.stiffness), stored(slewed_, stiffness_));
 }
 
-// Adds the damper; never turns round the part along the normal.
+// Adds the damper; never turns round the component along the normal.
 Vector3d Guard::Inside::damp(const Guard::Input& input, const Motion& motion) const noexcept {
   if (!input.felt) return Vector3d::Zero();
   if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
@@ -196,7 +196,7 @@ double Guard::Inside::affordable_gain(const Guard::Input& input) const noexcept 
 Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
                               const Vector3d& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
-  const Vector3d brake = passivity_.brake(force, motion.way, input.dt, options_.damping);
+  const Vector3d brake = passivity_.brake(force, motion.displacement, input.dt, options_.damping);
   if (brake.isZero(0)) return force;
   note(state_, GuardNote::braked, state_.counts.braked);
   return force + brake;
@@ -206,7 +206,7 @@ Vector3d Guard::Inside::brake(const Guard::Input& input, const Motion& motion,
 // fast as the hand moves, like the spring that made it.
 bool Guard::Inside::fades_unpaid(const Guard::Input& input, const Motion& motion) const noexcept {
   return options_.passivity.on && input.normal.isZero(0) &&
-         stored(slewed_, stiffness_) > -passivity_.committed(motion.way);
+         stored(slewed_, stiffness_) > -passivity_.committed(motion.displacement);
 }
 
 // Takes the larger stiffness of two steps: where a hand leaves a surface, this step's is 0, and the

@@ -11,7 +11,7 @@ const Vector3d& Passivity::sent(int steps_ago) const noexcept {
   return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
 }
 
-// Is no force acting or on its way?
+// Is no force acting or delayed?
 bool Passivity::rests() const noexcept {
   for (int i = 0; i <= options_.delay; ++i) {
     if (!sent(i).isZero(0)) return false;
@@ -19,12 +19,12 @@ bool Passivity::rests() const noexcept {
   return true;
 }
 
-void Passivity::account(const Vector3d& force, const Vector3d& way, double stored,
+void Passivity::account(const Vector3d& force, const Vector3d& displacement, double stored,
                         double dt) noexcept {
   if (!options_.on) return;
   newest_ = (newest_ + 1) % sent_.size();
   sent_[newest_] = force;
-  energy_ += sent(options_.delay).dot(way);
+  energy_ += sent(options_.delay).dot(displacement);
   const double dissipated = -energy_ - stored;
   if (dissipated <= 0) return;
   if (stored == 0 && rests()) {
@@ -39,20 +39,20 @@ void Passivity::reset() noexcept {
   sent_.fill(Vector3d::Zero());
 }
 
-double Passivity::committed(const Vector3d& way) const noexcept {
+double Passivity::committed(const Vector3d& displacement) const noexcept {
   double energy = energy_;
-  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(way);
+  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(displacement);
   return energy;
 }
 
-Vector3d Passivity::brake(const Vector3d& force, const Vector3d& way, double dt,
+Vector3d Passivity::brake(const Vector3d& force, const Vector3d& displacement, double dt,
                           double damping) const noexcept {
-  const double square = way.squaredNorm();
+  const double square = displacement.squaredNorm();
   if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
-  const double energy = committed(way) + force.dot(way);
+  const double energy = committed(displacement) + force.dot(displacement);
   if (!(energy > 0)) return Vector3d::Zero();
-  // With v = way / dt: E / (|v|^2 dt) v = E / |way|^2 way, B v = B / dt way.
-  return -std::min(energy / square, strongest(dt, damping) / dt) * way;
+  // With the displacement d and v = d / dt: E / (|v|^2 dt) v = E / |d|^2 d, B v = B / dt d.
+  return -std::min(energy / square, strongest(dt, damping) / dt) * displacement;
 }
 
 // Strongest brake, as a damper beside another of `damping`, N s/m.

@@ -28,21 +28,22 @@ class Passivity {
   }
 
   /// `force` (N, on the hand) was sent at the step before; over the last `dt` (s) the hand moved by
-  /// `way` (m) against the surface. `stored` (J): energy in the stretched spring, which it will
-  /// give back; never forgotten. Energy taken beyond that is forgotten with the time constant
+  /// `displacement` (m) against the surface. `stored` (J): energy in the stretched spring, which it
+  /// will give back; never forgotten. Energy taken beyond that is forgotten with the time constant
   /// `forget`, and at once when no force acts any more: no contact pays for the next one.
-  void account(const Eigen::Vector3d& force, const Eigen::Vector3d& way, double stored,
+  void account(const Eigen::Vector3d& force, const Eigen::Vector3d& displacement, double stored,
                double dt) noexcept;
 
-  /// Braking force, N, to add to `force` before it is sent, if the hand keeps moving by `way` (m)
-  /// per step. Zero unless committed(), with `force`, is above zero. `damping`, N s/m: B of a
-  /// damper that is part of `force`.
-  [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force, const Eigen::Vector3d& way,
-                                      double dt, double damping = 0) const noexcept;
+  /// Braking force, N, to add to `force` before it is sent, if the hand keeps moving by
+  /// `displacement` (m) per step. Zero unless committed(), with `force`, is above zero. `damping`,
+  /// N s/m: B of a damper that is part of `force`.
+  [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force,
+                                      const Eigen::Vector3d& displacement, double dt,
+                                      double damping = 0) const noexcept;
 
   /// Predicted ledger, J, after the forces in the delay line have acted, if the hand keeps moving
-  /// by `way` (m) per step.
-  [[nodiscard]] double committed(const Eigen::Vector3d& way) const noexcept;
+  /// by `displacement` (m) per step.
+  [[nodiscard]] double committed(const Eigen::Vector3d& displacement) const noexcept;
 
   /// J; above zero: given to the hand, below: taken from it recently.
   [[nodiscard]] double energy() const noexcept { return energy_; }

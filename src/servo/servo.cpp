@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr int kButtons = 32;  // bits of DeviceState::buttons
 
-// Duration of the first step, s, for a device without a known rate: 1 kHz is usual (judgement).
+// Duration of the first step, s, for a device without a stated rate: 1 kHz is usual (judgement).
 constexpr double kFirstStep = 1e-3;
 
 ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
@@ -53,7 +53,7 @@ double first_step(const DeviceInfo& device) noexcept {
 }
 
 // A hand that is not finite makes the proxy latch a fault first: that is the one which is reported.
-Guard::Fault known_fault(const ServoState& state) noexcept {
+Guard::Fault fault_of(const ServoState& state) noexcept {
   if (state.device == DeviceState::Status::failed) return Guard::Fault::device;
   return has(state.contact.notes, ContactNote::fault) ? Guard::Fault::proxy : Guard::Fault::none;
 }
@@ -99,7 +99,7 @@ struct Servo::Inside {
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
   ServoState state;                  // of the stepping thread; the others see what was shown
   StepInput basis;                   // of its last step
-  bool heard = false;                // the device has had the hand's position
+  bool received = false;             // the device has had the hand's position
   ShownSteps shown;
   Requests requests;
 };
@@ -135,7 +135,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
   basis.device = read;
-  heard = heard || read.status != DeviceState::Status::silent;
+  received = received || read.status != DeviceState::Status::silent;
   if (options.traces != nullptr && options.traces->accepts()) options.traces->prefetch();
   apply_pending();
   place_tool(read);
@@ -162,15 +162,15 @@ void Servo::Inside::place_tool(const DeviceState& read) noexcept {
   state.device = read.status;
 }
 
-// Before the first hand there is no place where the tool could rest.
+// Before the first hand there is no position where the tool could rest.
 bool Servo::Inside::is_clutched(std::uint32_t buttons) const noexcept {
-  return state.step > 0 && heard && options.clutch_button &&
+  return state.step > 0 && received && options.clutch_button &&
          ((buttons >> *options.clutch_button) & 1u) != 0;
 }
 
 void Servo::Inside::apply_pending() noexcept {
   requests.take(state, basis);
-  if (basis.reset || !heard) {
+  if (basis.reset || !received) {
     clutch = {};
     limited.proxy.reset(hand);
     guard.reset();
@@ -197,7 +197,7 @@ Vector3d Servo::Inside::guarded() noexcept {
     input.stiffness = state.contact.stiffness;
   }
   basis.added = requests.added.add_to(input.force, state.time);
-  input.fault = known_fault(state);
+  input.fault = fault_of(state);
   return guard.pass(input);
 }
 

@@ -80,9 +80,9 @@ Durations Histogram::look() const noexcept {
 
 void RecentForces::add(const Eigen::Vector3f& force) noexcept {
   const std::uint64_t count = count_.load(std::memory_order_relaxed);
-  Place& place = forces_[count % kSteps];
+  Slot& slot = forces_[count % kSteps];
   for (std::size_t i = 0; i < 3; ++i) {
-    place[i].store(force[static_cast<Eigen::Index>(i)], std::memory_order_release);
+    slot[i].store(force[static_cast<Eigen::Index>(i)], std::memory_order_release);
   }
   count_.store(count + 1, std::memory_order_release);
 }
@@ -94,12 +94,12 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
   std::vector<Eigen::Vector3f> forces;
   forces.reserve(static_cast<std::size_t>(end - begin));
   for (std::uint64_t i = begin; i < end; ++i) {
-    const Place& place = forces_[i % kSteps];
-    forces.emplace_back(place[0].load(std::memory_order_acquire),
-                        place[1].load(std::memory_order_acquire),
-                        place[2].load(std::memory_order_acquire));
+    const Slot& slot = forces_[i % kSteps];
+    forces.emplace_back(slot[0].load(std::memory_order_acquire),
+                        slot[1].load(std::memory_order_acquire),
+                        slot[2].load(std::memory_order_acquire));
   }
-  // The step that is under way writes over the place of the one kSteps before it.
+  // The step that is under way writes over the slot of the one kSteps before it.
   const std::uint64_t now = count_.load(std::memory_order_acquire);
   const std::uint64_t whole = now >= kSteps ? now - kSteps + 1 : 0;
   const std::uint64_t lost = whole > begin ? std::min(whole, end) - begin : 0;

@@ -48,11 +48,11 @@ class RecentForces {
   [[nodiscard]] std::vector<Eigen::Vector3f> since(std::uint64_t& seen) const;
 
  private:
-  // A place is written with release and read with acquire: a reader that meets a newer force than
+  // A slot is written with release and read with acquire: a reader that meets a newer force than
   // expected also sees the newer count.
-  using Place = std::array<std::atomic<float>, 3>;
+  using Slot = std::array<std::atomic<float>, 3>;
 
-  std::array<Place, kSteps> forces_{};
+  std::array<Slot, kSteps> forces_{};
   std::atomic<std::uint64_t> count_{0};
 };
 
@@ -122,7 +122,7 @@ struct ShownSteps {
   }
 };
 
-/// What other threads ask of a servo's step, which never waits for them.
+/// What other threads request of a servo's step, which never waits for them.
 struct Requests {
   explicit Requests(const ServoOptions& options)
       : contact({options.proxy.stiffness, options.proxy.friction, options.proxy.texture}),

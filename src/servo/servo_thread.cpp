@@ -35,7 +35,7 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-RealtimeReport::Request ask_for_priority(int priority) {
+RealtimeReport::Request request_priority(int priority) {
   RealtimeReport::Request request;
   request.what = fmt::format("real-time priority {} (SCHED_FIFO)", priority);
   sched_param parameters{};
@@ -65,12 +65,12 @@ struct SchedulingAttributes {
   std::uint64_t period = 0;
 };
 
-// Asks for short time slices, so that without real-time priority the thread waits less for others.
+// Requests short time slices, so that without real-time priority the thread waits less for others.
 // Needs no rights; has no effect before Linux 6.12.
 void take_short_turns() {
   SchedulingAttributes now;
-  const bool known = syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) == 0;
-  if (!known || now.policy != SCHED_OTHER) return;
+  const bool supported = syscall(SYS_sched_getattr, 0, &now, sizeof now, 0) == 0;
+  if (!supported || now.policy != SCHED_OTHER) return;
   now.runtime = kTurn;
   syscall(SYS_sched_setattr, 0, &now, 0);
 }
@@ -82,7 +82,7 @@ bool may_lock_all() {
   return limit.rlim_cur == RLIM_INFINITY || geteuid() == 0;
 }
 
-RealtimeReport::Request ask_for_memory() {
+RealtimeReport::Request request_memory() {
   RealtimeReport::Request request;
   request.what = "memory locked (mlockall)";
   int error = EPERM;
@@ -132,7 +132,7 @@ RealtimeReport::Request answered(std::string what, int error) {
   return request;
 }
 
-RealtimeReport::Request ask_for_processor(int processor) {
+RealtimeReport::Request request_processor(int processor) {
   int error = EINVAL;
   if (is_processor(processor)) {
     cpu_set_t set;
@@ -184,9 +184,9 @@ RealtimeReport make_realtime(const RealtimeOptions& options) {
   RealtimeReport report;
   prctl(PR_SET_TIMERSLACK, kTimerSlack);
   take_short_turns();
-  if (options.processor) report.requests.push_back(ask_for_processor(*options.processor));
-  if (options.realtime_priority) report.requests.push_back(ask_for_priority(options.priority));
-  if (options.lock_memory) report.requests.push_back(ask_for_memory());
+  if (options.processor) report.requests.push_back(request_processor(*options.processor));
+  if (options.realtime_priority) report.requests.push_back(request_priority(options.priority));
+  if (options.lock_memory) report.requests.push_back(request_memory());
   warm_stack();
   return report;
 }
@@ -226,9 +226,9 @@ ServoThread::ServoThread(Servo& servo, WaitingClock& clock, const RealtimeOption
   std::promise<RealtimeReport> answered;
   std::future<RealtimeReport> answer = answered.get_future();
   try {
-    thread_ = std::jthread([this, asked = realtime,
+    thread_ = std::jthread([this, requested = realtime,
                             answered = std::move(answered)](const std::stop_token& stop) mutable {
-      answered.set_value(make_realtime(asked));
+      answered.set_value(make_realtime(requested));
       run(stop);
     });
   } catch (const std::system_error& error) {

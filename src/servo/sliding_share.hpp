@@ -28,10 +28,10 @@ class SlidingShare {
     share_ = 1;
   }
 
-  /// `before`: the step before; `way`: the hand's against the surface since then, m.
+  /// `before`: the step before; `displacement`: the hand's against the surface since then, m.
   void update(const Guard::Input& before, const Guard::Input& input,
-              const Eigen::Vector3d& way) noexcept {
-    share_ = measured(before, input, way);
+              const Eigen::Vector3d& displacement) noexcept {
+    share_ = measured(before, input, displacement);
   }
 
   /// The step is over.
@@ -41,14 +41,14 @@ class SlidingShare {
 
  private:
   [[nodiscard]] double measured(const Guard::Input& before, const Guard::Input& input,
-                                const Eigen::Vector3d& way) const noexcept {
+                                const Eigen::Vector3d& displacement) const noexcept {
     if (before.normal.isZero(0) || before.stiffness == 0 || input.stiffness == 0) return 1;
-    const Eigen::Vector3d along = tangential(way, input.normal);
+    const Eigen::Vector3d along = tangential(displacement, input.normal);
     const double square = along.squaredNorm();
     if (!(square > 0)) return share_;
-    const Eigen::Vector3d proxy_way = way + stretch(input) - stretch_;
+    const Eigen::Vector3d proxy_displacement = displacement + stretch(input) - stretch_;
     // std::max turns NaN (0 / 0 at a tiny stiffness) into 0.
-    const double share = std::min(1.0, std::max(0.0, proxy_way.dot(along) / square));
+    const double share = std::min(1.0, std::max(0.0, proxy_displacement.dot(along) / square));
     return share_ + Guard::kSmoothing * (share - share_);
   }
 

@@ -92,8 +92,8 @@ GuardOptions bare(const StiffnessTestOptions& options, const DeviceInfo& device)
 }  // namespace
 
 struct StiffnessTest::Inside {
-  Inside(const DeviceInfo& device, const StiffnessTestOptions& asked)
-      : options(for_device(asked, device)), guard(bare(options, device)) {
+  Inside(const DeviceInfo& device, const StiffnessTestOptions& requested)
+      : options(for_device(requested, device)), guard(bare(options, device)) {
     state.wall = options.softest;
     shown.set(state);
   }
@@ -150,8 +150,8 @@ void StiffnessTest::Inside::advance(const DeviceState& hand, double now, double 
     if (!rests) go_to(Phase::rest, now);
     return;
   }
-  const bool known = hand.position.allFinite() && hand.velocity.allFinite();
-  if (hand.status != DeviceState::Status::ok || !known || !std::isfinite(dt)) {
+  const bool finite = hand.position.allFinite() && hand.velocity.allFinite();
+  if (hand.status != DeviceState::Status::ok || !finite || !std::isfinite(dt)) {
     return go_to(Phase::device_lost, now);
   }
   if (hand.velocity.norm() > options.fastest) return go_to(Phase::too_fast, now);

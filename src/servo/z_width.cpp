@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTime = 2;     // s that a wall is watched (judgement)
-constexpr double kPart = 0.25;  // share of that time, at its beginning and at its end (judgement)
-constexpr double kSoftest = 1;  // N/m; lower end of the search (judgement)
+constexpr double kTime = 2;      // s that a wall is watched (judgement)
+constexpr double kShare = 0.25;  // share of that time, at its beginning and at its end (judgement)
+constexpr double kSoftest = 1;   // N/m; lower end of the search (judgement)
 constexpr double kPrecision = 1.01;  // ratio of stiffnesses at which the search ends (judgement)
 
 // A wall that fills z < 0, or a spring to z = 0.
@@ -99,8 +99,8 @@ double growth(const WallOptions& wall) {
   double last = 0;
   run(device, {wall.stiffness, true}, wall, [&](double time, const Vector3d&) {
     const double away = std::abs(device.true_position().z());
-    if (time < kPart * kTime) first = std::max(first, away);
-    if (time > (1 - kPart) * kTime) last = std::max(last, away);
+    if (time < kShare * kTime) first = std::max(first, away);
+    if (time > (1 - kShare) * kTime) last = std::max(last, away);
     return away < 1e3 * wall.stretch;
   });
   return last > 0 ? last / first : first / wall.stretch;
@@ -118,15 +118,15 @@ Impact impact(const WallOptions& wall) {
   double speed_in = wall.speed;
   int free_steps = 0;
   run(device, {wall.stiffness, false}, wall, [&](double, const Vector3d& force) {
-    const Vector3d& place = device.true_position();
+    const Vector3d& position = device.true_position();
     const double speed = device.true_velocity().z();
-    if (!inside && place.z() < 0) {
+    if (!inside && position.z() < 0) {
       inside = true;
       speed_in = -speed;
     }
-    const bool left = inside && place.z() >= 0 && force.isZero(0);
+    const bool left = inside && position.z() >= 0 && force.isZero(0);
     free_steps = left ? free_steps + 1 : 0;
-    if (free_steps <= wall.device.delay) return true;  // a force may still be on its way
+    if (free_steps <= wall.device.delay) return true;  // a force may still be delayed
     result.rebound = std::max(0.0, speed) / speed_in;
     return false;
   });

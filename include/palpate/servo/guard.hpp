@@ -15,7 +15,7 @@ enum class GuardNote : std::uint32_t {
   slewed = 1u << 0,    ///< the force changed faster than the hand explains; it follows more slowly
   clamped = 1u << 1,   ///< longer than the device's maximum; shortened to it
   silence = 1u << 2,   ///< watchdog: no step for too long; zero now, and a soft return
-  fault = 1u << 3,     ///< latched: zero until reset(); Guard::State::fault says why
+  fault = 1u << 3,     ///< latched: zero until reset(); Guard::State::fault states why
   braked = 1u << 4,    ///< the hand had been given energy; a brake takes it back
   starting = 1u << 5,  ///< a force comes up softly: after a start, a pause, a silence or a fault
   softened = 1u << 6,  ///< rendered softer than requested: the device could not hold that
@@ -56,7 +56,7 @@ struct GuardOptions {
 ///  1. Fault: what is not finite gives zero at once, and zero until reset().
 ///  2. Watchdog: after a silence the hand may be anywhere. Zero; the links below lead back softly.
 ///  3. Damper: in contact, beside the spring: -B (n (n . v) + (1 - s) v_t), v the hand's velocity
-///     against the surface, smoothed, v_t the part of it along the surface, and s the share of that
+///     against the surface, smoothed, v_t its component along the surface, and s the share of that
 ///     in which the proxy goes along: what is held is damped, what slides is hardly dragged (in a
 ///     bowl, where the proxy's path is shorter than the hand's, by that share). It never makes the
 ///     surface attract.
@@ -94,7 +94,7 @@ class Guard {
     double stiffness = 0;                                ///< K that made the force, N/m
     bool felt = true;           ///< false: the force goes to zero and starts softly again
     bool softened = false;      ///< a stiffer surface was requested
-    Fault fault = Fault::none;  ///< known already
+    Fault fault = Fault::none;  ///< found already
   };
 
   struct State {

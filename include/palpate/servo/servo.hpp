@@ -21,7 +21,7 @@ namespace palpate {
 
 struct StepTrace;
 
-/// Every step of a servo, in order, on its way to one thread that records them. Lock-free; all
+/// Every step of a servo, in order, for one thread that records them. Lock-free; all
 /// memory is taken at construction. Where the recorder falls behind by more than there is room for,
 /// steps are left out and counted: the servo never waits.
 template <class Step>
@@ -179,7 +179,7 @@ struct ContactSettings {
 /// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
 /// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.
 /// Device and scene outlive it. While the device is silent the force fades to zero at the guard's
-/// rate; it returns the same way, and contact begins with the first known position.
+/// rate; it returns at that rate, and contact begins with the first valid position.
 ///
 /// While the clutch is held the tool stays at the proxy, which a moving surface may take along. The
 /// spring is not stretched when the clutch is released, so force returns only as the hand pushes.

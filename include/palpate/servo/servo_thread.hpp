@@ -100,7 +100,8 @@ class ServoThread {
   [[nodiscard]] const RealtimeReport& realtime() const noexcept { return realtime_; }
   /// Steps a second, Hz.
   [[nodiscard]] double rate() const noexcept { return rate_; }
-  /// False once the device has finished or failed; Servo::state() and Device::reason() say which.
+  /// False once the device has finished or failed; Servo::state() and Device::reason() report
+  /// which.
   [[nodiscard]] bool running() const noexcept { return running_.load(); }
   /// Steps that were left out because the one before came too late.
   [[nodiscard]] std::uint64_t skipped() const noexcept { return skipped_.load(); }
