@@ -35,8 +35,8 @@ void check(const Eigen::Isometry3d& T_world_sensor);
 class Undistorter {
  public:
   /// The image without distortion: `depth` itself when the camera has none, else 0 where nothing
-  /// in range was measured. Valid until the next call. Computes its map when the camera is another one
-  /// than before.
+  /// in range was measured. Valid until the next call. Computes its map when the camera is another
+  /// one than before.
   const float* undistort(const CameraModel& camera, const std::vector<float>& depth,
                          const NoiseModel& noise, const DepthFilterOptions& range);
 

@@ -97,8 +97,8 @@ class Reader {
       } else if (key.str() == "source") {
         profile.source = text(key, node);
       } else {
-        const NumberKey& known = number_key(key);
-        profile.*known.member = number(known, node);
+        const NumberKey& found = number_key(key);
+        profile.*found.member = number(found, node);
       }
     }
     return profile;
@@ -113,10 +113,10 @@ class Reader {
   [[nodiscard]] const NumberKey& number_key(const toml::key& key) const {
     const auto* found = std::ranges::find(kNumbers, key.str(), &NumberKey::key);
     if (found != kNumbers.end()) return *found;
-    std::string known = "title, source";
-    for (const NumberKey& each : kNumbers) known += fmt::format(", {}", each.key);
+    std::string keys = "title, source";
+    for (const NumberKey& each : kNumbers) keys += fmt::format(", {}", each.key);
     fail(key.source(),
-         fmt::format("'{}' is not a key of a device; the keys are {}", key.str(), known));
+         fmt::format("'{}' is not a key of a device; the keys are {}", key.str(), keys));
   }
 
   [[nodiscard]] double number(const NumberKey& key, const toml::node& node) const {
@@ -159,9 +159,9 @@ const std::vector<DeviceProfile>& device_profiles() {
 DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProfile>& among) {
   const auto found = std::ranges::find(among, name, &DeviceProfile::name);
   if (found != among.end()) return *found;
-  std::string known;
-  for (const DeviceProfile& each : among) known += (known.empty() ? "" : ", ") + each.name;
-  throw Error(fmt::format("unknown device profile '{}'; the profiles are {}", name, known));
+  std::string names;
+  for (const DeviceProfile& each : among) names += (names.empty() ? "" : ", ") + each.name;
+  throw Error(fmt::format("unknown device profile '{}'; the profiles are {}", name, names));
 }
 
 }  // namespace palpate

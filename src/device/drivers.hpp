@@ -26,11 +26,11 @@ struct DeviceName {
 /// @throws Error when an option has no value or is given twice.
 [[nodiscard]] DeviceName parse_device_name(std::string_view name);
 
-/// @throws Error when `name` has options other than `known`, which the message lists.
-void check_options(const DeviceName& name, std::initializer_list<std::string_view> known);
+/// @throws Error when `name` has options other than `valid`, which the message lists.
+void check_options(const DeviceName& name, std::initializer_list<std::string_view> valid);
 
-/// The numbers of a profile for a device that is called `name`. Where the profile does not know the
-/// force, that of an unknown device is taken.
+/// The numbers of a profile for a device that is called `name`. Where the profile does not contain
+/// the force, that of an unknown device is taken.
 [[nodiscard]] DeviceInfo info_of(const DeviceProfile& profile, const std::string& name);
 
 // The drivers of hardware: what each finds, and how it opens a device. Drivers that need a library

@@ -39,7 +39,7 @@ struct Union {
   std::vector<Vector3f> normals;
   Box box;
   double radius = 0;   // of the source with most points
-  double spacing = 0;  // of the same source; 0: not known
+  double spacing = 0;  // of the same source; 0: unknown
 
   [[nodiscard]] ExploredSurface view() const {
     if (sources.size() > 1) return {origin, points, normals};
@@ -137,13 +137,13 @@ Extent extent_of(const Union& all, const ExplorationOptions& options) {
 
 // Upward where there is none.
 Vector3f normal_at(const ExploredSurface& surface, std::size_t point) {
-  const bool known = !surface.normals.empty() && !surface.normals[point].isZero();
-  return known ? surface.normals[point] : Vector3f::UnitZ();
+  const bool has_normal = !surface.normals.empty() && !surface.normals[point].isZero();
+  return has_normal ? surface.normals[point] : Vector3f::UnitZ();
 }
 
-// The place over which a hand that comes down meets the surface nearest to its middle; where
+// The point over which a hand that comes down meets the surface nearest to its middle; where
 // nothing looks up, the one that is nearest to it.
-std::size_t place_to_stand(const ExploredSurface& surface) {
+std::size_t standing_point(const ExploredSurface& surface) {
   Vector3d sum = Vector3d::Zero();
   for (const Vector3f& p : surface.points) sum += p.cast<double>();
   const Vector3f middle = (sum / static_cast<double>(surface.points.size())).cast<float>();
@@ -157,9 +157,9 @@ std::size_t place_to_stand(const ExploredSurface& surface) {
   Nearest across;
   Nearest any;
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
-    const Vector3f way = surface.points[i] - middle;
-    any.take(i, way.squaredNorm());
-    if (normal_at(surface, i).z() >= kUpward) across.take(i, way.head<2>().squaredNorm());
+    const Vector3f offset = surface.points[i] - middle;
+    any.take(i, offset.squaredNorm());
+    if (normal_at(surface, i).z() >= kUpward) across.take(i, offset.head<2>().squaredNorm());
   }
   return std::isfinite(across.distance) ? across.point : any.point;
 }
@@ -203,14 +203,14 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   strokes.progress = options.progress;
   plan.target = explore(all.view(), strokes, &plan.presses);
 
-  Box way;
-  for (const TrajectoryRow& row : plan.target) way.extend(row.position);
-  plan.workspace.T_world_device.translation() = way.center();
+  Box path;
+  for (const TrajectoryRow& row : plan.target) path.extend(row.position);
+  plan.workspace.T_world_device.translation() = path.center();
   for (TrajectoryRow& row : plan.target) {
     row.position = plan.workspace.position_to_device(row.position);
   }
-  // Held, a hand stays behind its target by this share of the target's depth; half of it tells a
-  // hand that is held from one that is not.
+  // Held, a hand stays behind its target by this share of the target's depth; half of it
+  // distinguishes a hand that is held from one that is not.
   const double held = felt / (felt + options.hand.stiffness);
   for (Press& press : plan.presses) press.pull *= 0.5 * held / scale;
   return plan;
@@ -222,7 +222,7 @@ Placement place_device(const Scene& scene, const FieldOptions& field,
   const Union all = unite(scene);
   const ExploredSurface surface = all.view();
   const Extent extent = extent_of(all, options);
-  const std::size_t point = place_to_stand(surface);
+  const std::size_t point = standing_point(surface);
   const double height = offset(field, all, options.tool_radius) + kStandoff * extent.scale;
   Placement placement;
   placement.region = extent.region;

@@ -27,12 +27,12 @@ constexpr double kDwell = 0.1;    // s at rest before and after a stroke (judgem
 constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down (judgement)
 // Share of the extent: a start so far from all touched positions is far enough (judgement)
 constexpr double kFresh = 0.3;
-constexpr double kNear = 0.3;    // weight of the way there against that distance (judgement)
+constexpr double kNear = 0.3;    // weight of the path there against that distance (judgement)
 constexpr int kCandidates = 24;  // start positions compared for a stroke (judgement)
-constexpr int kTries = 8;        // strokes tried until a free way leads to one (judgement)
+constexpr int kTries = 8;        // strokes tried until a free path leads to one (judgement)
 constexpr int kDirections = 4;   // directions tried from a start (judgement)
 
-// Share of a move's way that is done after share u of its time: speed rises and falls as a cosine.
+// Share of a move's path that is done after share u of its time: speed rises and falls as a cosine.
 double progress(double u) {
   const auto ramp = [](double v) {
     return 0.5 * (v - kRamp / std::numbers::pi * std::sin(std::numbers::pi * v / kRamp));
@@ -51,15 +51,15 @@ class Player {
   [[nodiscard]] bool over() const { return time() > options_.duration; }
   [[nodiscard]] double share() const { return std::min(1.0, time() / options_.duration); }
 
-  void dwell(const Vector3d& place, double seconds) {
+  void dwell(const Vector3d& position, double seconds) {
     const double end = time() + seconds;
-    while (time() < end && !over()) add(place);
+    while (time() < end && !over()) add(position);
   }
 
-  void move(const std::vector<Vector3d>& way, double speed) {
+  void move(const std::vector<Vector3d>& path, double speed) {
     std::vector<double> lengths(1, 0.0);
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      lengths.push_back(lengths.back() + (way[i] - way[i - 1]).norm());
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      lengths.push_back(lengths.back() + (path[i] - path[i - 1]).norm());
     }
     if (lengths.back() <= 0) return;
     const double seconds = lengths.back() / (speed * (1 - kRamp));
@@ -67,10 +67,10 @@ class Player {
     std::size_t k = 1;
     while (time() < start + seconds && !over()) {
       const double done = progress((time() - start) / seconds) * lengths.back();
-      while (k + 1 < way.size() && lengths[k] < done) ++k;
+      while (k + 1 < path.size() && lengths[k] < done) ++k;
       const double length = lengths[k] - lengths[k - 1];
       const double part = length > 0 ? std::clamp((done - lengths[k - 1]) / length, 0.0, 1.0) : 1.0;
-      add(way[k - 1] + part * (way[k] - way[k - 1]));
+      add(path[k - 1] + part * (path[k] - path[k - 1]));
     }
   }
 
@@ -78,7 +78,7 @@ class Player {
   Trajectory take() { return std::move(rows_); }
 
  private:
-  void add(const Vector3d& place) { rows_.push_back({time(), origin_ + place}); }
+  void add(const Vector3d& position) { rows_.push_back({time(), origin_ + position}); }
 
   Vector3d origin_;
   StrokeOptions options_;
@@ -100,13 +100,13 @@ class Explorer {
       if (options_.progress) options_.progress(player_.share());
       presses.push_back(touch(stroke));
       const MapSample last = stroke.back();
-      Route way;
-      for (int i = 0; i < kTries && !way.clear; ++i) {
+      Route path;
+      for (int i = 0; i < kTries && !path.clear; ++i) {
         stroke = next_stroke(next_start(last.position));
-        way = route(last, stroke.front());
+        path = route(last, stroke.front());
       }
-      if (way.clear) {
-        player_.move(way.places, options_.travel_speed);
+      if (path.clear) {
+        player_.move(path.positions, options_.travel_speed);
       } else {
         stroke = next_stroke(last);  // walled in: go on from here
       }
@@ -116,7 +116,7 @@ class Explorer {
 
  private:
   struct Route {
-    std::vector<Vector3d> places;
+    std::vector<Vector3d> positions;
     bool clear = false;
   };
 
@@ -147,15 +147,15 @@ class Explorer {
     player_.move({above(stroke.front()), under(stroke.front(), depth)}, options_.slide_speed);
     player_.dwell(under(stroke.front(), depth), kDwell);
     Press press{player_.time()};
-    std::vector<Vector3d> way;
+    std::vector<Vector3d> path;
     for (std::size_t i = 0; i < stroke.size(); ++i) {
       const double phase = static_cast<double>(i) * kStep / 6 * std::numbers::pi;
-      way.push_back(under(stroke[i], depth * (0.75 + 0.25 * std::cos(phase))));
+      path.push_back(under(stroke[i], depth * (0.75 + 0.25 * std::cos(phase))));
     }
-    player_.move(way, options_.slide_speed);
+    player_.move(path, options_.slide_speed);
     press.end = player_.time();
-    player_.dwell(way.back(), kDwell / 2);
-    player_.move({way.back(), above(stroke.back())}, options_.slide_speed);
+    player_.dwell(path.back(), kDwell / 2);
+    player_.move({path.back(), above(stroke.back())}, options_.slide_speed);
     press.resume = player_.time();
     press.pull = 0.5 * depth;  // where the stroke is shallowest
     return press;
@@ -175,14 +175,14 @@ class Explorer {
   }
 
   // The higher, the better a stroke begins there; some value up to `enough` where it is no more.
-  [[nodiscard]] double score_of(const Vector3d& place, const Vector3d& here, double enough) const {
-    const double way = kNear * (place - here).norm();
+  [[nodiscard]] double score_of(const Vector3d& start, const Vector3d& here, double enough) const {
+    const double cost = kNear * (start - here).norm();
     double fresh = kFresh * map_.extent();
     for (const Vector3d& p : touched_) {
-      fresh = std::min(fresh, (p - place).norm());
-      if (fresh - way <= enough) break;
+      fresh = std::min(fresh, (p - start).norm());
+      if (fresh - cost <= enough) break;
     }
-    return fresh - way;
+    return fresh - cost;
   }
 
   // Draws random positions and picks one far from everything touched before but near `here`.
@@ -207,28 +207,28 @@ class Explorer {
     return {map_.point(0), Vector3d::UnitZ()};
   }
 
-  // Along the surface until its points end or the stroke is long enough, and back to a place where
-  // the hand can leave.
+  // Along the surface until its points end or the stroke is long enough, and back to a position
+  // where the hand can leave.
   [[nodiscard]] std::vector<MapSample> follow(const MapSample& start, Vector3d direction) const {
     const double step = kStep * options_.radius;
     const double longest = std::min(kStroke * map_.extent(), kLongest * options_.slide_speed);
-    std::vector<MapSample> way(1, start);
+    std::vector<MapSample> path(1, start);
     for (double length = 0; length < longest; length += step) {
-      MapSample next = map_.at(way.back().position + step * direction);
+      MapSample next = map_.at(path.back().position + step * direction);
       if (next.normal.isZero() || !map_.inside(next.position)) break;
-      if (next.normal.dot(way.back().normal) < 0.2) break;
-      if ((next.position - way.back().position).norm() > 4 * step) break;
-      way.push_back(next);
+      if (next.normal.dot(path.back().normal) < 0.2) break;
+      if ((next.position - path.back().position).norm() > 4 * step) break;
+      path.push_back(next);
       direction -= direction.dot(next.normal) * next.normal;
       if (direction.norm() < 1e-3) break;
       direction.normalize();
     }
-    while (way.size() > 1 && !open(way.back())) way.pop_back();
-    return way;
+    while (path.size() > 1 && !open(path.back())) path.pop_back();
+    return path;
   }
 
-  // Through free space from over one place to over another: the flattest arc that touches nothing
-  // and passes over what stands between or, where a roof is over everything, under it.
+  // Through free space from over one position to over another: the flattest arc that touches
+  // nothing and passes over what stands between or, where a roof is over everything, under it.
   [[nodiscard]] Route route(const MapSample& from, const MapSample& to) const {
     const Vector3d a = above(from);
     const Vector3d b = above(to);
@@ -238,10 +238,10 @@ class Explorer {
     up.normalize();
     Route best;
     for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0}) {
-      Route way = arc(a, b, lift * std::max((b - a).norm(), 4 * clearance()) * up);
-      if (!way.clear) continue;
-      const bool over = std::ranges::all_of(way.places, [&](auto& p) { return open({p, up}); });
-      if (over || !best.clear) best = std::move(way);
+      Route path = arc(a, b, lift * std::max((b - a).norm(), 4 * clearance()) * up);
+      if (!path.clear) continue;
+      const bool over = std::ranges::all_of(path.positions, [&](auto& p) { return open({p, up}); });
+      if (over || !best.clear) best = std::move(path);
       if (over) break;
     }
     return best;
@@ -252,20 +252,20 @@ class Explorer {
     const double length = (b - a).norm() + 1.5 * rise.norm();
     const double piece = 0.5 * kClearance * options_.radius;
     const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
-    Route way;
+    Route path;
     Vector3d seen = a;
     double room = 0;  // free around it
     for (int i = 0; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces;
-      const Vector3d place = a + u * u * (3 - 2 * u) * (b - a) + 3 * u * (1 - u) * rise;
-      way.places.push_back(place);
-      if ((place - seen).norm() < room) continue;
-      seen = place;
-      room = map_.distance(place) - piece;
-      if (room <= 0) return way;
+      const Vector3d position = a + u * u * (3 - 2 * u) * (b - a) + 3 * u * (1 - u) * rise;
+      path.positions.push_back(position);
+      if ((position - seen).norm() < room) continue;
+      seen = position;
+      room = map_.distance(position) - piece;
+      if (room <= 0) return path;
     }
-    way.clear = true;
-    return way;
+    path.clear = true;
+    return path;
   }
 
   StrokeOptions options_;

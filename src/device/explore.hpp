@@ -74,12 +74,12 @@ struct StrokeOptions {
   double region = 0.3;         ///< largest extent of the region that is explored, m; > 0
   double slide_speed = 0.1;    ///< m/s
   double travel_speed = 0.25;  ///< m/s, through free space
-  std::uint64_t seed = 1;      ///< of the random choice of places and directions
+  std::uint64_t seed = 1;      ///< of the random choice of positions and directions
   std::function<void(double)> progress = {};  ///< called with the share done, 0 to 1
 };
 
 /// The target of a hand that explores a surface: it comes down along a normal, presses, slides,
-/// lifts off, moves to another place through free space (above all obstacles, if there is such a
+/// lifts off, moves to another position through free space (above all obstacles, if there is such a
 /// path), and so on until the time is over. Strokes begin where nothing was touched yet and follow
 /// the points until they end or the stroke is long enough. Moves begin and end at rest. Clouds
 /// larger than `region` are explored around their median point. Same input, same trajectory; no

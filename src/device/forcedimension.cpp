@@ -37,7 +37,7 @@ constexpr int kOffByWatchdog = 3;
 struct ForceDimensionLibrary {
   static constexpr const char* kName = "libdhd.so.3";
 
-  // Throws Error that says what is missing.
+  // Throws Error that states what is missing.
   explicit ForceDimensionLibrary(const std::string& file = kName)
       : library({file},
                 "It is part of Force Dimension's SDK 3 for Linux (forcedimension.com): copy it to "
@@ -93,8 +93,8 @@ int number_of(const std::string& text) {
 // The kind in a device's name, such as "omega.7" or "Falcon".
 std::string profile_of(std::string title) {
   std::ranges::transform(title, title.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const char* known : {"omega", "delta", "sigma", "lambda", "falcon"}) {
-    if (title.find(known) != std::string::npos) return known;
+  for (const char* each : {"omega", "delta", "sigma", "lambda", "falcon"}) {
+    if (title.find(each) != std::string::npos) return each;
   }
   return "unknown";
 }
@@ -108,8 +108,8 @@ class ForceDimensionDriver final : public DeviceDriver {
     const int number = number_of(name.device);
     info_.name = fmt::format("forcedimension:{}", number);
     open(number);
-    const char* told = library_.title(id_);
-    const std::string title = told == nullptr ? "" : told;
+    const char* reported = library_.title(id_);
+    const std::string title = reported == nullptr ? "" : reported;
     try {
       info_ = info_of(device_profile(name.option("profile", profile_of(title))),
                       fmt::format("{} ({})", info_.name, title.empty() ? "no name" : title));
@@ -207,12 +207,12 @@ class ForceDimensionDriver final : public DeviceDriver {
 
   // The maker estimates velocities over a window, which has to be filled first.
   [[nodiscard]] Vector3d velocity() {
-    Vector3d told = Vector3d::Zero();
-    const int result = library_.velocity(&told.x(), &told.y(), &told.z(), id_);
+    Vector3d reported = Vector3d::Zero();
+    const int result = library_.velocity(&reported.x(), &reported.y(), &reported.z(), id_);
     if (result < 0 && !has_velocity_) return Vector3d::Zero();
     check(result, "does not report its velocity");
     has_velocity_ = true;
-    return from_maker(told);
+    return from_maker(reported);
   }
 
   // Tool and base are rotated alike: straight stays straight.

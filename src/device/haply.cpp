@@ -52,7 +52,7 @@ std::vector<HaplyDevice> greet(TextSocket& socket) {
   return devices;
 }
 
-// Drops frames that are still on their way: they would be mistaken for answers to later commands.
+// Drops frames that are still in transit: they would be mistaken for answers to later commands.
 void let_pass(TextSocket& socket) {
   std::uint64_t seen = socket.received();
   for (int i = 0; i < kFirstFrames && socket.wait(seen, kQuiet); ++i) seen = socket.received();
@@ -75,7 +75,7 @@ class HaplyDriver final : public DeviceDriver {
  public:
   explicit HaplyDriver(const DeviceName& name)
       : id_(name.device), socket_(connect(name.option("url", kService))) {
-    const std::vector<HaplyDevice> devices = ask([this] { return greet(socket_); });
+    const std::vector<HaplyDevice> devices = query([this] { return greet(socket_); });
     const std::optional<HaplyDevice> found = find(devices, id_);
     if (!found) {
       fail(fmt::format("no such Inverse3 (connected: {}). {}", ids_of(devices), kCheck));
@@ -84,7 +84,7 @@ class HaplyDriver final : public DeviceDriver {
     check(*found);
     info_ = info_of(device_profile(name.option("profile", kProfile)), fmt::format("haply:{}", id_));
     info_.has_orientation = found->gripped;
-    ask([this] { configure(); });
+    query([this] { configure(); });
   }
   ~HaplyDriver() override {
     try {
@@ -96,7 +96,7 @@ class HaplyDriver final : public DeviceDriver {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
 
   [[nodiscard]] DeviceState exchange(const Vector3d& force) override {
-    const std::optional<HaplyDevice> device = ask([&] { return find(answer_to(force), id_); });
+    const std::optional<HaplyDevice> device = query([&] { return find(answer_to(force), id_); });
     if (!device) fail(fmt::format("it was disconnected. {}", kCheck));
     check(*device);
     if (!device->reading)
@@ -115,9 +115,9 @@ class HaplyDriver final : public DeviceDriver {
     if (!device.powered.value_or(true)) fail("it has no power. Plug in its power supply");
   }
 
-  // Runs `question`; an Error then says that the service is at fault.
+  // Runs `question`; an Error then states that the service is at fault.
   template <class Question>
-  auto ask(Question question) const -> decltype(question()) {
+  auto query(Question question) const -> decltype(question()) {
     try {
       return question();
     } catch (const Error& error) {

@@ -51,9 +51,9 @@ std::optional<Eigen::Quaterniond> rotation(const Json& value) {
   const std::optional<double> w = number(child(value, "w"), 2);
   const std::optional<Vector3d> xyz = vector(value, 2);
   if (!w || !xyz) return std::nullopt;
-  const Eigen::Quaterniond told(*w, xyz->x(), xyz->y(), xyz->z());
-  if (std::abs(told.norm() - 1) > kLength) return std::nullopt;
-  return told.normalized();
+  const Eigen::Quaterniond read(*w, xyz->x(), xyz->y(), xyz->z());
+  if (std::abs(read.norm() - 1) > kLength) return std::nullopt;
+  return read.normalized();
 }
 
 void add_buttons(const Json& state, std::uint32_t& buttons) {
@@ -79,10 +79,10 @@ Grip grip_of(const Json& frame) {
   return grip;
 }
 
-HaplyDevice device_of(const Json& told, std::string id, const Grip& grip) {
+HaplyDevice device_of(const Json& report, std::string id, const Grip& grip) {
   HaplyDevice device;
   device.id = std::move(id);
-  const Json& state = child(told, "state");
+  const Json& state = child(report, "state");
   const std::optional<Vector3d> position = vector(child(state, "cursor_position"), kFarthestHaply);
   const std::optional<Vector3d> velocity = vector(child(state, "cursor_velocity"), kFastestHaply);
   if (position && velocity) {
@@ -93,13 +93,13 @@ HaplyDevice device_of(const Json& told, std::string id, const Grip& grip) {
                     .orientation = grip.orientation.value_or(Eigen::Quaterniond::Identity())};
   }
   device.gripped = grip.orientation.has_value();
-  device.calibrated = truth(child(child(told, "status"), "calibrated"));
-  device.powered = truth(child(child(told, "status"), "power_supply"));
+  device.calibrated = truth(child(child(report, "status"), "calibrated"));
+  device.powered = truth(child(child(report, "status"), "power_supply"));
   return device;
 }
 
-std::string to_device(std::string_view id, const char* what, const Json& told) {
-  const Json device = {{"device_id", id}, {what, told}};
+std::string to_device(std::string_view id, const char* what, const Json& value) {
+  const Json device = {{"device_id", id}, {what, value}};
   return Json{{"inverse3", Json::array({device})}}.dump();
 }
 
@@ -109,10 +109,10 @@ std::vector<HaplyDevice> parse_haply_frame(std::string_view text) {
   const Json frame = Json::parse(text, nullptr, false);
   if (!frame.is_object()) throw Error("the message is not a frame of Haply's Inverse Service");
   std::vector<HaplyDevice> devices;
-  const Json& told = child(frame, "inverse3");
-  if (!told.is_array()) return devices;
+  const Json& reports = child(frame, "inverse3");
+  if (!reports.is_array()) return devices;
   const Grip grip = grip_of(frame);
-  for (const Json& each : told) {
+  for (const Json& each : reports) {
     const Json& id = child(each, "device_id");
     if (id.is_string()) devices.push_back(device_of(each, id.get<std::string>(), grip));
   }

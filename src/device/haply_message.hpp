@@ -29,7 +29,7 @@ inline constexpr double kFastestHaply = 100;
 /// @throws Error when it is not a frame at all.
 [[nodiscard]] std::vector<HaplyDevice> parse_haply_frame(std::string_view text);
 
-/// Asks for a frame with everything in it.
+/// Requests a frame with everything in it.
 [[nodiscard]] std::string haply_greeting();
 
 /// Moves the origin of a device's positions from its base to the middle of its reach (the service's

@@ -48,11 +48,11 @@ DeviceName parse_device_name(std::string_view text) {
   return name;
 }
 
-void check_options(const DeviceName& name, std::initializer_list<std::string_view> known) {
+void check_options(const DeviceName& name, std::initializer_list<std::string_view> valid) {
   for (const auto& [key, value] : name.options) {
-    if (std::ranges::find(known, key) != known.end()) continue;
+    if (std::ranges::find(valid, key) != valid.end()) continue;
     throw Error(fmt::format("device {}: unknown option '{}'; the options are {}", name.driver, key,
-                            fmt::join(known, ", ")));
+                            fmt::join(valid, ", ")));
   }
 }
 

@@ -42,8 +42,8 @@ constexpr std::array kTouchModels = {
 
 std::string touch_profile_of(std::string model) {
   std::ranges::transform(model, model.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const TouchModel& known : kTouchModels) {
-    if (model.find(known.word) != std::string::npos) return known.profile;
+  for (const TouchModel& each : kTouchModels) {
+    if (model.find(each.word) != std::string::npos) return each.profile;
   }
   return "unknown";
 }
@@ -65,8 +65,8 @@ DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
   return info;
 }
 
-std::string touch_failure(unsigned code, const std::string& told) {
-  const std::string off = ", so it disabled its forces (" + told + ")";
+std::string touch_failure(unsigned code, const std::string& report) {
+  const std::string off = ", so it disabled its forces (" + report + ")";
   switch (code) {
     case hd::kWarmMotors:
       return "its motors are too hot" + off + ". It will be reopened once they have cooled down";
@@ -77,14 +77,14 @@ std::string touch_failure(unsigned code, const std::string& told) {
     case hd::kForceError:
       return "was sent too large a force" + off + ". It will be reopened";
     case hd::kTimer:
-      return "received no frame in time (" + told +
+      return "received no frame in time (" + report +
              "). Close programs that keep the computer busy; the device will be reopened";
     case hd::kDeviceFault:
     case hd::kCommunication:
     case hd::kConfiguration:
-      return "does not answer (" + told + "). Check its cable and power";
+      return "does not answer (" + report + "). Check its cable and power";
     default:
-      return "fails (" + told + "). Check its cable and power";
+      return "fails (" + report + "). Check its cable and power";
   }
 }
 
@@ -108,7 +108,7 @@ OpenHapticsDriver::OpenHapticsDriver(const DeviceName& name, const Clock& clock)
 }
 
 DeviceState OpenHapticsDriver::exchange(const Vector3d& force) {
-  ask(force);
+  request(force);
   return answer();
 }
 
@@ -123,7 +123,7 @@ void OpenHapticsDriver::prepare() {
   if (styles != 0 && now.calibration == hd::kNeedsUpdate) session_.frames().calibrate(styles);
   for (int i = 0; i < kCalibrationFrames && styles != 0 && now.calibration != hd::kCalibrated;
        ++i) {
-    ask(Vector3d::Zero());
+    request(Vector3d::Zero());
     now = checked_answer();
   }
   if (now.calibration != hd::kCalibrated) fail(kNotCalibrated);

@@ -21,7 +21,7 @@ std::vector<std::string> names_of(const std::string& file) {
   return {"libHD.so.3.4", "libHD.so.3", "libHD.so"};
 }
 
-double known_or_zero(double number) {
+double positive_or_zero(double number) {
   return std::isfinite(number) && number > 0 ? number : 0;
 }
 
@@ -48,14 +48,14 @@ OpenHapticsFacts OpenHapticsLibrary::read_facts() const {
   get_numbers(hd::kContinuousForce, &facts.continuous_force);
   get_numbers(hd::kMaximumStiffness, &facts.maximum_stiffness);
   get_integers(hd::kCalibrationStyle, &facts.calibration_styles);
-  facts.continuous_force = known_or_zero(facts.continuous_force);
-  facts.maximum_stiffness = known_or_zero(facts.maximum_stiffness / kLengthUnit);
+  facts.continuous_force = positive_or_zero(facts.continuous_force);
+  facts.maximum_stiffness = positive_or_zero(facts.maximum_stiffness / kLengthUnit);
   return facts;
 }
 
 std::string OpenHapticsLibrary::describe(unsigned code) const {
-  const char* told = error_name(code);
-  return fmt::format("{}, 0x{:04x}", told == nullptr || *told == '\0' ? "no reason given" : told,
+  const char* name = error_name(code);
+  return fmt::format("{}, 0x{:04x}", name == nullptr || *name == '\0' ? "no reason given" : name,
                      code);
 }
 
@@ -74,20 +74,20 @@ void OpenHapticsErrors::close(OpenHapticsLibrary::Device device) noexcept {
 }
 
 unsigned OpenHapticsErrors::take(const OpenHapticsLibrary& library,
-                                 OpenHapticsLibrary::Device asker) noexcept {
+                                 OpenHapticsLibrary::Device caller) noexcept {
   for (int i = 0; i < OpenHapticsLibrary::kMostErrors; ++i) {
     const OpenHapticsLibrary::Failure failure = library.get_error();
     if (failure.code == hd::kSuccess) break;
-    keep(failure, asker);
+    keep(failure, caller);
   }
-  Entry* own = find(asker);
+  Entry* own = find(caller);
   return own == nullptr ? hd::kSuccess : own->code.exchange(hd::kSuccess);
 }
 
 void OpenHapticsErrors::keep(const OpenHapticsLibrary::Failure& failure,
-                             OpenHapticsLibrary::Device asker) noexcept {
+                             OpenHapticsLibrary::Device caller) noexcept {
   Entry* entry = find(failure.device);
-  if (entry == nullptr) entry = find(asker);
+  if (entry == nullptr) entry = find(caller);
   if (entry == nullptr || !entry->is_open) return;
   unsigned none = hd::kSuccess;
   entry->code.compare_exchange_strong(none, failure.code);

@@ -81,7 +81,7 @@ struct OpenHapticsLibrary {
   };
 
   /// `file`: a path, or empty for the first of its usual names that loads.
-  /// @throws Error that says what is missing.
+  /// @throws Error that states what is missing.
   explicit OpenHapticsLibrary(const std::string& file = "");
 
   /// The code of the newest error, of whatever device, or hd::kSuccess; clears the list. Bounded
@@ -120,7 +120,7 @@ struct OpenHapticsLibrary {
 };
 
 /// Sorts the library's one list of errors by device, so that each device fails for its own errors
-/// alone. An error that names a device that was never open counts for the one that asks; one of a
+/// alone. An error that names a device that was never open counts for the one that calls; one of a
 /// closed device is dropped. For each device the first error is kept until it is taken. Any thread;
 /// lock-free, bounded work.
 class OpenHapticsErrors {
@@ -132,9 +132,9 @@ class OpenHapticsErrors {
   bool open(OpenHapticsLibrary::Device device) noexcept;
   void close(OpenHapticsLibrary::Device device) noexcept;
 
-  /// Sorts what the library has listed, and takes the error kept for `asker`: a code, or
+  /// Sorts what the library has listed, and takes the error kept for `caller`: a code, or
   /// hd::kSuccess.
-  unsigned take(const OpenHapticsLibrary& library, OpenHapticsLibrary::Device asker) noexcept;
+  unsigned take(const OpenHapticsLibrary& library, OpenHapticsLibrary::Device caller) noexcept;
 
  private:
   struct Entry {
@@ -145,7 +145,7 @@ class OpenHapticsErrors {
 
   Entry* find(OpenHapticsLibrary::Device device) noexcept;
   Entry* find_free() noexcept;
-  void keep(const OpenHapticsLibrary::Failure& failure, OpenHapticsLibrary::Device asker) noexcept;
+  void keep(const OpenHapticsLibrary::Failure& failure, OpenHapticsLibrary::Device caller) noexcept;
 
   std::array<Entry, kDevices> entries_;
 };

@@ -35,10 +35,10 @@ steady_clock::duration seconds(double duration) {
       std::chrono::duration<double>(duration));
 }
 
-// Picks a style that the device knows; never the reset of encoders, which takes the present pose
+// Picks a style that the device supports; never the reset of encoders, which takes the present pose
 // for the one that it should be in.
-unsigned calibration_style(int known) {
-  return (known & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
+unsigned calibration_style(int supported) {
+  return (supported & hd::kAutomatic) != 0 ? hd::kAutomatic : hd::kInkwell;
 }
 
 const char* touch_opening_remedy(unsigned code) {
@@ -58,7 +58,7 @@ struct Shared {
 
   std::mutex mutex;
   std::vector<Running> running;
-  decltype(OpenHapticsLibrary::init_device) init_device = nullptr;  // says whose scheduler runs
+  decltype(OpenHapticsLibrary::init_device) init_device = nullptr;  // whose scheduler runs
   std::map<std::string, double> tried;                              // when each was opened last, s
   OpenHapticsErrors errors;
 };
@@ -92,7 +92,7 @@ class Rest {
     return std::ranges::all_of(shared_.running,
                                [](const auto& each) { return each.frames->is_at_rest(); });
   }
-  // Waits for a tick that is under way.
+  // Waits for a tick that is in progress.
   void stop_scheduler() {
     is_stopped_ = true;
     if (shared_.running.empty()) return;
@@ -139,19 +139,19 @@ DeviceState OpenHapticsHand::read() const noexcept {
 double OpenHapticsHand::warmest_motor() const noexcept {
   std::array<double, 6> temperatures{};  // of three motors or six
   library.get_numbers(hd::kMotorTemperature, temperatures.data());
-  (void)take_error();  // older libraries do not know it
+  (void)take_error();  // older libraries do not support it
   return std::ranges::max(temperatures);
 }
 
-void OpenHapticsFrames::ask(const Vector3d& force) noexcept {
-  wanted_.set({force, clock_.now(), ++asked_});
+void OpenHapticsFrames::request(const Vector3d& force) noexcept {
+  wanted_.set({force, clock_.now(), ++requested_});
 }
 
 std::optional<OpenHapticsFrames::Answer> OpenHapticsFrames::answer(double patience) noexcept {
   TimePoint end = steady_clock::now() + seconds(patience);
   while (true) {
     const Answer newest = answers_.get();
-    if (newest.number == asked_) return newest;
+    if (newest.number == requested_) return newest;
     const TimePoint now = steady_clock::now();
     // Time at rest does not count.
     end = std::max(end, std::min(now, runs_since_.load()) + seconds(patience));
@@ -202,10 +202,10 @@ void OpenHapticsFrames::frame_without_force() noexcept {
 
 Vector3d OpenHapticsFrames::permitted(const DeviceState& state) const noexcept {
   const bool recent = clock_.now() - taken_.time <= kForceTimeout;
-  const bool known = state.position.allFinite() && state.velocity.allFinite();
+  const bool finite = state.position.allFinite() && state.velocity.allFinite();
   const bool calibrated = newest_.calibration != hd::kNeedsHand;
   const bool good = newest_.failure == hd::kSuccess && calibrated;
-  return recent && known && good ? taken_.force : Vector3d::Zero();
+  return recent && finite && good ? taken_.force : Vector3d::Zero();
 }
 
 void OpenHapticsFrames::keep_failure() noexcept {
@@ -229,7 +229,7 @@ OpenHapticsSession::OpenHapticsSession(const OpenHapticsLibrary& library,
   rest.stop_scheduler();
   open(configuration);
   facts_ = library_.read_facts();
-  (void)shared.errors.take(library_, device_);  // of what it does not know
+  (void)shared.errors.take(library_, device_);  // of what it does not support
   library_.enable(hd::kForceOutput);            // the first frame finds an error
   frames_ = std::make_unique<OpenHapticsFrames>(library_, device_, clock, shared.errors);
   shared.running.push_back({frames_.get()});

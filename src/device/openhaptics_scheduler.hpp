@@ -60,20 +60,20 @@ struct OpenHapticsHand {
 };
 
 /// Frames of one device: the scheduler calls tick() at 1 kHz on its own thread; each call reads
-/// the hand's position and applies the force that was asked for last.
+/// the hand's position and applies the force that was requested last.
 ///
 /// A tick does constant work; it takes no lock and no memory and waits for nothing but the device.
 /// It keeps errors as numbers, for others to put into words. There is no force from the first error
-/// on, none where the position is not finite, and none that was asked for longer than kForceTimeout
+/// on, none where the position is not finite, and none that was requested longer than kForceTimeout
 /// ago.
 class OpenHapticsFrames {
  public:
   static constexpr double kForceTimeout = 5e-3;  ///< s
 
-  /// The result of the frame that took what was asked for last.
+  /// The result of the frame that took the last request.
   struct Answer {
     DeviceState state;                  // without status and time
-    std::uint64_t number = 0;           // of what was asked
+    std::uint64_t number = 0;           // of the request
     unsigned failure = 0;               // the first error's code
     unsigned calibration = 0;           // hd::kCalibrated and the like
     std::optional<double> temperature;  // of the warmest motor at first; 1: as warm as allowed
@@ -85,12 +85,12 @@ class OpenHapticsFrames {
       : hand_{library, device, errors}, clock_(clock) {}
 
   // For one other thread.
-  /// Asks for a force, N, as the operator sits.
-  void ask(const Eigen::Vector3d& force) noexcept;
-  /// Waits for the frame that takes what was asked last, no longer than `patience` (s) while the
+  /// Requests a force, N, as the operator sits.
+  void request(const Eigen::Vector3d& force) noexcept;
+  /// Waits for the frame that takes the last request, no longer than `patience` (s) while the
   /// device is not at rest.
   [[nodiscard]] std::optional<Answer> answer(double patience) noexcept;
-  /// The next frame calibrates the device again, in one of the styles that it knows.
+  /// The next frame calibrates the device again, in one of the styles that it supports.
   void calibrate(int styles) noexcept { calibrate_ = styles; }
 
   // For the thread that stops the scheduler.
@@ -128,7 +128,7 @@ class OpenHapticsFrames {
   Wanted taken_;
   Answer newest_;
 
-  std::uint64_t asked_ = 0;  // of the other thread
+  std::uint64_t requested_ = 0;  // of the other thread
 
   // Between them.
   Latest<Wanted> wanted_;
@@ -152,7 +152,7 @@ class OpenHapticsSession {
   static constexpr double kInterval = 10;
 
   /// `configuration`: the device's name in the maker's set-up. `clock` outlives this.
-  /// @throws Error that says why it does not open.
+  /// @throws Error that states why it does not open.
   OpenHapticsSession(const OpenHapticsLibrary& library, const std::string& configuration,
                      const Clock& clock);
   ~OpenHapticsSession();
@@ -185,14 +185,14 @@ class OpenHapticsDriver final : public DeviceDriver {
 
   /// `name`: device: as the maker's set-up calls it, kDefault without; options: library=PATH,
   /// profile=NAME. `clock` outlives it.
-  /// @throws Error that says why it does not open.
+  /// @throws Error that states why it does not open.
   OpenHapticsDriver(const DeviceName& name, const Clock& clock);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override;
 
   // The two halves of an exchange.
-  void ask(const Eigen::Vector3d& force) noexcept { session_.frames().ask(force); }
+  void request(const Eigen::Vector3d& force) noexcept { session_.frames().request(force); }
   /// @throws Error as exchange().
   [[nodiscard]] DeviceState answer() { return checked_answer().state; }
 

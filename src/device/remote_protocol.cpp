@@ -143,8 +143,7 @@ PacketFlaw RemoteProtocol::receive(std::span<const std::byte> bytes, const Socke
   return PacketFlaw::none;
 }
 
-// Begins with a client: keeps nothing that was known of the last one, and no force that was allowed
-// for it.
+// Begins with a client: keeps no state of the last one, and no force that was allowed for it.
 void RemoteProtocol::begin(const StatePacket& packet, const SocketAddress& from) noexcept {
   client_ = from;
   newest_ = packet;

@@ -30,7 +30,7 @@ struct StatePacket {
   bool has_velocity = false;
   bool leaving = false;  ///< the client's last packet
 
-  static constexpr double kLargestStamp = 1e10;     ///< s, either way
+  static constexpr double kLargestStamp = 1e10;     ///< s, of either sign
   static constexpr double kLargestPosition = 100;   ///< m along an axis
   static constexpr double kLargestVelocity = 1000;  ///< m/s along an axis
 };
@@ -71,7 +71,7 @@ struct ParsedState {
 [[nodiscard]] std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexcept;
 [[nodiscard]] std::array<std::byte, kForcePacketSize> encode(const ForcePacket& packet) noexcept;
 
-/// Says what is wrong and what to do; empty for none.
+/// States what is wrong and what to do; empty for none.
 [[nodiscard]] std::string_view explain(PacketFlaw flaw) noexcept;
 
 /// A RemoteDevice's side of the protocol: which client it listens to, the state that it reports,
@@ -113,7 +113,7 @@ class RemoteProtocol {
   bool connected_ = false;      // the client has sent something and has not left
   bool confirmed_ = false;      // ... more than one packet again and again
   bool located_ = false;        // a step has reported where its hand is
-  bool sent_zero_ = true;       // the client knows that there is no force any more
+  bool sent_zero_ = true;       // the client has received that there is no force
   std::uint64_t sequence_ = 0;  // of the last force packet
 };
 

@@ -65,14 +65,14 @@ class RosDriver final : public DeviceDriver {
   void check_age() const;
   void check_one_owner() const;
   bool take();
-  [[nodiscard]] double age() const { return message::system_now() - *told_.stamp; }
+  [[nodiscard]] double age() const { return message::system_now() - *reading_.stamp; }
   void estimate_velocity(double now);
   [[nodiscard]] DeviceState ours() const;
 
   RosLink link_;
   const Clock& clock_;
   DeviceInfo info_;
-  RosReading told_;
+  RosReading reading_;
   std::optional<double> usual_age_;   // of a pose by its stamp, s; unset: there are no stamps
   double velocity_time_ = 0;          // when a velocity came last
   Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is found, and its time
@@ -108,7 +108,7 @@ void RosDriver::measure(const DeviceName& name) {
   while (clock_.now() < begin + kMeasuring) {
     if (!link_.pose->wait(0.05) || !take()) continue;
     arrivals.push_back(clock_.now());
-    if (told_.stamp) ages.push_back(age());
+    if (reading_.stamp) ages.push_back(age());
   }
   if (arrivals.size() < 10) {
     throw Error(fmt::format("{}: {} poses came on {} in {} s; a hand needs hundreds", info_.name,
@@ -116,8 +116,8 @@ void RosDriver::measure(const DeviceName& name) {
   }
   info_.rate = (static_cast<double>(arrivals.size()) - 1) / (arrivals.back() - arrivals.front());
   if (!ages.empty()) usual_age_ = most_of(ages);
-  if (const std::string told = name.option("delay"); !told.empty()) {
-    info_.delay = milliseconds(told) / 1e3;
+  if (const std::string delay = name.option("delay"); !delay.empty()) {
+    info_.delay = milliseconds(delay) / 1e3;
     return;
   }
   check_clocks(ages);
@@ -147,7 +147,7 @@ void RosDriver::check_clocks(const std::vector<double>& ages) const {
 // Throws if a pose has no stamp, or its age is far from the one measured at start.
 void RosDriver::check_age() const {
   if (!usual_age_) return;
-  if (!told_.stamp) {
+  if (!reading_.stamp) {
     throw Error(
         fmt::format("{}: a pose on {} has no stamp, though earlier ones had; have its node "
                     "stamp every pose",
@@ -163,15 +163,15 @@ void RosDriver::check_age() const {
 
 // Takes every message that waits; false if there is no pose among them.
 bool RosDriver::take() {
-  told_.stamp.reset();
-  told_.has_velocity = false;
-  for (const auto& other : link_.others) other->take(told_);
+  reading_.stamp.reset();
+  reading_.has_velocity = false;
+  for (const auto& other : link_.others) other->take(reading_);
   if (link_.buttons) {
-    link_.buttons->take(told_);
-    if (link_.buttons->writers() == 0) told_.state.buttons = 0;
+    link_.buttons->take(reading_);
+    if (link_.buttons->writers() == 0) reading_.state.buttons = 0;
   }
-  const bool posed = link_.pose->take(told_);
-  if (told_.has_velocity) velocity_time_ = clock_.now();
+  const bool posed = link_.pose->take(reading_);
+  if (reading_.has_velocity) velocity_time_ = clock_.now();
   return posed;
 }
 
@@ -200,14 +200,15 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
 void RosDriver::estimate_velocity(double now) {
   const double span = now - from_time_;
   if (span < kVelocitySpan) return;
-  told_.state.velocity =
-      span < 4 * kVelocitySpan ? Vector3d((told_.state.position - from_) / span) : Vector3d::Zero();
-  from_ = told_.state.position;
+  reading_.state.velocity = span < 4 * kVelocitySpan
+                                ? Vector3d((reading_.state.position - from_) / span)
+                                : Vector3d::Zero();
+  from_ = reading_.state.position;
   from_time_ = now;
 }
 
 DeviceState RosDriver::ours() const {
-  DeviceState state = told_.state;
+  DeviceState state = reading_.state;
   const Eigen::Matrix3d& to_ours = link_.axes.poses;
   state.position = to_ours * state.position;
   state.velocity = to_ours * state.velocity;

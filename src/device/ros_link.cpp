@@ -1,4 +1,4 @@
-// What each known ROS node of a device publishes and takes, and how its axes lie.
+// What each supported ROS node of a device publishes and takes, and how its axes lie.
 #include "device/ros_link.hpp"
 
 #include <fmt/format.h>
@@ -21,22 +21,22 @@ using Eigen::Vector3d;
 const Eigen::Matrix3d kForceDimension =
     (Eigen::Matrix3d() << 0, 1, 0, -1, 0, 0, 0, 0, 1).finished();
 
-void put_pose(const PoseStamped& message, RosReading& told) {
+void put_pose(const PoseStamped& message, RosReading& reading) {
   const auto pose = isometry(message.pose);
   if (!pose) throw Error("a pose that is not one: not finite, or a quaternion not of unit length");
-  told.state.position = pose->translation();
-  told.state.orientation = Eigen::Quaterniond(pose->linear());
+  reading.state.position = pose->translation();
+  reading.state.orientation = Eigen::Quaterniond(pose->linear());
   const double stamp = to_seconds(message.header.stamp);
-  if (stamp > 0) told.stamp = stamp;
+  if (stamp > 0) reading.stamp = stamp;
 }
 
-void put_velocity(const TwistStamped& message, RosReading& told) {
-  told.state.velocity = eigen(message.twist.linear);
-  told.has_velocity = true;
+void put_velocity(const TwistStamped& message, RosReading& reading) {
+  reading.state.velocity = eigen(message.twist.linear);
+  reading.has_velocity = true;
 }
 
-void put_button(std::uint32_t bit, bool down, RosReading& told) {
-  told.state.buttons = (told.state.buttons & ~(1U << bit)) | (down ? 1U << bit : 0U);
+void put_button(std::uint32_t bit, bool down, RosReading& reading) {
+  reading.state.buttons = (reading.state.buttons & ~(1U << bit)) | (down ? 1U << bit : 0U);
 }
 
 void put_wrench(const Vector3d& force, WrenchStamped& message) {
@@ -49,9 +49,11 @@ void crtk(RosLink& link, const DeviceName& name) {
   link.axes = {kForceDimension, kForceDimension};
   link.on_pose<PoseStamped>(ns + "/measured_cp", put_pose);
   link.on<TwistStamped>(ns + "/measured_cv", put_velocity);
-  link.on<JointState>(ns + "/gripper/measured_js", [](const JointState& message, RosReading& told) {
-    if (!message.position.empty()) told.state.gripper = message.position.front();
-  });
+  link.on<JointState>(ns + "/gripper/measured_js",
+                      [](const JointState& message, RosReading& reading) {
+                        if (!message.position.empty())
+                          reading.state.gripper = message.position.front();
+                      });
   link.force_to<WrenchStamped>(ns + "/body/servo_cf", put_wrench);
 }
 
@@ -93,8 +95,8 @@ void fd(RosLink& link, const DeviceName& name) {
   // Its broadcaster turns poses; forces are in the device's own axes.
   link.axes = {kForceDimension * broadcast_rotation(name).transpose(), kForceDimension};
   link.on_pose<PoseStamped>(ns + "/ee_pose", put_pose);
-  link.on_buttons<Bool>(ns + "/button_state", [](const Bool& message, RosReading& told) {
-    put_button(0, message.data, told);
+  link.on_buttons<Bool>(ns + "/button_state", [](const Bool& message, RosReading& reading) {
+    put_button(0, message.data, reading);
   });
   const std::size_t joints = joints_of(name);
   link.force_to<Float64MultiArray>(ns + "/fd_controller/commands",
@@ -107,18 +109,18 @@ void fd(RosLink& link, const DeviceName& name) {
 void ros_force_dimension(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/robot");
   link.axes = {kForceDimension, kForceDimension};
-  link.on_pose<Point>(ns + "/feedback/position", [](const Point& message, RosReading& told) {
-    told.state.position = {message.x, message.y, message.z};
+  link.on_pose<Point>(ns + "/feedback/position", [](const Point& message, RosReading& reading) {
+    reading.state.position = {message.x, message.y, message.z};
   });
-  link.on<Vector3>(ns + "/feedback/velocity", [](const Vector3& message, RosReading& told) {
-    told.state.velocity = eigen(message);
-    told.has_velocity = true;
+  link.on<Vector3>(ns + "/feedback/velocity", [](const Vector3& message, RosReading& reading) {
+    reading.state.velocity = eigen(message);
+    reading.has_velocity = true;
   });
-  link.on_buttons<Int32>(ns + "/feedback/button", [](const Int32& message, RosReading& told) {
-    put_button(0, message.data != 0, told);
+  link.on_buttons<Int32>(ns + "/feedback/button", [](const Int32& message, RosReading& reading) {
+    put_button(0, message.data != 0, reading);
   });
-  link.on<Float64>(ns + "/feedback/gripper_gap", [](const Float64& message, RosReading& told) {
-    told.state.gripper = message.data;
+  link.on<Float64>(ns + "/feedback/gripper_gap", [](const Float64& message, RosReading& reading) {
+    reading.state.gripper = message.data;
   });
   link.force_to<Vector3>(ns + "/command/force", [](const Vector3d& force, Vector3& message) {
     message = vector_of(force);
@@ -129,9 +131,9 @@ void omni(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "/phantom");
   link.on_pose<PoseStamped>(ns + "/pose", put_pose);
   link.on_buttons<OmniButtonEvent>(ns + "/button",
-                                   [](const OmniButtonEvent& message, RosReading& told) {
-                                     put_button(0, message.grey_button != 0, told);
-                                     put_button(1, message.white_button != 0, told);
+                                   [](const OmniButtonEvent& message, RosReading& reading) {
+                                     put_button(0, message.grey_button != 0, reading);
+                                     put_button(1, message.white_button != 0, reading);
                                    });
   link.force_to<OmniFeedback>(
       ns + "/force_feedback",
@@ -141,13 +143,14 @@ void omni(RosLink& link, const DeviceName& name) {
 void haply_isir(RosLink& link, const DeviceName& name) {
   const std::string ns = name.option("ns", "");
   link.on_pose<Float32MultiArray>(ns + "/haply_pos_vel", [](const Float32MultiArray& message,
-                                                            RosReading& told) {
+                                                            RosReading& reading) {
     if (message.data.size() < 6)
       throw Error(
           fmt::format("{} numbers where a position and a velocity have six", message.data.size()));
-    told.state.position = Eigen::Map<const Eigen::Vector3f>(message.data.data()).cast<double>();
-    told.state.velocity = Eigen::Map<const Eigen::Vector3f>(message.data.data() + 3).cast<double>();
-    told.has_velocity = true;
+    reading.state.position = Eigen::Map<const Eigen::Vector3f>(message.data.data()).cast<double>();
+    reading.state.velocity =
+        Eigen::Map<const Eigen::Vector3f>(message.data.data() + 3).cast<double>();
+    reading.has_velocity = true;
   });
   link.force_to<Float32MultiArray>(ns + "/haply_forces",
                                    [](const Vector3d& force, Float32MultiArray& message) {
@@ -166,9 +169,9 @@ void generic(RosLink& link, const DeviceName& name) {
   if (const std::string twist = name.option("twist"); !twist.empty())
     link.on<TwistStamped>(twist, put_velocity);
   if (const std::string joy = name.option("joy"); !joy.empty()) {
-    link.on_buttons<Joy>(joy, [](const Joy& message, RosReading& told) {
+    link.on_buttons<Joy>(joy, [](const Joy& message, RosReading& reading) {
       for (std::uint32_t i = 0; i < std::min<std::size_t>(message.buttons.size(), 32); ++i) {
-        put_button(i, message.buttons[i] != 0, told);
+        put_button(i, message.buttons[i] != 0, reading);
       }
     });
   }

@@ -31,7 +31,7 @@ class RosInput {
  public:
   virtual ~RosInput() = default;
   // Takes what is new; false: nothing was.
-  virtual bool take(RosReading& told) = 0;
+  virtual bool take(RosReading& reading) = 0;
   virtual bool wait(double timeout) = 0;
   [[nodiscard]] virtual std::size_t writers() const = 0;
 };
@@ -46,10 +46,10 @@ class RosTopicInput final : public RosInput {
       : reader_(participant, topic, dds::Quality{.reliable = reliable, .depth = 1}),
         put_(std::move(put)) {}
 
-  bool take(RosReading& told) override {
+  bool take(RosReading& reading) override {
     bool any = false;
     while (reader_.take(message_)) {
-      put_(message_, told);
+      put_(message_, reading);
       any = true;
     }
     return any;
@@ -76,7 +76,7 @@ struct RosLink {
   void on(const std::string& topic, typename RosTopicInput<T>::Put put) {
     others.push_back(std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put)));
   }
-  // Some nodes tell of buttons only when they change: no message may be lost.
+  // Some nodes report buttons only when they change: no message may be lost.
   template <message::Message T>
   void on_buttons(const std::string& topic, typename RosTopicInput<T>::Put put) {
     buttons = std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put), true);
@@ -106,7 +106,7 @@ struct RosLink {
   RosAxes axes;
 };
 
-/// Subscribes and publishes as the preset `name.device` says (docs/ros2.md).
+/// Subscribes and publishes as the preset `name.device` requires (docs/ros2.md).
 /// @throws Error when there is none of that name, or an option is missing.
 void set_up(RosLink& link, const DeviceName& name);
 

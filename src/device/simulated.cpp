@@ -121,7 +121,7 @@ struct SimulatedDevice::Inside {
     if (options.resolution == 0) return mass.position;
     return (mass.position / options.resolution).array().round().matrix() * options.resolution;
   }
-  [[nodiscard]] bool ask(double time) noexcept;
+  [[nodiscard]] bool fetch(double time) noexcept;
   void advance() noexcept;
   void fail(const char* what) noexcept;
 
@@ -170,7 +170,7 @@ DeviceState SimulatedDevice::read() noexcept {
   if (in.wrong != nullptr || in.state.status == DeviceState::Status::finished) return in.state;
   if (in.started) {
     in.advance();
-  } else if (in.ask(0) && in.source != nullptr) {
+  } else if (in.fetch(0) && in.source != nullptr) {
     in.mass.position = in.target.position;
   }
   if (in.wrong != nullptr) return in.state;
@@ -217,7 +217,7 @@ TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
 }
 
 // Fetches the target at `time`; false if it is not valid.
-bool SimulatedDevice::Inside::ask(double time) noexcept {
+bool SimulatedDevice::Inside::fetch(double time) noexcept {
   target = target_at(time);
   if (!target.position.allFinite()) fail("the target of the hand was not finite");
   if (!(target.maximum_force > 0)) fail("the largest force of the hand was not above 0");
@@ -226,7 +226,7 @@ bool SimulatedDevice::Inside::ask(double time) noexcept {
 
 void SimulatedDevice::Inside::advance() noexcept {
   const TargetSource::Target from = target;
-  if (!ask(static_cast<double>(steps + 1) / options.rate)) return;
+  if (!fetch(static_cast<double>(steps + 1) / options.rate)) return;
   const auto delay = static_cast<std::size_t>(options.delay);
   const Vector3d held = forces[(steps + forces.size() - delay) % forces.size()];
   const Vector3d goal_rate = (target.position - from.position) * options.rate;

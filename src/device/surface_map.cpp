@@ -25,9 +25,9 @@ Vector3f middle_of(std::span<const Vector3f> points) {
   return middle;
 }
 
-Vector3f nearest_to(const Vector3f& place, std::span<const Vector3f> points) {
+Vector3f nearest_to(const Vector3f& position, std::span<const Vector3f> points) {
   const auto closer = [&](const Vector3f& a, const Vector3f& b) {
-    return (a - place).squaredNorm() < (b - place).squaredNorm();
+    return (a - position).squaredNorm() < (b - position).squaredNorm();
   };
   return *std::min_element(points.begin(), points.end(), closer);
 }
@@ -53,16 +53,16 @@ void SurfaceMap::choose(const ExploredSurface& surface, double region) {
   extent_ = std::min(box.size().maxCoeff(), region);
   const auto kept = static_cast<float>(2 * reach_);
   std::vector<Vector3f> chosen;
-  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> indices;
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     if ((surface.points[i] - middle).squaredNorm() > kept * kept) continue;
     chosen.push_back(surface.points[i]);
-    places.push_back(static_cast<std::uint32_t>(i));
+    indices.push_back(static_cast<std::uint32_t>(i));
   }
   grid_ = CellGrid(chosen);
   if (surface.normals.empty()) return;
   normals_.reserve(chosen.size());
-  for (const std::uint32_t k : grid_.order()) normals_.push_back(surface.normals[places[k]]);
+  for (const std::uint32_t k : grid_.order()) normals_.push_back(surface.normals[indices[k]]);
 }
 
 Vector3f SurfaceMap::fitted_normal(std::size_t i) const {

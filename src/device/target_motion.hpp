@@ -57,7 +57,7 @@ class TargetInterpolator {
     moving_ = false;
   }
 
-  /// A position, m, that became known at `time`, s; `stamp`: the sender's time, s, of which only
+  /// A position, m, that was received at `time`, s; `stamp`: the sender's time, s, of which only
   /// differences count.
   void go(const Eigen::Vector3d& position, double stamp, double time) noexcept {
     const double since = stamp - stamp_;

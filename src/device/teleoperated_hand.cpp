@@ -218,7 +218,7 @@ bool PlayedTrajectory::ends() noexcept {
   return true;
 }
 
-// Is a press under way that the hand, `pull` m from its target, does not hold? Goes on behind it.
+// Is a press in progress that the hand, `pull` m from its target, does not hold? Goes on behind it.
 bool PlayedTrajectory::skips(double pull) noexcept {
   while (next_press < presses.size() && presses[next_press].end < time) ++next_press;
   if (next_press == presses.size()) return false;

@@ -93,7 +93,7 @@ struct TextSocket::Inside {
     if (!done) {
       resolver.cancel();
       beast::get_lowest_layer(socket).close();
-      // Operations still under way refer to local variables: wait for their end.
+      // Operations still in progress refer to local variables: wait for their end.
       io.restart();
       while (!done && io.run_one() > 0) {
       }
@@ -149,7 +149,7 @@ TextSocket::~TextSocket() {
   }
   beast::get_lowest_layer(in.socket).close();
   in.io.restart();
-  in.io.poll();  // what is under way ends before what it refers to
+  in.io.poll();  // what is in progress ends before what it refers to
 }
 
 void TextSocket::send(std::string text, double patience) {

@@ -10,7 +10,7 @@ namespace palpate::device {
 class TextSocket {
  public:
   /// Connects to "ws://HOST:PORT[/PATH]", `patience` s long at most.
-  /// @throws Error that says why nobody answers.
+  /// @throws Error that states why nobody answers.
   TextSocket(const std::string& url, double patience);
   ~TextSocket();
   TextSocket(const TextSocket&) = delete;

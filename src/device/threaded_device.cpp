@@ -188,9 +188,9 @@ void Hardware::service() noexcept {
 void Hardware::exchange() noexcept {
   try {
     const double begin = clock.now();
-    const DeviceState told = driver->exchange(applicable(begin));
-    check(told, info);
-    const Reading reading{told, begin, clock.now(), connection};
+    const DeviceState reported = driver->exchange(applicable(begin));
+    check(reported, info);
+    const Reading reading{reported, begin, clock.now(), connection};
     check_move_to(reading);
     newest = reading;
     readings.set(newest);
@@ -251,9 +251,9 @@ DeviceState ThreadedDevice::read() noexcept {
   if (in.state.status == DeviceState::Status::failed) return in.state;
   const double now = in.hardware.clock.now();
   if (const std::optional<Reading> reading = in.hardware.readings.look()) in.seen = *reading;
-  const bool known =
+  const bool fresh =
       in.seen.connection != kNone && now - in.seen.end <= in.hardware.options.state_timeout;
-  if (known) {
+  if (fresh) {
     in.state = in.seen.state;
     const bool located = in.located == in.seen.connection;
     in.state.status = located ? DeviceState::Status::ok : DeviceState::Status::silent;

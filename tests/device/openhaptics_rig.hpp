@@ -30,7 +30,7 @@ class SteppedDriver final : public DeviceDriver {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return link_->info(); }
   [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
-    link_->ask(force);
+    link_->request(force);
     library_.find<void(int)>("fake_tick")(1);
     return link_->answer();
   }

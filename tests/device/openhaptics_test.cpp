@@ -81,7 +81,7 @@ TEST_F(OpenHaptics, AFrameThatHangsAppliesNoOldForce) {
   const auto link = open();
   (void)link->exchange(kPush);
   set(&FakeHd::hangs, true);
-  link->link().ask(kPush);
+  link->link().request(kPush);
   tick(1);  // until it hangs
   pass(0.1);
   set(&FakeHd::hangs, false);

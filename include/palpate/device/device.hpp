@@ -33,10 +33,10 @@ struct DeviceState {
   enum class Status {
     ok,
     silent,    ///< not latched: no data from the hand, so no force may be applied; the position is
-               ///< the last that was known, or the first after the silence
+               ///< the last one reported, or the first after the silence
     finished,  ///< a recording or a simulation has ended, and with it the loop; the last state is
                ///< repeated
-    failed,    ///< latched: no force is applied any more; reason() says why
+    failed,    ///< latched: no force is applied any more; reason() states why
   };
 
   Status status = Status::ok;

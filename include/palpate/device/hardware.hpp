@@ -56,8 +56,8 @@ struct ThreadedDeviceOptions {
 /// impossible for a hand (too far away, too fast, or a jump). None of this makes the device fail:
 /// its status becomes `silent`, no force is applied, and the hardware is reopened as soon as it is
 /// back. The first position after a silence still has status `silent`, so that what computes
-/// forces knows where the hand is before there is one; a force is applied only to the connection
-/// whose position it answers. A force that is not finite latches `failed`.
+/// forces receives the hand's position before there is one; a force is applied only to the
+/// connection whose position it answers. A force that is not finite latches `failed`.
 class ThreadedDevice final : public Device {
  public:
   /// Opens the driver. @throws Error with the reason when that fails.
@@ -93,7 +93,7 @@ class ThreadedDevice final : public Device {
 ///    url=ws://HOST:PORT of its Inverse Service.
 ///  - "ros:PRESET": a device that a node of ROS 2 owns (docs/ros2.md). Options: ns=NAMESPACE,
 ///    delay=MS; of ros:generic pose=TOPIC, wrench=TOPIC, twist=TOPIC, joy=TOPIC.
-/// Options follow as ",KEY=VALUE". All take profile=NAME (device_profile()), in place of the
+/// Options follow as ",KEY=VALUE". All take profile=NAME (device_profile()), instead of the
 /// kind that the device reports. `clock` outlives the device.
 /// @throws Error when the name is none of these, or there is no such device; its message states
 /// what to do.

@@ -13,7 +13,7 @@ namespace palpate {
 struct RemoteDeviceOptions {
   std::string path = {};          ///< of the socket; empty: default_remote_path()
   double maximum_force = 5;       ///< of the hardware, continuous, N; longer forces are shortened
-  double maximum_stiffness = 0;   ///< N/m that its maker allows; 0: not known
+  double maximum_stiffness = 0;   ///< N/m that its maker allows; 0: unknown
   double workspace_radius = 0.1;  ///< m; only reported, never enforced
   double rate = 1000;             ///< steps a second, Hz
   double client_timeout = 0.1;    ///< s without a valid packet after which the client is lost
@@ -30,7 +30,7 @@ struct RemoteDeviceOptions {
 ///
 /// Silence is not a failure: the status is `silent`, and the force goes to zero on both sides. When
 /// a client sends again, twice at least, the first position still has status `silent`, so that
-/// what computes forces knows where the hand is before there is one; then the allowed force
+/// what computes forces receives the hand's position before there is one; then the allowed force
 /// grows from zero. A force that is not finite, or a socket that breaks, latches `failed`.
 class RemoteDevice final : public Device {
  public:

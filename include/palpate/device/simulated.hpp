@@ -17,7 +17,7 @@
 
 namespace palpate {
 
-/// Returns step by step the target of a simulated device's hand, for motions that are not known in
+/// Returns step by step the target of a simulated device's hand, for motions that are unknown in
 /// advance.
 class TargetSource {
  public:
