@@ -113,7 +113,7 @@ void into_shadow(Event& event) {
 // A camera pans away from what is pressed and back.
 void pans(Event& event, bool error) {
   constexpr double kError = 0.002;  // m, and 1/3 degree; judgement: a usual calibration
-  if (error) event.camera.T_camera_told = calibration_error(kError, kDegree / 3, event.seed);
+  if (error) event.camera.T_camera_reported = calibration_error(kError, kDegree / 3, event.seed);
   SimulatedMotion& motion = event.camera.motion;
   motion.frequency = event.between(0.08, 0.12);
   motion.rock = event.between(0.6, 0.7);

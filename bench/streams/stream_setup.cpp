@@ -147,7 +147,7 @@ Setup two_cameras(const Frames& frames, int part) {
   others.seed += 1000;
   SimulatedCameraOptions second = camera_at(turn * setup.cameras[0].T_world_camera, others);
   second.phase = 0.011;
-  second.T_camera_told = calibration_error(0.003, 0.5 * kDegree, frames.seed);
+  second.T_camera_reported = calibration_error(0.003, 0.5 * kDegree, frames.seed);
   setup.cameras.push_back(second);
   setup.depth = kPressDepth;
   return setup;

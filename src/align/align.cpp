@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-void Aligner::tell_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
+void Aligner::fill_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
                         std::vector<AlignedSource>& results) const {
   const Moving all{0, sources_.size()};
   std::vector<std::vector<Match>> of(sources_.size());
@@ -57,7 +57,7 @@ void Aligner::check_held(const Equations& e) const {
       sources_[worst].name, turns ? "turn about" : "slide along", axis.x(), axis.y(), axis.z()));
 }
 
-void Aligner::tell_deviations(const Poses& poses, std::vector<AlignedSource>& results) const {
+void Aligner::fill_deviations(const Poses& poses, std::vector<AlignedSource>& results) const {
   const Moving moving{1, sources_.size()};
   const std::vector<Match> found = matches(poses, moving, radius_);
   const Equations e = equations(found, moving, 0);
@@ -72,7 +72,7 @@ void Aligner::tell_deviations(const Poses& poses, std::vector<AlignedSource>& re
     double count = 0;
     for (const Match& m : found) {
       if (m.from != s && m.to != s) continue;
-      shared += m.place;
+      shared += m.position;
       ++count;
     }
     const Vector3d arm = (shared / count - middle_) / size_;
@@ -95,11 +95,11 @@ std::vector<AlignedSource> align(const std::vector<RoughSource>& sources) {
   const detail::Aligner aligner(sources);
   detail::Poses poses(sources.size(), Eigen::Isometry3d::Identity());
   std::vector<AlignedSource> results(sources.size());
-  aligner.tell_fits(poses, aligner.size(), &AlignedSource::before, results);
+  aligner.fill_fits(poses, aligner.size(), &AlignedSource::before, results);
   for (std::size_t s = 1; s < sources.size(); ++s) aligner.place(poses, s);
   aligner.refine(poses, {1, sources.size()}, aligner.radius());
-  aligner.tell_deviations(poses, results);
-  aligner.tell_fits(poses, aligner.radius(), &AlignedSource::after, results);
+  aligner.fill_deviations(poses, results);
+  aligner.fill_fits(poses, aligner.radius(), &AlignedSource::after, results);
   for (std::size_t s = 0; s < sources.size(); ++s) results[s].T_aligned_rough = poses[s];
   return results;
 }

@@ -91,10 +91,10 @@ Aligner::Aligner(const std::vector<RoughSource>& sources)
     const std::size_t stride = std::max<std::size_t>(1, points.size() / kSamples);
     for (std::size_t i = 0; i < points.size() && !points.normals.empty(); i += stride) {
       if (!counts(points, i)) continue;
-      const Vector3d place = points.origin + points.grid.points()[i].cast<double>();
-      samples_[s].push_back({place, points.normals[i].cast<double>()});
-      middles_[s] += place;
-      size_ += place.squaredNorm();
+      const Vector3d position = points.origin + points.grid.points()[i].cast<double>();
+      samples_[s].push_back({position, points.normals[i].cast<double>()});
+      middles_[s] += position;
+      size_ += position.squaredNorm();
     }
     if (samples_[s].size() < kEnough) {
       throw Error(fmt::format("'{}' has {} points with a reliable normal; align needs at least {}",
@@ -122,22 +122,22 @@ void Aligner::match(const Poses& poses, std::size_t from, std::size_t to, double
   std::vector<CellGrid::Neighbor> near;
   for (std::size_t i = 0; i < samples_[from].size(); i += stride) {
     const AlignSample& sample = samples_[from][i];
-    const Vector3d place = into * sample.place - other.origin;
-    other.grid.nearest(place.cast<float>(), 1, near);
+    const Vector3d position = into * sample.position - other.origin;
+    other.grid.nearest(position.cast<float>(), 1, near);
     const std::size_t k = near.front().index;
     if (!counts(other, k)) continue;
     const Vector3d normal = other.normals[k].cast<double>();
     Vector3d own = into.linear() * sample.normal;
     if (!same_side && normal.dot(own) < 0) own = -own;
-    const Vector3d way = place - other.grid.points()[k].cast<double>();
-    const double height = normal.dot(way);
-    const double beside = (way - height * normal).norm();
+    const Vector3d offset = position - other.grid.points()[k].cast<double>();
+    const double height = normal.dot(offset);
+    const double beside = (offset - height * normal).norm();
     if (!(normal.dot(own) > kAlike) || std::abs(height) > reach ||
         beside > static_cast<double>(other.radii[k])) {
       continue;
     }
-    Match m{from, to, i, poses[from] * sample.place, height, {}, {}};
-    const Vector3d arm = (m.place - middle_) / size_;
+    Match m{from, to, i, poses[from] * sample.position, height, {}, {}};
+    const Vector3d arm = (m.position - middle_) / size_;
     const Vector3d n = poses[to].linear() * normal;
     const Vector3d d = n - poses[to].linear() * own;
     m.row << arm.cross(n), n;
@@ -179,7 +179,7 @@ Equations Aligner::equations(const std::vector<Match>& matches, Moving moving, d
     };
     add(e.information, m.row, w);
     add(e.doubt, m.doubt, w / 2);
-    const Vector3d cell = (4 * (m.place - middle_) / size_).array().floor();
+    const Vector3d cell = (4 * (m.position - middle_) / size_).array().floor();
     VectorXd& part =
         parts.try_emplace({int(cell.x()), int(cell.y()), int(cell.z())}, zero.col(0)).first->second;
     part.segment<6>(a) += w * m.height * m.row;

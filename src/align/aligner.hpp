@@ -12,15 +12,15 @@ using Poses = std::vector<Eigen::Isometry3d>;
 
 /// A point of a source, to be matched with other surfaces.
 struct AlignSample {
-  Eigen::Vector3d place;  // world, where it roughly is
+  Eigen::Vector3d position;  // world, where it roughly is
   Eigen::Vector3d normal;
 };
 
 /// A sample of one source that lies over a point of another.
 struct Match {
   std::size_t from, to, sample;
-  Eigen::Vector3d place;  // world
-  double height;          // over the other's plane, m
+  Eigen::Vector3d position;  // world
+  double height;             // over the other's plane, m
   Vector6d row;  // of the height by size times a turn of `from` about the middle, and by its shift
   Vector6d doubt;  // change of the row if the normal of `from` replaces the other's
 };
@@ -47,10 +47,10 @@ class Aligner {
   /// Refines poses from coarse to fine: while `reach` (m) is large, so are the heights that count.
   void refine(Poses& poses, Moving moving, double reach, std::size_t stride = 1) const;
   /// Fills in the fits: residuals within `reach`, overlap within R.
-  void tell_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
+  void fill_fits(const Poses& poses, double reach, AlignedSource::Fit AlignedSource::*fit,
                  std::vector<AlignedSource>& results) const;
   /// Fills in the deviations. @throws Error when a source is left free to slide or turn.
-  void tell_deviations(const Poses& poses, std::vector<AlignedSource>& results) const;
+  void fill_deviations(const Poses& poses, std::vector<AlignedSource>& results) const;
   [[nodiscard]] double size() const { return size_; }
   [[nodiscard]] double radius() const { return radius_; }
 

@@ -54,9 +54,9 @@ bool repeats(const SimulatedCameraOptions& options) {
 }
 
 Eigen::Vector3d direction(Random& random) {
-  Eigen::Vector3d way;
-  for (const int axis : {2, 1, 0}) way[axis] = random.normal();  // one order on every compiler
-  return way.normalized();
+  Eigen::Vector3d drawn;
+  for (const int axis : {2, 1, 0}) drawn[axis] = random.normal();  // one order on every compiler
+  return drawn.normalized();
 }
 
 }  // namespace
@@ -148,8 +148,8 @@ void SimulatedCamera::fill(std::uint64_t number, DepthFrame& frame) {
   frame.camera = options_.camera;
   frame.stamp = stamp_of(number);
   frame.T_world_sensor.reset();
-  if (options_.tell_pose) {
-    frame.T_world_sensor = true_pose(frame.stamp - start_) * options_.T_camera_told;
+  if (options_.report_pose) {
+    frame.T_world_sensor = true_pose(frame.stamp - start_) * options_.T_camera_reported;
   }
   const auto half = static_cast<std::uint64_t>(options_.frames / 2);
   if (number - first_ >= (half > 0 ? half : kJumpAt)) frame.stamp += options_.jump;

@@ -21,24 +21,24 @@ struct SimulatedCameraOptions {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   SimulatedMotion motion = {};  ///< of the camera
   SimulatedNoiseOptions noise = {};
-  double rate = 30;       ///< frames a second, Hz
-  double phase = 0;       ///< frame k is taken at start + phase + k / rate + jitter, s
-  double jitter = 0;      ///< frames are taken so much too early or too late at most, s
-  double dropped = 0;     ///< share of frames that never arrive, 0-1
-  double repeated = 0;    ///< share of frames that show the depths of the frame before, 0-1
-  double jump = 0;        ///< stamps are so far ahead after half of `frames`, or 100 without, s
-  int frames = 0;         ///< after so many, lost ones too, it has ended; 0: never
-  int loop = 0;           ///< > 0: so many frames are made beforehand, then shown over and over
-  bool tell_pose = true;  ///< frames carry their pose
-  /// Calibration error: the pose that is told is the true one times this.
-  Eigen::Isometry3d T_camera_told = Eigen::Isometry3d::Identity();
-  const Clock* clock = nullptr;      ///< that it waits for; outlives it. Null: as fast as asked
+  double rate = 30;         ///< frames a second, Hz
+  double phase = 0;         ///< frame k is taken at start + phase + k / rate + jitter, s
+  double jitter = 0;        ///< frames are taken so much too early or too late at most, s
+  double dropped = 0;       ///< share of frames that never arrive, 0-1
+  double repeated = 0;      ///< share of frames that show the depths of the frame before, 0-1
+  double jump = 0;          ///< stamps are so far ahead after half of `frames`, or 100 without, s
+  int frames = 0;           ///< after so many, lost ones too, it has ended; 0: never
+  int loop = 0;             ///< > 0: so many frames are made beforehand, then shown over and over
+  bool report_pose = true;  ///< frames carry their pose
+  /// Calibration error: the pose that is reported is the true one times this.
+  Eigen::Isometry3d T_camera_reported = Eigen::Isometry3d::Identity();
+  const Clock* clock = nullptr;      ///< that it waits for; outlives it. Null: as fast as requested
   std::optional<double> start = {};  ///< on that clock, s; unset: when the camera is opened; 0
                                      ///< without a clock
 };
 
 /// Looks at a simulated scene. Stamps are on the clock that it is given; the scene's time is the
-/// stamp less the start and less a jump. Frames that nobody asked for in time are gone, as with a
+/// stamp less the start and less a jump. Frames that nobody requested in time are gone, as with a
 /// real camera.
 class SimulatedCamera final : public DepthCamera {
  public:
@@ -78,8 +78,8 @@ class SimulatedCamera final : public DepthCamera {
   std::vector<std::vector<float>> loop_;
 };
 
-/// A calibration error: the told pose is off by `meters` to the side and `radians` about an oblique
-/// axis, in directions that `seed` picks.
+/// A calibration error: the reported pose is off by `meters` to the side and `radians` about an
+/// oblique axis, in directions that `seed` picks.
 [[nodiscard]] Eigen::Isometry3d calibration_error(double meters, double radians,
                                                   std::uint64_t seed);
 
@@ -97,7 +97,7 @@ struct SimulatedName {
 /// The scenes that have names.
 [[nodiscard]] std::vector<SimulatedName> simulated_names();
 
-/// @throws Error when there is no scene of that name; says which there are.
+/// @throws Error when there is no scene of that name; lists which there are.
 [[nodiscard]] SimulatedSetup make_simulated_setup(const std::string& name);
 
 /// Opens "SCENE[,KEY=VALUE]..." ("" is the scene `table`). Keys: noise (none, a, b, c: NoiseKind in
@@ -106,14 +106,14 @@ struct SimulatedName {
 /// pattern, correlation, smoothing, hops, holes, seed, silhouettes (0, 1), rate (Hz), phase (s),
 /// jitter (s), dropped, repeat (shares), jump (s), frames, loop, tilt (degrees between the middle
 /// ray and the vertical, 0-90), view (degrees that the camera stands round the scene's vertical),
-/// width (pixels; the height follows), error (of the pose that it tells, m, with 1/6 degree for
+/// width (pixels; the height follows), error (of the pose that it reports, m, with 1/6 degree for
 /// each millimetre; after `seed`). Cameras on one clock see one world at one time. `clock` outlives
-/// the camera; null: frames come as fast as they are asked for, from the scene's time 0 on.
+/// the camera; null: frames come as fast as they are requested, from the scene's time 0 on.
 /// @throws Error when a name or a value makes no sense.
 [[nodiscard]] std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification,
                                                               const Clock* clock);
 
-/// Changes a set-up by "KEY=VALUE" (open_simulated() says which there are).
+/// Changes a set-up by "KEY=VALUE" (open_simulated() lists which there are).
 /// @throws Error when the key is unknown or the value makes no sense.
 void set_simulated(SimulatedSetup& setup, const std::string& assignment);
 

@@ -19,7 +19,7 @@ enum class SolidKind {
   cylinder,    ///< along local z, radius size.x, half height size.z
 };
 
-/// A convex solid whose signed distance is known exactly, inside and outside.
+/// A convex solid whose signed distance is exact, inside and outside.
 struct Solid {
   SolidKind kind = SolidKind::half_space;
   Eigen::Isometry3d T_world_solid = Eigen::Isometry3d::Identity();

@@ -56,7 +56,8 @@ void for_pixels(const DepthView& image, float* depth, const F& f) {
   }
 }
 
-// Calls f(u, v, du, dv) where depths jump: at the nearer pixel, with the way to the farther one.
+// Calls f(u, v, du, dv) where depths jump: at the nearer pixel, with the direction to the farther
+// one.
 template <class F>
 void for_jumps(const DepthView& image, const F& f) {
   for (int v = 0; v < image.height; ++v) {
@@ -82,14 +83,14 @@ int reach_at(std::uint64_t seed, int u, int v) {
 
 // First the nearer sides, where the rim next to a pixel bends it; then what they cover.
 void bend_rims(const DepthView& exact, const SimulatedNoiseOptions& options, float* depth) {
-  const auto bend = [&](int place) {
-    return static_cast<float>(options.curl * place * place / (4 * kRim * kRim));
+  const auto bend = [&](int distance) {
+    return static_cast<float>(options.curl * distance * distance / (4 * kRim * kRim));
   };
   for_jumps(exact, [&](int u, int v, int du, int dv) {
-    for (int place = kRim; place > 0; --place, u -= du, v -= dv) {
+    for (int distance = kRim; distance > 0; --distance, u -= du, v -= dv) {
       if (!exact.inside(u, v) || exact.at(u, v) <= 0) return;
       float& z = depth[v * exact.width + u];
-      const float bent = exact.at(u, v) + bend(place);
+      const float bent = exact.at(u, v) + bend(distance);
       z = options.curl > 0 ? std::max(z, bent) : std::min(z, bent);
     }
   });
@@ -137,7 +138,7 @@ void disturb_silhouettes(const DepthView& exact, std::uint64_t seed, bool far_si
   });
 }
 
-// So many places each have one disc at a time, in no order with one another: n of them cover
+// So many slots each have one disc at a time, in no order with one another: n of them cover
 // 1 - exp(-n area / all). Nothing is kept from frame to frame, as frames may be lost.
 void punch_holes(const DepthView& exact, const SimulatedNoiseOptions& options, std::uint64_t frame,
                  float* depth) {
@@ -147,10 +148,10 @@ void punch_holes(const DepthView& exact, const SimulatedNoiseOptions& options, s
                       (kLeastRadius * kLeastRadius + kLeastRadius * kMostRadius +
                        kMostRadius * kMostRadius);  // mean
   const std::uint64_t first = Random(options.seed ^ kHoleStream).bits();
-  const auto places =
+  const auto slots =
       static_cast<std::uint64_t>(std::lround(-std::log1p(-options.holes) * across * down / area));
-  for (std::uint64_t place = 0; place < places; ++place) {
-    Random own(first + place);
+  for (std::uint64_t slot = 0; slot < slots; ++slot) {
+    Random own(first + slot);
     const std::uint64_t life = kLeastLife + own.bits() % (kMostLife - kLeastLife + 1);
     const std::uint64_t before = (frame + own.bits() % life) / life;
     Random disc(own.bits() + before);

@@ -136,18 +136,18 @@ constexpr std::array<Key, 24> kKeys = {{
      [](SimulatedSetup& s, Text v) {
        // 1 mm goes with 1/6 degree, as 3 mm with 0.5 degrees.
        const double meters = number(v);
-       s.camera.T_camera_told =
+       s.camera.T_camera_reported =
            calibration_error(meters, kDegree * meters / 0.006, s.camera.noise.seed);
      }},
 }};
 
-std::string known_keys() {
+std::string key_list() {
   std::string text;
   for (const Key& key : kKeys) text += (text.empty() ? "" : ", ") + std::string(key.name);
   return text;
 }
 
-// Says of which key a bad value was.
+// Reports of which key a bad value was.
 void set(SimulatedSetup& setup, const Key& key, const std::string& value) {
   try {
     key.set(setup, value);
@@ -162,14 +162,13 @@ void set_simulated(SimulatedSetup& setup, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
     throw Error(fmt::format("a simulated camera takes KEY=VALUE, not '{}'; the keys are {}",
-                            assignment, known_keys()));
+                            assignment, key_list()));
   }
   const std::string name = assignment.substr(0, equals);
   for (const Key& key : kKeys) {
     if (name == key.name) return set(setup, key, assignment.substr(equals + 1));
   }
-  throw Error(
-      fmt::format("a simulated camera has no key '{}'; the keys are {}", name, known_keys()));
+  throw Error(fmt::format("a simulated camera has no key '{}'; the keys are {}", name, key_list()));
 }
 
 }  // namespace palpate

@@ -22,15 +22,15 @@ enum class NoiseKind {
 
 struct SimulatedNoiseOptions {
   NoiseKind kind = NoiseKind::independent;
-  NoiseModel model = kinect_like_noise();  ///< its standard deviation; `kind` says the correlation
+  NoiseModel model = kinect_like_noise();  ///< its standard deviation; `kind` sets the correlation
   double rounding = 1e-3;                  ///< depths are whole multiples of it, m; 0: not rounded
   bool silhouettes = false;  ///< of the pixels at depth jumps a quarter is missing and a quarter
                              ///< lies between the two depths (flying)
   std::uint64_t seed = 0;
 
-  // Further faults, all off by default; docs/simulated_cameras.md says which sensors have them.
+  // Further faults, all off by default; docs/simulated_cameras.md lists which sensors have them.
   /// NoiseModel::correlation of the noise, and of the pattern, 0 or 1-30: white noise after a
-  /// Gaussian blur of correlation / (2 sqrt(pi)) pixels. 0: `kind` says it.
+  /// Gaussian blur of correlation / (2 sqrt(pi)) pixels. 0: `kind` sets it.
   double correlation = 0;
   /// Depths are means over a square of pixels with so many to each side, 0-15, of those that differ
   /// by less than 2 %: what phones and drivers' spatial filters do. After all else but holes.
@@ -46,8 +46,8 @@ struct SimulatedNoiseOptions {
   /// by so much 3 pixels behind it, m, -0.1 to 0.1; < 0: towards the camera. Silhouettes then
   /// disturb the farther side alone.
   double curl = 0;
-  /// Pixels gather light over a Gaussian of this deviation, pixels, 0-1: those at depth jumps tell
-  /// the mean of the depths of 3 x 3 pixels, weighed with it and with 1 / z^2.
+  /// Pixels gather light over a Gaussian of this deviation, pixels, 0-1: those at depth jumps
+  /// report the mean of the depths of 3 x 3 pixels, weighed with it and with 1 / z^2.
   double mixed = 0;
   double pattern = 0;  ///< deviation of an error that each pixel has in all frames, m, 0-0.1
   /// Share of pixels in holes, 0-0.9: discs 3 to 12 pixels wide, each there for 2 to 8 frames.

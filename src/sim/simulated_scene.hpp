@@ -37,7 +37,7 @@ struct SimulatedSolid {
   SimulatedMotion motion = {};
 };
 
-/// Solids that move in known ways: what a simulated camera sees, and the truth that what is felt of
+/// Solids with given motions: what a simulated camera sees, and the truth that what is felt of
 /// it is measured against. World frame; may be read by several threads.
 struct SimulatedScene {
   std::vector<SimulatedSolid> solids;
@@ -51,12 +51,12 @@ struct SimulatedScene {
 [[nodiscard]] Distance distance_and_normal(const SimulatedScene& scene, const Eigen::Vector3d& x,
                                            double t);
 
-/// Velocity of the nearest solid at x, m/s, world. Its part along the normal is the speed of the
-/// surface.
+/// Velocity of the nearest solid at x, m/s, world. Its component along the normal is the speed of
+/// the surface.
 [[nodiscard]] Eigen::Vector3d surface_velocity(const SimulatedScene& scene,
                                                const Eigen::Vector3d& x, double t);
 
-/// Places in SimulatedTable::scene.solids.
+/// Indices in SimulatedTable::scene.solids.
 enum TablePart : std::size_t { kTable, kWall, kSphere, kBox, kCylinder, kPlate, kTableParts };
 
 /// A table-top seen from 0.7 m, 27 degrees from above: a sphere (r 60 mm), a box, an upright

@@ -140,7 +140,7 @@ constexpr std::array<Named, 10> kNamed = {{
     {"poles", "poles of 8, 15, 25 and 40 mm in front of a wall", poles},
 }};
 
-std::string known_names() {
+std::string name_list() {
   std::string text;
   for (const Named& named : kNamed) text += (text.empty() ? "" : ", ") + std::string(named.name);
   return text;
@@ -173,7 +173,7 @@ SimulatedSetup make_simulated_setup(const std::string& name) {
     setup.camera.name = "simulated:" + name;
     return setup;
   }
-  throw Error(fmt::format("unknown simulated scene '{}'; the scenes are {}", name, known_names()));
+  throw Error(fmt::format("unknown simulated scene '{}'; the scenes are {}", name, name_list()));
 }
 
 std::unique_ptr<SimulatedCamera> open_simulated(const std::string& specification,

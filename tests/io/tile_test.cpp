@@ -256,7 +256,7 @@ TEST(Tile, MadeTerrainHasAsManyPointsAsWereAskedForEachFromItsPlaceAlone) {
   const auto later = terrain.read(1);
   const auto again = terrain.read(1);
   ASSERT_EQ(later.size(), 70001U - 65536U);
-  for (std::size_t i = 0; i < later.size(); ++i) EXPECT_EQ(later[i].place, again[i].place);
+  for (std::size_t i = 0; i < later.size(); ++i) EXPECT_EQ(later[i].position, again[i].position);
 }
 
 TEST(Tile, WhatCannotBeTiledIsRefusedWithWords) {

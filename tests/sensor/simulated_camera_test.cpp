@@ -142,7 +142,7 @@ TEST(SimulatedCamera, EndsLoopsAndMayKeepItsPoseToItself) {
   SimulatedCameraOptions options = small();
   options.loop = 3;
   options.frames = 7;
-  options.tell_pose = false;
+  options.report_pose = false;
   SimulatedCamera camera = table_camera(options);
   const std::vector<DepthFrame> frames = frames_of(camera, 7);
   EXPECT_EQ(frames[0].depth, frames[3].depth);
@@ -199,7 +199,7 @@ TEST(SimulatedCamera, WaitsForItsClockAndLosesWhatNobodyAskedFor) {
 
 TEST(SimulatedCamera, TellsAPoseThatIsOffByTheCalibrationError) {
   SimulatedCameraOptions options = small();
-  options.T_camera_told = calibration_error(0.003, 0.5 * 3.14159265358979 / 180, 7);
+  options.T_camera_reported = calibration_error(0.003, 0.5 * 3.14159265358979 / 180, 7);
   SimulatedCamera camera = table_camera(options);
   DepthFrame frame;
   ASSERT_EQ(camera.read(frame, 0), DepthCamera::Status::frame);

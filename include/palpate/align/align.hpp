@@ -34,8 +34,8 @@ struct AlignedSource {
 
 /// Moves all but the first so that the surfaces lie on one another where they overlap. Sources that
 /// are off by some 10 cm and 10 degrees are found back. Point-to-plane ICP (Chen and Medioni 1992),
-/// each source first against those before it from several starts, then all at once. How sure the
-/// answer is follows from what the fit leaves in places far apart. Not real-time; any thread; the
+/// each source first against those before it from several starts, then all at once. The deviations
+/// follow from what the fit leaves at positions far apart. Not real-time; any thread; the
 /// same input gives the same answer.
 /// @throws Error naming the source that has no normals or too few points, that shares too little
 /// with those before it, or that what it shares leaves free to slide or turn; of less than two.

@@ -12,7 +12,7 @@ namespace palpate::detail {
 namespace {
 
 constexpr float kReach = 2;                  // sigmas that a splat is sampled to (judgement)
-constexpr float kSureShare = 0.5F;           // of the trace, by which l3 exceeds l2 (measured)
+constexpr float kAgreedShare = 0.5F;         // of the trace, by which l3 exceeds l2 (measured)
 constexpr std::size_t kSplatsAtOnce = 4096;  // that one thread samples (judgement)
 
 // A splat's sampling: a lattice in the plane of its two long axes.
@@ -101,7 +101,7 @@ void set_normal(const Eigen::Matrix3f& sum, SplatCell& cell) {
   if (!(trace > 0)) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solved(sum / trace);
   cell.normal = solved.eigenvectors().col(2);
-  cell.sure = solved.eigenvalues()[2] - solved.eigenvalues()[1] > kSureShare;
+  cell.confident = solved.eigenvalues()[2] - solved.eigenvalues()[1] > kAgreedShare;
 }
 
 SplatCell cell_of(std::span<const SplatShare> shares, std::span<const Splat> splats,

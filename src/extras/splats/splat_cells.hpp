@@ -33,7 +33,7 @@ struct SplatGrid {
     return key;
   }
 
-  [[nodiscard]] static std::array<std::int64_t, 3> place_of(std::uint64_t key) {
+  [[nodiscard]] static std::array<std::int64_t, 3> indices_of(std::uint64_t key) {
     constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;  // of an axis (derived)
     return {static_cast<std::int64_t>(key >> (2 * kBits)),
             static_cast<std::int64_t>(key >> kBits & kMask),
@@ -53,10 +53,10 @@ struct SplatCell {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m; mean by optical depth
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, of any sign; zero: none
   Eigen::Vector3f color = Eigen::Vector3f::Zero();     ///< red, green, blue, 0 to 255
-  float depth = 0;    ///< optical depth: light that passes is exp(-depth)
-  float behind = 0;   ///< share of the light that comes from behind the normal
-  float height = 0;   ///< above the position, of where half of the light is gone, m; NaN: nowhere
-  bool sure = false;  ///< do its splats agree on the normal?
+  float depth = 0;   ///< optical depth: light that passes is exp(-depth)
+  float behind = 0;  ///< share of the light that comes from behind the normal
+  float height = 0;  ///< above the position, of where half of the light is gone, m; NaN: nowhere
+  bool confident = false;  ///< do its splats agree on the normal?
 };
 
 /// A splat in a cell, by its strongest sample there.

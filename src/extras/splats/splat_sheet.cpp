@@ -77,7 +77,7 @@ float mean_height(const SplatCell& point, std::span<const SplatCell> points,
 SplatCell merged(std::span<const SplatCell> points) {
   SplatCell mean;
   mean.key = points.front().key;
-  float sure = 0;
+  float confident = 0;
   for (const SplatCell& each : points) {
     mean.depth += each.depth;
     mean.position += each.depth * (each.position - points.front().position);
@@ -85,13 +85,13 @@ SplatCell merged(std::span<const SplatCell> points) {
     const float side = each.normal.dot(points.front().normal);
     mean.normal += std::copysign(each.depth, side) * each.normal;
     mean.behind += each.depth * turned_share(each, side);
-    sure += each.sure ? each.depth : 0;
+    confident += each.confident ? each.depth : 0;
   }
   mean.position = points.front().position + mean.position / mean.depth;
   mean.color /= mean.depth;
   mean.behind /= mean.depth;
   mean.normal.normalize();
-  mean.sure = 2 * sure >= mean.depth;
+  mean.confident = 2 * confident >= mean.depth;
   return mean;
 }
 

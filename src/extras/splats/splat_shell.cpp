@@ -22,7 +22,7 @@ constexpr float kLeastDepth = 0.15F;   // optical depth of a kept cell (measured
 constexpr float kHalfOpaque = 0.7F;    // the same with its neighbours along the normal (measured)
 constexpr float kSameSheet = 0.9063F;  // cos 25 degrees, between normals that agree (measured)
 
-constexpr std::int64_t kMostPlaces = std::int64_t{1} << SplatGrid::kBits;  // an axis (derived)
+constexpr std::int64_t kMostIndices = std::int64_t{1} << SplatGrid::kBits;  // an axis (derived)
 
 using Step = std::array<int, 3>;
 
@@ -40,11 +40,11 @@ void sort_lines(std::span<const SplatCell> cells, const Step& step, std::vector<
                 std::vector<Record>& scratch) {
   const std::size_t axis = step[0] != 0 ? 0 : step[1] != 0 ? 1 : 2;  // along which it runs
   detail::parallel_each(cells.size(), 4096, [&](std::size_t c) {
-    const auto at = SplatGrid::place_of(cells[c].key);
-    std::uint64_t line = 0;  // where it meets place 0 of that axis
+    const auto at = SplatGrid::indices_of(cells[c].key);
+    std::uint64_t line = 0;  // where it meets index 0 of that axis
     for (std::size_t k = 0; k < 3; ++k) {
       if (k == axis) continue;
-      const std::int64_t meets = at[k] - step[k] * at[axis] + (step[k] > 0 ? kMostPlaces : 0);
+      const std::int64_t meets = at[k] - step[k] * at[axis] + (step[k] > 0 ? kMostIndices : 0);
       line = line << (SplatGrid::kBits + 1) | static_cast<std::uint64_t>(meets);
     }
     lines[c] = line << detail::kPlaceBits | c;
@@ -95,14 +95,14 @@ std::vector<Light> light_of(std::span<const SplatCell> cells,
 
 // The optical depth of a cell and of its two neighbours along the normal that agree on it.
 float sheet_depth(std::span<const SplatCell> cells, const SplatCell& cell) {
-  if (!cell.sure) return cell.depth;
+  if (!cell.confident) return cell.depth;
   const auto step = SplatGrid::step(static_cast<int>(std::lround(cell.normal.x())),
                                     static_cast<int>(std::lround(cell.normal.y())),
                                     static_cast<int>(std::lround(cell.normal.z())));
   float depth = cell.depth;
   for (const std::uint64_t key : {cell.key - step, cell.key + step}) {
     const auto there = std::ranges::lower_bound(cells, key, {}, &SplatCell::key);
-    if (there == cells.end() || there->key != key || !there->sure) continue;
+    if (there == cells.end() || there->key != key || !there->confident) continue;
     if (std::abs(there->normal.dot(cell.normal)) >= kSameSheet) depth += there->depth;
   }
   return depth;
@@ -156,21 +156,21 @@ std::size_t drop_small_pieces(std::vector<SplatCell>& cells) {
 }
 
 void take_cells(std::span<const SplatCell> cells, SplatShell& shell) {
-  std::size_t unsure = 0;
+  std::size_t uncertain = 0;
   for (const SplatCell& cell : cells) {
     shell.cloud.positions.push_back(cell.position);
-    shell.cloud.normals.push_back(cell.sure ? cell.normal : Eigen::Vector3f::Zero());
+    shell.cloud.normals.push_back(cell.confident ? cell.normal : Eigen::Vector3f::Zero());
     const auto byte = [&](int k) { return static_cast<std::uint8_t>(std::lround(cell.color[k])); };
     shell.cloud.colors.push_back({byte(0), byte(1), byte(2)});
-    unsure += cell.sure ? 0 : 1;
+    uncertain += cell.confident ? 0 : 1;
   }
-  shell.unsure = static_cast<double>(unsure) / static_cast<double>(cells.size());
+  shell.unsure = static_cast<double>(uncertain) / static_cast<double>(cells.size());
 }
 
 }  // namespace
 
 SplatShell shell_of(std::span<const Splat> splats, const std::function<void(double)>& progress) {
-  const auto tell = [&](double done) {
+  const auto report = [&](double done) {
     if (progress) progress(done);
   };
   SplatShell shell;
@@ -183,16 +183,16 @@ SplatShell shell_of(std::span<const Splat> splats, const std::function<void(doub
   shell.samples = choice.samples;
   shell.spacing = static_cast<double>(grid.edge);
   if (!(grid.edge > 0)) return shell;
-  tell(0.05);
+  report(0.05);
   const std::vector<detail::SplatShare> shares = detail::shares_of(choice.splats, grid);
   std::vector<SplatCell> cells = detail::cells_of(shares, choice.splats, grid);
-  tell(0.3);
-  cells = lit_cells(cells, light_of(cells, [&](double done) { tell(0.3 + 0.3 * done); }));
+  report(0.3);
+  cells = lit_cells(cells, light_of(cells, [&](double done) { report(0.3 + 0.3 * done); }));
   shell.pieces = drop_small_pieces(cells);
   cells = detail::drawn_together(std::move(cells), shares, choice.splats, grid,
-                                 [&](double done) { tell(0.6 + 0.4 * done); });
+                                 [&](double done) { report(0.6 + 0.4 * done); });
   if (!cells.empty()) take_cells(cells, shell);
-  tell(1);
+  report(1);
   return shell;
 }
 

@@ -73,11 +73,11 @@ class ChunkFiles {
 }  // namespace
 
 void distribute(const std::vector<TileInput>& inputs, const Plan& plan, const fs::path& folder,
-                const Told& told) {
+                const Report& report) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   ChunkFiles files(plan, folder);
-  read_all(inputs, plan.frame, told, [&](const Piece& piece) {
+  read_all(inputs, plan.frame, report, [&](const Piece& piece) {
     for (const StorePoint& point : piece.points) {
       files.add(point, plan.color_factors[piece.input]);
     }

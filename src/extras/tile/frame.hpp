@@ -1,4 +1,4 @@
-// Declares what the parts of a store share: whole numbers for coordinates, cubes of the octree, and
+// Declares what the files of a store share: whole numbers for coordinates, cubes of the octree, and
 // points as bytes.
 #pragma once
 
@@ -21,8 +21,8 @@ inline constexpr int kMostBits = 30;
 /// Coordinates as whole numbers of steps from the lower corner of the root's cube.
 using Numbers = std::array<std::uint32_t, 3>;
 
-/// Does a place come first along the Morton curve, whose bits are those of x, y and z in turn? The
-/// axis decides in which the highest bit differs.
+/// Does a position come first along the Morton curve, whose bits are those of x, y and z in turn?
+/// The axis decides in which the highest bit differs.
 [[nodiscard]] inline bool before(const Numbers& a, const Numbers& b) {
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -40,7 +40,7 @@ struct Frame {
   int bits = 0;                                      ///< its edge has 2^bits steps
 
   [[nodiscard]] double edge() const { return std::ldexp(step, bits); }  ///< m
-  [[nodiscard]] Eigen::Vector3d place(const Numbers& n) const {         ///< m
+  [[nodiscard]] Eigen::Vector3d position(const Numbers& n) const {      ///< m
     return origin + step * (low + Eigen::Vector3d(n[0], n[1], n[2]));
   }
 };
@@ -60,13 +60,13 @@ struct Cell {
   }
 };
 
-/// The cube of a level around a place, which is counted in so many bits.
+/// The cube of a level around a position, which is counted in so many bits.
 [[nodiscard]] inline Cell cell_of(const Numbers& numbers, int level, int bits) {
   const int shift = bits - level;
   return {level, {numbers[0] >> shift, numbers[1] >> shift, numbers[2] >> shift}};
 }
 
-/// Which child of a cube of a level holds a place in it. Rises along the Morton curve.
+/// Which child of a cube of a level contains a position in it. Rises along the Morton curve.
 [[nodiscard]] inline unsigned child_at(const Numbers& numbers, int level, int bits) {
   const int shift = bits - level - 1;
   return (numbers[0] >> shift & 1U) << 2U | (numbers[1] >> shift & 1U) << 1U |

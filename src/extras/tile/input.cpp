@@ -33,7 +33,7 @@ std::vector<InputPoint> points_of(const PointCloud& cloud) {
   float most = 0;
   for (const float each : cloud.intensities) most = std::max(most, each);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].place = cloud.point(i);
+    points[i].position = cloud.point(i);
     if (!cloud.intensities.empty()) {
       points[i].intensity =
           intensity_of(static_cast<double>(cloud.intensities[i]), static_cast<double>(most));

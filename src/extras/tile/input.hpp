@@ -12,7 +12,7 @@
 namespace palpate::io::tile {
 
 struct InputPoint {
-  Eigen::Vector3d place;  ///< m
+  Eigen::Vector3d position;  ///< m
   std::uint16_t intensity = 0;
   std::array<std::uint16_t, 3> color{};
 };
@@ -23,7 +23,7 @@ struct TileInput {
   std::size_t points = 0;  ///< those that read() leaves out among them
   std::size_t pieces = 1;
   Eigen::Vector3d steps = Eigen::Vector3d::Zero();  ///< m, of a survey's coordinates; 0: it is none
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; places are whole steps away
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; positions are whole steps away
   double length = 0;                                 ///< m, of what is no survey
   /// The points of a piece but those that are marked as not to be used, or beyond 10^12 m. Several
   /// threads may read at once. @throws Error that names what is wrong with the file.

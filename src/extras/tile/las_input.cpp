@@ -45,9 +45,9 @@ class LasFile {
     points.reserve(chunks_[piece].points);
     for (const LasPoint& point : decode(piece)) {
       const Eigen::Vector3d numbers(point.number[0], point.number[1], point.number[2]);
-      const Eigen::Vector3d place = numbers.cwiseProduct(scale_) + offset_;
-      if (point.withheld || !is_usable(place)) continue;
-      points.push_back({place, point.intensity, point.color});
+      const Eigen::Vector3d position = numbers.cwiseProduct(scale_) + offset_;
+      if (point.withheld || !is_usable(position)) continue;
+      points.push_back({position, point.intensity, point.color});
     }
     return points;
   }

@@ -1,4 +1,4 @@
-// Writes files that grow, tells why they cannot, and locks the folder of work.
+// Writes files that grow, reports why they cannot, and locks the folder of work.
 #include "extras/tile/out_file.hpp"
 
 #include <fcntl.h>

@@ -13,7 +13,7 @@ namespace palpate::io::tile {
 class OutFile {
  public:
   /// Opens the file, cut to its first `size` bytes; makes it where that is 0.
-  /// @throws Error that says why not: a file that is shorter, too.
+  /// @throws Error that states why not: a file that is shorter, too.
   OutFile(const std::filesystem::path& path, std::uint64_t size);
   ~OutFile();
   OutFile(const OutFile&) = delete;
@@ -39,7 +39,7 @@ class OutFile {
 void write_file(const std::filesystem::path& path,
                 std::initializer_list<std::span<const std::byte>> parts);
 
-/// A folder of work that this process alone has, until it ends in whatever way.
+/// A folder of work that this process alone has, until it ends for whatever reason.
 class Locked {
  public:
   /// @throws Error where another process has it.

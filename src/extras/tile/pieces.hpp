@@ -26,12 +26,12 @@ struct Piece {
   Piece piece;
   piece.points.reserve(points.size());
   for (const InputPoint& point : points) {
-    const Eigen::Vector3d steps = (point.place - frame.origin) / frame.step;
-    const Eigen::Vector3d place = (steps.array() + 0.5).floor().matrix() - frame.low;
-    piece.box.extend(place);
+    const Eigen::Vector3d steps = (point.position - frame.origin) / frame.step;
+    const Eigen::Vector3d rounded = (steps.array() + 0.5).floor().matrix() - frame.low;
+    piece.box.extend(rounded);
     const auto number = [&](int axis) {
       return static_cast<std::uint32_t>(
-          static_cast<std::int64_t>(std::clamp(place[axis], -kFar, kFar)));
+          static_cast<std::int64_t>(std::clamp(rounded[axis], -kFar, kFar)));
     };
     piece.points.push_back({{number(0), number(1), number(2)}, point.intensity, point.color});
   }
@@ -40,7 +40,7 @@ struct Piece {
 
 /// Reads all points of all inputs and calls take() with one piece after another.
 template <class Take>
-void read_all(const std::vector<TileInput>& inputs, const Frame& frame, const Told& told,
+void read_all(const std::vector<TileInput>& inputs, const Frame& frame, const Report& report,
               const Take& take) {
   constexpr std::size_t kAhead = 8;  // pieces that wait or are read at once (judgement)
   std::vector<std::pair<std::size_t, std::size_t>> pieces;  // input, its piece
@@ -55,7 +55,7 @@ void read_all(const std::vector<TileInput>& inputs, const Frame& frame, const To
   };
   in_order(pieces.size(), kAhead, read, [&](const Piece& piece) {
     take(piece);
-    told(static_cast<double>(++done) / static_cast<double>(pieces.size()));
+    report(static_cast<double>(++done) / static_cast<double>(pieces.size()));
   });
 }
 

@@ -20,28 +20,28 @@ constexpr std::size_t kSample = std::size_t{1}
                                 << 20U;   // points: a chunk of 10^9 has 8000 (judgement)
 constexpr std::uint16_t kByteTo16 = 257;  // 255 becomes 65535
 
-// Some of the places of points: all, or those whose hash ends in zeros. So it does not depend on
+// Some of the positions of points: all, or those whose hash ends in zeros. So it does not depend on
 // their order.
 class Sample {
  public:
   void add(const Numbers& numbers) {
     if (!takes(numbers)) return;
-    places_.push_back(numbers);
+    positions_.push_back(numbers);
     constexpr std::uint64_t kSparsest = 0xFFFF;  // one in so many
-    while (places_.size() > kSample && zeros_ < kSparsest) {
+    while (positions_.size() > kSample && zeros_ < kSparsest) {
       zeros_ = 2 * zeros_ + 1;
-      std::erase_if(places_, [&](const Numbers& each) { return !takes(each); });
+      std::erase_if(positions_, [&](const Numbers& each) { return !takes(each); });
     }
   }
 
   // The largest cubes of at most `most` points along the Morton curve.
   std::vector<Cell> chunks(const Numbers& lowest, int bits, std::size_t most) {
-    for (Numbers& each : places_) {
+    for (Numbers& each : positions_) {
       for (std::size_t k = 0; k < 3; ++k) each[k] -= lowest[k];
     }
-    std::ranges::sort(places_, before);
+    std::ranges::sort(positions_, before);
     std::vector<Cell> cells;
-    split({}, places_, bits, most / (zeros_ + 1), cells);
+    split({}, positions_, bits, most / (zeros_ + 1), cells);
     return cells;
   }
 
@@ -67,7 +67,7 @@ class Sample {
     }
   }
 
-  std::vector<Numbers> places_;
+  std::vector<Numbers> positions_;
   std::uint64_t zeros_ = 0;  // the bits of a hash that are zero
 };
 
@@ -86,7 +86,7 @@ double common_step(Inputs inputs) {
     finest = std::min(finest, each.steps.cwiseAbs().minCoeff());
     length = std::max(length, each.length);
   }
-  constexpr double kEqual = 1e-9;  // doubles that were computed in two ways (judgement)
+  constexpr double kEqual = 1e-9;  // doubles that were computed by two methods (judgement)
   const bool agree = finest > 0 && std::ranges::all_of(inputs, [&](const TileInput& each) {
                        const Eigen::Array3d ratio = each.steps.cwiseAbs().array() / finest;
                        return ((ratio - ratio.round()).abs() < kEqual * ratio).all();
@@ -97,11 +97,11 @@ double common_step(Inputs inputs) {
 // Finds out what there is, in steps of one length.
 class Survey {
  public:
-  Survey(Inputs inputs, const Frame& frame, const Told& told)
+  Survey(Inputs inputs, const Frame& frame, const Report& report)
       : intensities_(inputs.size()), colors_(inputs.size()) {
     plan_.frame = frame;
     for (const TileInput& each : inputs) plan_.dropped += each.points;
-    read_all(inputs, frame, told, [&](const Piece& piece) {
+    read_all(inputs, frame, report, [&](const Piece& piece) {
       plan_.points += piece.points.size();
       plan_.dropped -= piece.points.size();
       box_.extend(piece.box);
@@ -163,7 +163,7 @@ class Survey {
 
 }  // namespace
 
-Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most, const Told& told) {
+Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most, const Report& report) {
   constexpr std::size_t kMostPoints = std::numeric_limits<std::int32_t>::max();
   std::size_t points = 0;
   for (const TileInput& each : inputs) points += each.points;
@@ -173,7 +173,7 @@ Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most, const Tol
   }
   Frame frame{.step = common_step(inputs), .origin = inputs.front().origin};
   while (true) {
-    Survey survey(inputs, frame, told);
+    Survey survey(inputs, frame, report);
     if (survey.bits() <= kMostBits) return survey.plan(most);
     frame.step *= 10;  // the step is too fine for so large a cube
   }

@@ -14,7 +14,7 @@
 namespace palpate::io::tile {
 
 /// Called with 0 ... 1 now and then, never twice at once; may throw to give up.
-using Told = std::function<void(double)>;
+using Report = std::function<void(double)>;
 
 /// Smallest and largest of a column.
 struct Range {
@@ -40,15 +40,15 @@ struct Plan {
 };
 
 /// Reads all points; again where the step was too fine for where they are.
-/// @param most points of a chunk; more have the same place. Of many points a sample tells where
+/// @param most points of a chunk; more have the same position. Of many points a sample shows where
 ///   they are, so it is a little more at times.
 /// @throws Error where there is no point, or too many.
 [[nodiscard]] Plan make_plan(const std::vector<TileInput>& inputs, std::size_t most,
-                             const Told& told);
+                             const Report& report);
 
 /// Reads all points again and appends each to the file of its chunk, which has the chunk's number
 /// for a name. A chunk without points has no file.
 void distribute(const std::vector<TileInput>& inputs, const Plan& plan,
-                const std::filesystem::path& folder, const Told& told);
+                const std::filesystem::path& folder, const Report& report);
 
 }  // namespace palpate::io::tile

@@ -55,7 +55,7 @@ std::vector<std::byte> hierarchy_of(std::vector<StoreNode> nodes, std::size_t re
     out.put(static_cast<std::uint8_t>(mask == 0 ? 1 : 0));  // a leaf
     out.put(static_cast<std::uint8_t>(mask));
     out.put(node.points);
-    out.put(node.points > 0 ? node.place : 0);
+    out.put(node.points > 0 ? node.offset : 0);
     out.put(std::uint64_t{node.points * record});
   }
   return bytes;
@@ -80,11 +80,11 @@ Json attribute(const char* name, const char* type, std::size_t bytes, const Json
 std::string metadata_of(const Plan& plan, std::size_t hierarchy, int depth,
                         const std::string& name) {
   const Frame& frame = plan.frame;
-  const Eigen::Vector3d lower = frame.place({});
+  const Eigen::Vector3d lower = frame.position({});
   // Braces around one value are a list to GCC and the value itself to Clang.
   Json attributes = Json::array();
   attributes.push_back(
-      attribute("position", "int32", 4, list_of(lower), list_of(frame.place(plan.highest))));
+      attribute("position", "int32", 4, list_of(lower), list_of(frame.position(plan.highest))));
   if (plan.layout.intensities) {
     attributes.push_back(attribute("intensity", "uint16", 2, Json::array({plan.intensity.low}),
                                    Json::array({plan.intensity.high})));
@@ -119,7 +119,7 @@ std::size_t count_done(const Plan& plan, const fs::path& work) {
 
 }  // namespace
 
-// Cuts off what of octree.bin no file of a chunk tells.
+// Cuts off what of octree.bin no file of a chunk records.
 StoreBuilder::StoreBuilder(const Plan& plan, std::size_t most, const fs::path& work)
     : plan_(plan),
       tree_{plan.layout, plan.frame.bits, most},
@@ -131,13 +131,13 @@ fs::path StoreBuilder::file(std::size_t chunk) const {
   return work_ / std::to_string(chunk);
 }
 
-void StoreBuilder::sort_chunks(const Told& told) {
+void StoreBuilder::sort_chunks(const Report& report) {
   const std::size_t first = done_;
   in_order(
       plan_.chunks.size() - first, kAtOnce, [&](std::size_t i) { return grow(first + i); },
       [&](Grown& grown) {
         take(done_, grown);
-        told(static_cast<double>(++done_) / static_cast<double>(plan_.chunks.size()));
+        report(static_cast<double>(++done_) / static_cast<double>(plan_.chunks.size()));
       });
 }
 
@@ -166,7 +166,7 @@ void StoreBuilder::take(std::size_t chunk, Grown& grown) {
 }
 
 void StoreBuilder::append(Settled& settled) {
-  for (StoreNode& node : settled.nodes) node.place += octree_.size();
+  for (StoreNode& node : settled.nodes) node.offset += octree_.size();
   octree_.append(settled.bytes);
 }
 

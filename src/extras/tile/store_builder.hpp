@@ -11,8 +11,8 @@
 
 namespace palpate::io::tile {
 
-/// Makes a store of sorted chunks. Of each one that is done a file says what came of it, so another
-/// builder in the same folder goes on behind them.
+/// Makes a store of sorted chunks. Of each one that is done a file records what came of it, so
+/// another builder in the same folder goes on behind them.
 class StoreBuilder {
  public:
   /// `work`: the folder in which the store grows; the chunks are in `work`/points.
@@ -20,7 +20,7 @@ class StoreBuilder {
   StoreBuilder(const Plan& plan, std::size_t most, const std::filesystem::path& work);
 
   /// Sorts the chunks, two side by side.
-  void sort_chunks(const Told& told);
+  void sort_chunks(const Report& report);
 
   /// Adds the levels above the chunks, and writes what describes the store, metadata.json last.
   void finish(const std::string& name);

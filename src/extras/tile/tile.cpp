@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kJob = "job.txt";
 constexpr const char* kMetadata = "metadata.json";
 
-// Says what makes the bytes of a store what they are: the inputs' names in the first line.
+// Describes what makes the bytes of a store what they are: the inputs' names in the first line.
 std::string job_of(const std::vector<std::string>& inputs, const TileOptions& options) {
   std::string names;
   std::string details = fmt::format("scale {}, {} points a chunk, {} a leaf\n", options.scale,
@@ -52,7 +52,7 @@ class Tiler {
     const bool goes_on = was_begun();
     std::vector<TileInput> inputs;
     for (const std::string& path : paths_) inputs.push_back(open_input(path, options_.scale));
-    const Plan plan = make_plan(inputs, options_.chunk_points, told("counting"));
+    const Plan plan = make_plan(inputs, options_.chunk_points, reporter("counting"));
     if (!goes_on) begin();
     if (!fs::exists(work_ / kMetadata)) build(inputs, plan);
     publish();
@@ -85,7 +85,8 @@ class Tiler {
     }
   }
 
-  // Leaves what says whose folder it is, and what makes a store of files that are in place.
+  // Leaves what identifies the owner of the folder, and what makes a store of files that are in
+  // place.
   void clear_folder() const {
     for (const auto& each : fs::directory_iterator(work_)) {
       const fs::path name = each.path().filename();
@@ -121,13 +122,13 @@ class Tiler {
   void build(const std::vector<TileInput>& inputs, const Plan& plan) const {
     if (!fs::exists(work_ / "points")) {
       check_space(plan);
-      distribute(inputs, plan, work_ / "sorting", told("sorting into chunks"));
+      distribute(inputs, plan, work_ / "sorting", reporter("sorting into chunks"));
       fs::rename(work_ / "sorting", work_ / "points");
     }
     StoreBuilder builder(plan, options_.leaf_points, work_);
-    builder.sort_chunks(told("building the octree"));
+    builder.sort_chunks(reporter("building the octree"));
     builder.finish(fs::path(paths_.front()).stem().string());
-    tell("finishing", 0);
+    report("finishing", 0);
   }
 
   // The files of chunks go while octree.bin grows, so that all points are there once, two chunks
@@ -153,19 +154,19 @@ class Tiler {
     fs::remove(out_ / kMetadata);
     for (const char* const file : {"octree.bin", "hierarchy.bin"}) {
       if (fs::exists(work_ / file)) fs::rename(work_ / file, out_ / file);
-      tell("finishing", 0.5);
+      report("finishing", 0.5);
     }
     clear_folder();
     fs::rename(work_ / kMetadata, out_ / kMetadata);
-    tell("finishing", 1);
+    report("finishing", 1);
     fs::remove_all(work_);
   }
 
-  void tell(const std::string& step, double done) const {
+  void report(const std::string& step, double done) const {
     if (options_.progress) options_.progress(step, done);
   }
-  [[nodiscard]] Told told(const std::string& step) const {
-    return [this, step](double done) { tell(step, done); };
+  [[nodiscard]] Report reporter(const std::string& step) const {
+    return [this, step](double done) { report(step, done); };
   }
 
   std::vector<std::string> paths_;

@@ -18,7 +18,7 @@ struct TileOptions {
   /// Called with what is done and 0 ... 1 now and then, on any thread but never twice at once; may
   /// throw to give up: the next call goes on from there.
   std::function<void(const std::string& step, double done)> progress{};
-  /// Tells the free bytes of a folder's disk; empty: the system does.
+  /// Returns the free bytes of a folder's disk; empty: the system does.
   std::function<std::uint64_t(const std::filesystem::path& folder)> free_bytes{};
 };
 
@@ -34,11 +34,11 @@ struct TileResult {
 /// Schuetz, S. Ohrhallinger, M. Wimmer, "Fast Out-of-Core Octree Generation", 2020. The bytes
 /// depend on the inputs and options alone.
 ///
-/// Until it is whole the store grows in `out`/unfinished. A call that was ended there, in whatever
-/// way, is gone on with by the next one. Uses 2 GB of memory at most, unless an input can only be
-/// read whole.
+/// Until it is whole the store grows in `out`/unfinished. A call that was ended there, for whatever
+/// reason, is gone on with by the next one. Uses 2 GB of memory at most, unless an input can only
+/// be read whole.
 /// @param inputs files, or "synthetic:terrain:N".
-/// @throws Error that says what is wrong with an input or with `out`: it is complete already, was
+/// @throws Error that states what is wrong with an input or with `out`: it is complete already, was
 ///   begun with other inputs or options, or its disk has too little space.
 TileResult tile(const std::vector<std::string>& inputs, const std::filesystem::path& out,
                 const TileOptions& options = {});

@@ -72,7 +72,7 @@ Branch Tree::grow(const Cell& cell, std::span<const std::byte> records, Settled&
 
 Branch Tree::join(const Cell& cell, std::vector<Branch> children, Settled& settled) const {
   const std::size_t size = layout.size();
-  const int level = std::min(cell.level + kSpacingLevels, bits);  // twins stay apart
+  const int level = std::min(cell.level + kSpacingLevels, bits);  // duplicates stay apart
   std::vector<bool> taken(std::size_t{1} << (3U * kSpacingLevels));
   Branch parent{cell, false, {}};
   for (Branch& child : children) {

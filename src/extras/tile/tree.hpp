@@ -14,7 +14,7 @@ namespace palpate::io::tile {
 struct StoreNode {
   Cell cell;
   std::uint32_t points = 0;
-  std::uint64_t place = 0;  ///< of its first byte among those of its file
+  std::uint64_t offset = 0;  ///< of its first byte among those of its file
 };
 
 /// A node whose points may still move up, along the Morton curve.
@@ -37,10 +37,10 @@ struct Settled {
 struct Tree {
   Layout layout;
   int bits = 0;          ///< of the root's edge
-  std::size_t most = 0;  ///< points of a leaf, unless they have one place
+  std::size_t most = 0;  ///< points of a leaf, unless they have one position
 
-  /// Sorts records along the Morton curve, equal places by what else they hold: so the result does
-  /// not depend on the order in which they came.
+  /// Sorts records along the Morton curve, equal positions by what else they hold: so the result
+  /// does not depend on the order in which they came.
   void sort(std::span<std::byte> records) const;
 
   /// The octree of a cube's sorted records.
