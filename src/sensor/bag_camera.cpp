@@ -36,14 +36,14 @@ void fill_from(const RosFrames& frames, bag::View data, DepthFrame& frame) {
   frames.fill(message, frame);
 }
 
-// What the first images tell of the others.
+// What the first images show of the others.
 struct BagRate {
   double rate = 30;  // Hz
   bool one_image = false;
 };
 
-// The images or clouds of one topic, as open_bag() says. An image whose transform is not there yet
-// waits until the file is read 0.1 s further; no more than that is held.
+// The images or clouds of one topic, as open_bag() describes. An image whose transform is not there
+// yet waits until the file is read 0.1 s further; no more than that is held.
 class BagRecording final : public Recording {
  public:
   explicit BagRecording(const BagName& name);
@@ -75,7 +75,7 @@ class BagRecording final : public Recording {
   RosFrames frames_;
   std::string frame_;
   BagRate rate_;
-  message::Transforms still_;  // wherever in the file it is told
+  message::Transforms still_;  // wherever in the file they are recorded
   message::Transforms transforms_;
   WaitingImages waiting_;
   ImageTimes times_;
@@ -111,7 +111,7 @@ void BagRecording::measure() {
                           kSlowestBag, kFastestBag);
 }
 
-// So that the first images have a camera, which is often told a little later.
+// So that the first images have a camera, which is often recorded a little later.
 void BagRecording::learn_camera() {
   const auto is_picture = [&](const Channel& channel) {
     return is_image(channel) && !holds<message::PointCloud2>(channel);
@@ -125,7 +125,7 @@ void BagRecording::learn_camera() {
       message::CameraInfo info;
       decode(found.data, info);
       static_cast<void>(camera_of(info, message::is_rectified(topic())));
-      return frames_.tell(info);
+      return frames_.set_camera(info);
     } catch (const Error& error) {
       why = error.what();
     }
@@ -196,14 +196,14 @@ void BagRecording::take(const bag::Message& message) {
     if (is_info(channel)) {
       message::CameraInfo info;
       decode(message.data, info);
-      frames_.tell(info);
+      frames_.set_camera(info);
     } else {
-      TFMessage told;
-      decode(message.data, told);
-      transforms_.add(told, channel.topic.ends_with("tf_static"));
+      TFMessage transforms;
+      decode(message.data, transforms);
+      transforms_.add(transforms, channel.topic.ends_with("tf_static"));
     }
   } catch (const Error&) {
-    // A damaged message says nothing; the next one comes soon.
+    // A damaged message is left out; the next one comes soon.
   }
 }
 
@@ -217,7 +217,7 @@ void BagRecording::keep(const Channel& channel, const bag::Message& message) {
   try {
     message::CdrReader(message.data).get(image.header);
   } catch (const Error&) {
-    image.header = {};  // what is damaged is said when its turn comes
+    image.header = {};  // what is damaged is reported when its turn comes
   }
   waiting_.push(std::move(image));
 }

@@ -1,4 +1,4 @@
-// Holds images of a bag until they can be shown, and says when each is due.
+// Holds images of a bag until they can be shown, and returns when each is due.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@ namespace palpate::sensor {
 
 inline constexpr double kNanosecond = 1e-9;  ///< s
 
-/// Times of images, s: as their stamps say, or, where those stand still or jump, as they were
+/// Times of images, s: as their stamps state, or, where those stand still or jump, as they were
 /// recorded.
 class ImageTimes {
  public:
   /// `log`: when it was recorded, ns. The first image's time is 0.
   double next(double stamp, std::uint64_t log) {
     const double recorded = kNanosecond * static_cast<double>(log - log_);
-    const double told = stamp - stamp_;
+    const double stamped = stamp - stamp_;
     stamp_ = stamp;
     log_ = log;
     if (std::exchange(any_, true)) {
-      time_ += told > 0 && told < recorded + kJump ? told : recorded;
+      time_ += stamped > 0 && stamped < recorded + kJump ? stamped : recorded;
     }
     return time_;
   }

@@ -60,8 +60,8 @@ std::vector<std::string> files_with(const std::string& folder, std::string_view 
   return found;
 }
 
-// Do a topic's images hold depths? Grey ones of 16 bits may: nothing in them says so.
-enum class Depths { none, maybe, sure };
+// Do a topic's images hold depths? Grey ones of 16 bits may: nothing in them states it.
+enum class Depths { none, maybe, certain };
 
 const std::string& encoding_of(const message::Image& image) {
   return image.encoding;
@@ -76,13 +76,13 @@ Depths depths_in(bag::View data) {
   T image;
   decode(data, image);
   const std::string& encoding = encoding_of(image);
-  if (encoding.starts_with("16UC1") || encoding.starts_with("32FC1")) return Depths::sure;
+  if (encoding.starts_with("16UC1") || encoding.starts_with("32FC1")) return Depths::certain;
   DepthFrame frame;
   read_depth(image, frame);
   return Depths::maybe;
 }
 
-// What the first message says, or none if it cannot be read.
+// What the first message contains, or none if it cannot be read.
 Depths depths_of(SplitBag& reader, const std::string& topic) {
   reader.choose([&](const Channel& channel) {
     return channel.topic == topic &&
@@ -98,7 +98,7 @@ Depths depths_of(SplitBag& reader, const std::string& topic) {
   }
 }
 
-// Topics of depth images, whose first message says that they are, of those that may be, and of
+// Topics of depth images, whose first message states that they are, of those that may be, and of
 // clouds.
 struct Fitting {
   std::vector<std::string> images;
@@ -115,7 +115,7 @@ Fitting fitting_topics(SplitBag& reader) {
     if (holds<PointCloud2>(channel)) add(fitting.clouds, channel.topic);
     if (!holds<message::Image>(channel) && !holds<CompressedImage>(channel)) continue;
     const Depths depths = depths_of(reader, channel.topic);
-    if (depths == Depths::sure) add(fitting.images, channel.topic);
+    if (depths == Depths::certain) add(fitting.images, channel.topic);
     if (depths == Depths::maybe) add(fitting.grey, channel.topic);
   }
   return fitting;
@@ -155,7 +155,7 @@ std::vector<std::string> recorded_files(const std::string& path) {
   }
   for (const char* other : {".db3", ".mcap.zstd", ".bag"}) {
     found = files_with(path, other);
-    if (!found.empty()) return found;  // whose reader says what they are
+    if (!found.empty()) return found;  // whose reader reports what they are
   }
   throw Error(path + ": there is no MCAP file in this folder; name one that ROS 2 recorded into");
 }

@@ -25,7 +25,7 @@ struct BagName {
 
 /// The files of a recording: of a folder, as ROS 2 records into, the MCAP files that its
 /// metadata.yaml lists or, without one, the only one in it, or a recording of another kind.
-/// @throws Error when there are none, or it is not said which.
+/// @throws Error when there are none, or several and none is named.
 [[nodiscard]] std::vector<std::string> recorded_files(const std::string& path);
 
 /// @throws Error as recorded_files() and parse_topic_options() do.

@@ -66,15 +66,15 @@ bool comes_before(std::string_view a, std::string_view b) {
   return a.empty() == b.empty() ? whole_a < whole_b : a.empty();
 }
 
-bool tells_of_depth(const fs::path& image) {
+bool names_depth(const fs::path& image) {
   return image.filename().string().find("depth") != std::string::npos;
 }
 
-// Where names tell depth images from the colour images beside them ("frame-000000.depth.png" and
-// "frame-000000.color.png" of 7-Scenes), those of depth alone are frames.
+// Where names distinguish depth images from the colour images beside them ("frame-000000.depth.png"
+// and "frame-000000.color.png" of 7-Scenes), those of depth alone are frames.
 void drop_other_pictures(std::vector<fs::path>& images) {
-  if (std::ranges::none_of(images, tells_of_depth)) return;
-  std::erase_if(images, [](const fs::path& image) { return !tells_of_depth(image); });
+  if (std::ranges::none_of(images, names_depth)) return;
+  std::erase_if(images, [](const fs::path& image) { return !names_depth(image); });
 }
 
 }  // namespace
@@ -82,9 +82,9 @@ void drop_other_pictures(std::vector<fs::path>& images) {
 std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wanted) {
   std::error_code failure;
   const bool usual = wanted.empty() && fs::is_directory(folder / "depth", failure);
-  const fs::path place = usual ? folder / "depth" : folder / wanted;
+  const fs::path listed = usual ? folder / "depth" : folder / wanted;
   std::vector<fs::path> frames;
-  fs::directory_iterator entry(place, failure);
+  fs::directory_iterator entry(listed, failure);
   for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
     if (is_frame(entry->path())) frames.push_back(entry->path());
   }
@@ -92,7 +92,7 @@ std::vector<fs::path> frames_in(const fs::path& folder, const std::string& wante
     throw Error(
         fmt::format("{}: cannot be listed ({}). Give the folder of the depth images "
                     "(\"images\" in sequence.json).",
-                    place.string(), failure.message()));
+                    listed.string(), failure.message()));
   }
   std::ranges::sort(frames, [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());

@@ -75,7 +75,7 @@ LiveCamera::LiveCamera(CameraInfo info, Connect connect, std::string silence, co
 void LiveCamera::connect() {
   connection_ = connect_();
   stamps_ = {};
-  heard_ = (clock_ != nullptr ? *clock_ : host_).now();
+  received_ = (clock_ != nullptr ? *clock_ : host_).now();
 }
 
 void LiveCamera::begin(double start) {
@@ -104,7 +104,7 @@ DepthCamera::Status LiveCamera::fetch(DepthFrame& frame, double timeout) {
   const DepthCamera::Status status = connection_->fetch(frame, device_time, timeout);
   const double now = (clock_ != nullptr ? *clock_ : host_).now();
   if (status == DepthCamera::Status::waiting) return silent(now);
-  heard_ = now;
+  received_ = now;
   if (status == DepthCamera::Status::damaged) reason_ = connection_->damage();
   if (status == DepthCamera::Status::frame) {
     frame.stamp = stamp_of(device_time, now);
@@ -114,10 +114,10 @@ DepthCamera::Status LiveCamera::fetch(DepthFrame& frame, double timeout) {
 }
 
 DepthCamera::Status LiveCamera::silent(double now) {
-  if (now - heard_ <= kLongSilence) return DepthCamera::Status::waiting;
+  if (now - received_ <= kLongSilence) return DepthCamera::Status::waiting;
   reason_ =
-      fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - heard_, silence_);
-  heard_ = now;
+      fmt::format("{}: open, but silent for {:.3g} s. {}", info_.name, now - received_, silence_);
+  received_ = now;
   // A recording may hold long pauses; a device is better opened again.
   if (lost_ == Lost::opened_again) connection_.reset();
   return DepthCamera::Status::failed;

@@ -28,10 +28,10 @@ namespace palpate::sensor {
 [[nodiscard]] DriverInfo ros_driver();
 /// `name`: "TOPIC[,frame=FRAME][,unit=METRES]", a topic of depth images (Image of 16UC1 or 32FC1
 /// with the CameraInfo beside it, or CompressedImage) or of PointCloud2, whose publisher may appear
-/// later. With a frame, /tf and /tf_static say where the sensor is in it; a unit is the metres a
-/// step of depths or coordinates, where they are not what the type says. Stamps of programs on this
+/// later. With a frame, /tf and /tf_static report where the sensor is in it; a unit is the metres a
+/// step of depths or coordinates, unless the type defines them. Stamps of programs on this
 /// machine's clock are brought to the stream's; others (10 s off) are replaced by the time of
-/// arrival. The environment says in which domain (dds::environment_options()).
+/// arrival. The environment sets the domain (dds::environment_options()).
 [[nodiscard]] std::unique_ptr<DepthCamera> open_ros(const std::string& name,
                                                     const CameraOptions& options);
 
@@ -46,9 +46,9 @@ namespace palpate::sensor {
 [[nodiscard]] DriverInfo bag_driver();
 /// `name`: "FILE[:TOPIC][,frame=FRAME][,unit=METRES]", depth images or clouds (as for open_ros())
 /// in an MCAP bag of ROS 2's messages, which is read as it is played; without a topic the only one
-/// that fits. With a frame, the bag's transforms say where the sensor is in it, those recorded up
-/// to 0.1 s after the image included. Played as PlayedCamera does. What is damaged of the file is
-/// left out and told as damaged frames.
+/// that fits. With a frame, the bag's transforms report where the sensor is in it, those recorded
+/// up to 0.1 s after the image included. Played as PlayedCamera does. What is damaged of the file
+/// is left out and reported as damaged frames.
 /// @throws Error when it is no bag, or no topic or camera in it can be used; lists what can.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_bag(const std::string& name,
                                                     const CameraOptions& options);
@@ -64,7 +64,7 @@ namespace palpate::sensor {
 /// Brings the times of a device's own clock to the host's. A frame arrives no earlier than it was
 /// taken, so the smallest difference between arrival and the device's time is the best guess of how
 /// the clocks differ; it may grow slowly, as clocks drift. What every frame takes at least to
-/// arrive is not known, and stays in the stamps. A device's time that goes back or jumps by a
+/// arrive is unknown, and stays in the stamps. A device's time that goes back or jumps by a
 /// second starts again.
 class HostStamps {
  public:
@@ -91,19 +91,19 @@ class Connection {
   [[nodiscard]] virtual DepthCamera::Status fetch(DepthFrame& frame, double& device_time,
                                                   double timeout) = 0;
 
-  /// Says what was wrong with the frame that fetch() called `damaged`.
+  /// Describes what was wrong with the frame that fetch() called `damaged`.
   [[nodiscard]] virtual std::string damage() const { return {}; }
 
  protected:
   Connection() = default;
 };
 
-/// @throws Error that says why the device cannot be opened.
+/// @throws Error that states why the device cannot be opened.
 using Connect = std::function<std::unique_ptr<Connection>()>;
 
 /// Treatment of a device that is lost.
 enum class Lost {
-  opened_again,  ///< when it is asked for the next frame; also when it is silent for long
+  opened_again,  ///< when the next frame is requested; also when it is silent for long
   ended,         ///< a recording: opened again, it plays from its beginning
 };
 
@@ -112,7 +112,7 @@ enum class Lost {
 /// starts again.
 class LiveCamera final : public DepthCamera {
  public:
-  /// Opens the device. `silence` tells what a device that is silent for long may lack. Without a
+  /// Opens the device. `silence` names what a device that is silent for long may lack. Without a
   /// clock, the host's is taken.
   LiveCamera(CameraInfo info, Connect connect, std::string silence, const Clock* clock,
              Lost lost = Lost::opened_again);
@@ -138,7 +138,7 @@ class LiveCamera final : public DepthCamera {
   HostStamps stamps_;
   double stamp_ = 0;  // of the last frame of a device that does not pace itself
   std::optional<double> device_time_ = {};  // of that frame
-  double heard_ = 0;                        // when the last frame came, s
+  double received_ = 0;                     // when the last frame came, s
   std::string reason_;
 };
 

@@ -20,7 +20,7 @@
 namespace palpate::sensor {
 namespace {
 
-constexpr float kAsAsked = -1;  // playback speed: a frame whenever one is read
+constexpr float kOnRead = -1;  // playback speed: a frame whenever one is read
 constexpr auto kTwoFrames = std::chrono::milliseconds(80);
 constexpr double kMicrosecond = 1e-6;
 
@@ -95,12 +95,12 @@ class DepthStream {
     }
   }
 
-  void play(bool as_asked) {
+  void play(bool on_read) {
     // Repeated always: at an end without repetition the player's thread runs wild (calm_player).
     const OniBool repeat = TRUE;
     (void)library_->set_device_property(device_, ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED,
                                         &repeat, sizeof repeat);
-    if (as_asked) set_speed(kAsAsked);
+    if (on_read) set_speed(kOnRead);
   }
 
   template <class T>
@@ -115,9 +115,9 @@ class DepthStream {
   }
 
   // OpenNI2's player looks through its list of streams between frames and takes no lock, so a
-  // stream must not go meanwhile. Told to wait until it is asked, it rests in the next frame.
+  // stream must not go meanwhile. Set to wait until it is read, it rests in the next frame.
   void calm_player() {
-    set_speed(kAsAsked);
+    set_speed(kOnRead);
     std::this_thread::sleep_for(kTwoFrames);
   }
 
@@ -126,10 +126,10 @@ class DepthStream {
   OniStreamHandle stream_ = nullptr;
 };
 
-// Knows when a recording that is played once has been shown: its player begins again.
+// Detects when a recording that is played once has been shown: its player begins again.
 class PlayedOnce {
  public:
-  // `frames`: how many it has; not above 0: it does not tell.
+  // `frames`: how many it has; not above 0: unknown.
   explicit PlayedOnce(int frames)
       : frames_(frames > 0 ? frames : std::numeric_limits<int>::max()) {}
 
@@ -228,8 +228,8 @@ class OpenNi2Connection final : public Connection {
   }
 
   [[nodiscard]] Pinhole pinhole(int width, int height) const {
-    const bool known = across_ > 0 && across_ < 3 && down_ > 0 && down_ < 3;
-    if (!known) return kinect_pinhole(width, height);
+    const bool valid = across_ > 0 && across_ < 3 && down_ > 0 && down_ < 3;
+    if (!valid) return kinect_pinhole(width, height);
     return {.fx = width / (2 * std::tan(across_ / 2)),
             .fy = height / (2 * std::tan(down_ / 2)),
             .cx = width / 2.0,
@@ -242,7 +242,7 @@ class OpenNi2Connection final : public Connection {
   Device device_;
   DepthStream stream_;  // goes before its device
   bool mirrored_ = false;
-  double across_ = 0;  // field of view, rad; 0: not known
+  double across_ = 0;  // field of view, rad; 0: unknown
   double down_ = 0;
   std::optional<PlayedOnce> once_;
   std::string damaged_;  // what the last damaged frame was like

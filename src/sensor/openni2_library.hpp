@@ -39,7 +39,7 @@ struct OpenNi2Functions {
 /// OpenNI2, running.
 class OpenNi2Library : public OpenNi2Functions {
  public:
-  /// Loads and starts it. @throws Error that says what is missing.
+  /// Loads and starts it. @throws Error that states what is missing.
   OpenNi2Library();
   ~OpenNi2Library();
   OpenNi2Library(const OpenNi2Library&) = delete;
@@ -49,7 +49,7 @@ class OpenNi2Library : public OpenNi2Functions {
   [[nodiscard]] std::string last_words() const;
 };
 
-/// Does it hold all depths that it says, in a format that is known?
+/// Does it contain all depths of its size, in a supported format?
 [[nodiscard]] bool is_whole(const OniFrame& image);
 
 /// Depths (m, row by row, reusing memory) of a frame that is whole; `mirrored`: left is right.

@@ -1,4 +1,4 @@
-// Plays a recording as a camera, in real time or as fast as it is asked.
+// Plays a recording as a camera, in real time or as fast as it is read.
 #include "sensor/played_camera.hpp"
 
 #include <algorithm>

@@ -28,8 +28,8 @@ class Recording {
 };
 
 /// Plays a recording: every image is shown, in order, at its time on the clock, or as fast as they
-/// are asked for where there is none; one that is asked for too late at once. Stamps go on as
-/// recorded, from begin() on; without that from when the first image is asked for, and from 0
+/// are requested where there is none; one that is requested too late at once. Stamps go on as
+/// recorded, from begin() on; without that from when the first image is requested, and from 0
 /// without a clock. A recording that loops begins again one image's time after its last.
 class PlayedCamera final : public DepthCamera {
  public:
@@ -48,7 +48,7 @@ class PlayedCamera final : public DepthCamera {
   CameraInfo info_;
   std::unique_ptr<Recording> recording_;
   CameraOptions options_;
-  std::optional<double> start_;  // stamp of the first image, s; unset until it is asked for
+  std::optional<double> start_;  // stamp of the first image, s; unset until it is requested
   double lap_ = 0;               // s from there to the first image of this lap
   bool any_ = false;             // there was an image in this lap
   // The next image, if it was loaded beforehand, and how that went.

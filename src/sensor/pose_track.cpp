@@ -20,32 +20,32 @@ namespace {
 constexpr double kOff = 0.01;
 constexpr double kFarthestOrigin = 1e6;  // m (judgement)
 
-bool is_place(const Eigen::Vector3d& place) {
-  return place.allFinite() && place.cwiseAbs().maxCoeff() <= kFarthestOrigin;
+bool is_position(const Eigen::Vector3d& position) {
+  return position.allFinite() && position.cwiseAbs().maxCoeff() <= kFarthestOrigin;
 }
 
-Eigen::Isometry3d joined(const Eigen::Vector3d& place, const Eigen::Quaterniond& rotation) {
+Eigen::Isometry3d joined(const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = rotation.normalized().toRotationMatrix();
-  pose.translation() = place;
+  pose.translation() = position;
   return pose;
 }
 
 }  // namespace
 
-std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& position,
                                        const Eigen::Quaterniond& rotation) {
   const bool good = rotation.coeffs().allFinite() && std::abs(rotation.norm() - 1) <= kOff;
-  if (!good || !is_place(place)) return {};
-  return joined(place, rotation);
+  if (!good || !is_position(position)) return {};
+  return joined(position, rotation);
 }
 
-std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& position,
                                        const Eigen::Matrix3d& rotation) {
-  if (!rotation.allFinite() || !is_place(place)) return {};
+  if (!rotation.allFinite() || !is_position(position)) return {};
   const Eigen::Matrix3d error = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
   if (error.cwiseAbs().maxCoeff() > 2 * kOff || rotation.determinant() < 0) return {};
-  return joined(place, Eigen::Quaterniond(rotation));
+  return joined(position, Eigen::Quaterniond(rotation));
 }
 
 namespace {
@@ -132,7 +132,7 @@ std::optional<std::array<double, N>> numbers(std::string_view line) {
   return io::trim(line).empty() ? std::optional(values) : std::nullopt;
 }
 
-// The four lines of a matrix. Nothing when they say that tracking was lost.
+// The four lines of a matrix. Nothing when they state that tracking was lost.
 std::optional<Eigen::Isometry3d> read_matrix(const Input& input, TextScanner& scanner) {
   const std::size_t begin = scanner.offset();
   Eigen::Matrix4d matrix;
@@ -228,7 +228,7 @@ PosesByNumber read_by_number(const Input& input) {
       const std::size_t offset = scanner.offset();
       const auto mounting = read_matrix(input, scanner);
       if (!mounting) io::fail_at_line(input, offset, "this matrix is not finite", kPoseRemedy);
-      result.T_told_sensor = *mounting;
+      result.T_posed_sensor = *mounting;
     }
   }
   return result;

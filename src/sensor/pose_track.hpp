@@ -12,9 +12,9 @@ namespace palpate::sensor {
 
 /// A pose from numbers that people and programs wrote down: rounded, so that rotations are a little
 /// off; these are set right. Nothing when they are far off (1 %), or beyond 10^6 m.
-[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& position,
                                                      const Eigen::Quaterniond& rotation);
-[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& place,
+[[nodiscard]] std::optional<Eigen::Isometry3d> rigid(const Eigen::Vector3d& position,
                                                      const Eigen::Matrix3d& rotation);
 
 struct ListedFrame {
@@ -28,7 +28,7 @@ struct ListedFrame {
 [[nodiscard]] std::vector<ListedFrame> parse_frame_list(std::string_view text,
                                                         const std::string& name);
 
-/// A pose at a time; nothing where it says that tracking was lost.
+/// A pose at a time; nothing where it states that tracking was lost.
 struct StampedPose {
   double stamp = 0;  // s
   std::optional<Eigen::Isometry3d> pose = Eigen::Isometry3d::Identity();
@@ -46,20 +46,20 @@ struct PosesByOrder {
 /// behind each pose, such as from the depth camera to the colour camera whose poses they are.
 struct PosesByNumber {
   std::map<std::size_t, Eigen::Isometry3d> poses;
-  Eigen::Isometry3d T_told_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_posed_sensor = Eigen::Isometry3d::Identity();
 };
 
 using Poses = std::variant<PoseTrack, PosesByOrder, PosesByNumber>;
 
 /// Reads poses, camera to world: lines "time x y z qx qy qz qw" (TUM), groups of a line of three
 /// counts and four of a 4 x 4 matrix (Redwood's .log), or 4 x 4 matrices under comments that name
-/// "frame-NUMBER". Numbers that are infinite or no numbers ("nan") say that tracking was lost: that
+/// "frame-NUMBER". Numbers that are infinite or no numbers ("nan") state that tracking was lost: that
 /// frame has no pose.
 /// @throws Error that names the line and what it should be.
 [[nodiscard]] Poses parse_poses(std::string_view text, const std::string& name);
 
-/// The pose at a time between two known ones: places in a straight line, rotations along the
-/// shortest arc (slerp). One that is known within a
+/// The pose at a time between two given ones: positions in a straight line, rotations along the
+/// shortest arc (slerp). One that is given within a
 /// millisecond is taken as it is. Nothing before the first, after the last, in gaps above 0.25 s,
 /// and beside a pose that was lost.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp);

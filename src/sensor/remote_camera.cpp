@@ -57,7 +57,7 @@ class Client {
   [[nodiscard]] int handle() const { return handle_; }
 
   // Its last words to it; what it does not take is lost.
-  void tell(const std::string& why) const {
+  void notify(const std::string& why) const {
     const std::string line = why + "\n";
     static_cast<void>(::send(handle_, line.data(), line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
   }
@@ -99,7 +99,7 @@ class RemoteCamera final : public DepthCamera {
   Client client_;
   FrameAssembler assembler_;
   HostStamps stamps_;   // of this client
-  std::string camera_;  // the first frame's, in words that tell any two apart; empty: none came
+  std::string camera_;  // the first frame's, in words that distinguish any two; empty: none came
   std::string flaw_;    // of what the client sent, not reported yet
   std::string reason_;
 };
@@ -136,7 +136,7 @@ DepthCamera::Status RemoteCamera::take(DepthFrame& frame) {
     for (int i = 0; i < kMostFrames && flaw_.empty() && take_whole(frame); ++i) any = true;
   } catch (const Error& error) {
     flaw_ = error.what();
-    client_.tell(flaw_);
+    client_.notify(flaw_);
     part();
   }
   if (any) return DepthCamera::Status::frame;
@@ -178,8 +178,8 @@ void RemoteCamera::check_camera() {
 
 void RemoteCamera::stamp(DepthFrame& frame) {
   const double now = clock_.now();
-  const std::optional<double>& told = assembler_.header().stamp;
-  frame.stamp = told ? stamps_.host(*told, now) : now;
+  const std::optional<double>& stamp = assembler_.header().stamp;
+  frame.stamp = stamp ? stamps_.host(*stamp, now) : now;
 }
 
 void RemoteCamera::part() {
@@ -198,7 +198,7 @@ bool RemoteCamera::let_in() {
           fmt::format("{}: no program can connect to '{}': {}", kWhat, path_, words(errno)));
     }
     if (client_.there()) {
-      next.tell("another program is this camera; stop that one");
+      next.notify("another program is this camera; stop that one");
     } else {
       client_ = std::move(next);
       came = true;

@@ -22,7 +22,7 @@ struct FrameHeader {
   CameraModel camera;
   double unit = 0;              ///< m a step of the pixels' values
   bool floats = false;          ///< pixels are f32; otherwise u16
-  std::optional<double> stamp;  ///< s, on a clock of the client's; unset: it tells none
+  std::optional<double> stamp;  ///< s, on a clock of the client's; unset: it sends none
   std::optional<Eigen::Isometry3d> T_world_sensor;  ///< unset: where the source stands
 
   /// Size of all pixels, bytes.

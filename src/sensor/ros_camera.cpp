@@ -76,7 +76,7 @@ class TransformListener {
         more = reader.take(message);
         if (more) transforms_.add(message, is_static);
       } catch (const Error&) {
-        // A damaged message says nothing of where frames are; the next one comes soon.
+        // A damaged message does not report where frames are; the next one comes soon.
       }
     }
   }
@@ -95,7 +95,7 @@ class RosCamera final : public DepthCamera {
         clock_(clock != nullptr ? *clock : host_),
         participant_(dds::environment_options()) {
     if (!name_.options.frame.empty()) transforms_.emplace(participant_);
-    // Says at once when the topic's name is none.
+    // Reports at once when the topic's name is invalid.
     infos_.emplace(participant_, frames_.info_topic(), kSensor);
   }
 
@@ -114,7 +114,7 @@ class RosCamera final : public DepthCamera {
   template <class Message>
   DepthCamera::Status take(Reader<Message>& reader, DepthFrame& frame, double timeout);
   [[nodiscard]] double stamp_of(const Header& header) const;
-  bool place(const Header& header, DepthFrame& frame);
+  bool set_pose(const Header& header, DepthFrame& frame);
 
   CameraName name_;
   RosFrames frames_;
@@ -126,7 +126,7 @@ class RosCamera final : public DepthCamera {
   std::optional<Reader<message::CameraInfo>> infos_;
   Images images_;
   bool arrived_ = false;    // a message
-  std::uint64_t lost_ = 0;  // messages that never arrived, as far as they were told
+  std::uint64_t lost_ = 0;  // messages that never arrived, as far as they were reported
   std::string reason_;
 };
 
@@ -211,7 +211,8 @@ DepthCamera::Status RosCamera::take(Reader<Message>& reader, DepthFrame& frame, 
     if (!reader.take(message)) return DepthCamera::Status::waiting;
     frames_.fill(message, frame);
     frame.stamp = stamp_of(message.header);
-    return place(message.header, frame) ? DepthCamera::Status::frame : DepthCamera::Status::unposed;
+    return set_pose(message.header, frame) ? DepthCamera::Status::frame
+                                           : DepthCamera::Status::unposed;
   } catch (const Error& error) {
     reason_ = error.what();
     return DepthCamera::Status::damaged;
@@ -219,11 +220,11 @@ DepthCamera::Status RosCamera::take(Reader<Message>& reader, DepthFrame& frame, 
 }
 
 void RosCamera::take_infos() {
-  message::CameraInfo told;
+  message::CameraInfo info;
   for (bool more = true; more;) {
     try {
-      more = infos_->take(told);
-      if (more) frames_.tell(told);
+      more = infos_->take(info);
+      if (more) frames_.set_camera(info);
     } catch (const Error& error) {
       frames_.lose_camera(error.what());
     }
@@ -236,7 +237,7 @@ double RosCamera::stamp_of(const Header& header) const {
   return age < kOldest && age > kNewest ? now - age : now;
 }
 
-bool RosCamera::place(const Header& header, DepthFrame& frame) {
+bool RosCamera::set_pose(const Header& header, DepthFrame& frame) {
   frame.T_world_sensor.reset();
   if (!transforms_) return true;
   const double stamp = to_seconds(header.stamp);

@@ -11,7 +11,7 @@
 
 namespace palpate::sensor {
 
-void RosFrames::tell(const message::CameraInfo& info) {
+void RosFrames::set_camera(const message::CameraInfo& info) {
   try {
     camera_ = camera_of(info, message::is_rectified(topic_));
   } catch (const Error& error) {

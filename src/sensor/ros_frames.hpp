@@ -13,7 +13,7 @@ namespace palpate::sensor {
 /// from: a topic that is there now, or a recording. One thread at a time.
 class RosFrames {
  public:
-  /// `unit`: metres a step of depths and coordinates; none: as the messages' type says.
+  /// `unit`: metres a step of depths and coordinates; none: as the messages' type defines.
   explicit RosFrames(std::string topic, std::optional<double> unit = {})
       : topic_(std::move(topic)), info_topic_(message::info_topic(topic_)), unit_(unit) {}
 
@@ -21,13 +21,13 @@ class RosFrames {
   [[nodiscard]] const std::string& info_topic() const { return info_topic_; }
 
   /// Sets the camera of the images from now on. fill() throws if it cannot be used.
-  void tell(const message::CameraInfo& info);
+  void set_camera(const message::CameraInfo& info);
   /// There is no camera, for this reason.
   void lose_camera(std::string why);
 
   /// Fills camera and depths, or the cloud of a sensor that delivers points. Stamp and pose stay
   /// for the caller to set.
-  /// @throws Error that says why that cannot be.
+  /// @throws Error that states why that cannot be.
   void fill(const message::Image& image, DepthFrame& frame) const;
   void fill(const message::CompressedImage& image, DepthFrame& frame) const;
   void fill(const message::PointCloud2& points, DepthFrame& frame) const;

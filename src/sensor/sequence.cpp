@@ -1,4 +1,4 @@
-// Reads what a folder of depth images or clouds says of them.
+// Reads the description of a folder of depth images or clouds.
 #include "sensor/sequence.hpp"
 
 #include <fmt/format.h>
@@ -167,22 +167,22 @@ void add_poses(const fs::path& folder, const SequenceDescription& description,
                std::vector<SequenceFrame>& frames) {
   const fs::path path = folder / description.poses;
   const Poses poses = parse_poses(text_named(folder, description.poses, "pose"), path.string());
-  Eigen::Isometry3d T_told_sensor = description.T_told_sensor;
+  Eigen::Isometry3d T_posed_sensor = description.T_posed_sensor;
   if (const auto* numbered = std::get_if<PosesByNumber>(&poses)) {
-    T_told_sensor = numbered->T_told_sensor * T_told_sensor;
+    T_posed_sensor = numbered->T_posed_sensor * T_posed_sensor;
   }
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto told = pose_of(poses, frames[i], i);
-    if (!told) continue;
+    const auto pose = pose_of(poses, frames[i], i);
+    if (!pose) continue;
     frames[i].T_world_sensor =
-        (description.world_to_camera ? told->inverse() : *told) * T_told_sensor;
+        (description.world_to_camera ? pose->inverse() : *pose) * T_posed_sensor;
   }
 }
 
 // Frames a second: by the median interval if each frame has its own stamp, else as described.
 double rate_of(const SequenceDescription& description, const std::vector<SequenceFrame>& frames) {
-  const bool told = description.rate && description.frames.empty() && description.stamps.empty();
-  if (told || frames.size() < 2) return description.rate.value_or(kRate);
+  const bool given = description.rate && description.frames.empty() && description.stamps.empty();
+  if (given || frames.size() < 2) return description.rate.value_or(kRate);
   std::vector<double> intervals;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     intervals.push_back(frames[i].stamp - frames[i - 1].stamp);

@@ -17,18 +17,18 @@ namespace palpate::sensor {
 
 /// Contents of a sequence.json; docs/sequences.md explains every field.
 struct SequenceDescription {
-  CameraModel camera;        // fx 0: nothing is said of its lens, as clouds need none
+  CameraModel camera;        // fx 0: its lens is not described, as clouds need none
   double depth_unit = 1e-3;  // m
   std::vector<std::uint16_t> invalid;
   bool swapped = false;
-  std::optional<double> rate;  // Hz; unset: not said
-  std::string images;          // folder; empty: not said
+  std::optional<double> rate;  // Hz; unset: not given
+  std::string images;          // folder; empty: not given
   std::string frames;          // file that lists times and images; empty: all images by name
   std::vector<double> stamps;  // s, one an image; empty: by rate
   std::string poses;           // file; empty: none
   bool world_to_camera = false;
-  /// Pose of the depth camera in the frame whose pose is told.
-  Eigen::Isometry3d T_told_sensor = Eigen::Isometry3d::Identity();
+  /// Pose of the depth camera in the frame whose pose is given.
+  Eigen::Isometry3d T_posed_sensor = Eigen::Isometry3d::Identity();
 };
 
 /// @throws Error that names the field and what it may be.
@@ -41,7 +41,7 @@ namespace palpate {
 struct SequenceFrame {
   std::filesystem::path image;                        ///< or cloud
   double stamp = 0;                                   ///< when it was taken, s since any start
-  std::optional<Eigen::Isometry3d> T_world_sensor{};  ///< at the stamp, where poses are known
+  std::optional<Eigen::Isometry3d> T_world_sensor{};  ///< at the stamp, where poses are given
 };
 
 /// Depth images or clouds one after another, as docs/sequences.md describes them.
@@ -53,7 +53,7 @@ struct Sequence {
   bool swapped = false;                ///< images hold the less significant byte first
   double rate = 30;                    ///< frames a second, Hz
   std::string assumed = {};            ///< as CameraInfo has it
-  bool posed = false;                  ///< poses are known; a frame without one is out of use
+  bool posed = false;                  ///< poses are given; a frame without one is out of use
   std::vector<SequenceFrame> frames;   ///< stamps grow strictly
 };
 
@@ -62,18 +62,18 @@ struct Sequence {
 
 /// Reads the description of a sequence, no image: `folder` holds a sequence.json, or a depth.txt or
 /// associations.txt as TUM's RGB-D benchmark has them, or clouds.
-/// @throws Error that names the file, the place in it and a remedy.
+/// @throws Error that names the file, the position in it and a remedy.
 [[nodiscard]] Sequence read_sequence(const std::filesystem::path& folder);
 
 struct SequenceOptions {
   const Clock* clock = nullptr;  ///< frames are shown at their time on it; outlives the camera.
-                                 ///< Null: as fast as they are asked for
+                                 ///< Null: as fast as they are requested
   bool loop = false;             ///< begins again at the end, one frame's time after the last
 };
 
-/// A camera that plays a sequence. Every frame is shown, in order: one that is asked for too late
+/// A camera that plays a sequence. Every frame is shown, in order: one that is requested too late
 /// is shown at once. Stamps go on as recorded, from DepthCamera::begin() on; without that from when
-/// the first frame is asked for, and from 0 without a clock. An image that is missing, broken, of
+/// the first frame is requested, and from 0 without a clock. An image that is missing, broken, of
 /// another size, or without the pose that others have is damaged when its turn comes, and the next
 /// is as good as ever.
 /// @throws Error when there is no frame.

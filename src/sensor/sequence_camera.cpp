@@ -42,7 +42,7 @@ void SequenceRecording::read(const std::filesystem::path& path, DepthFrame& fram
   }
   frame.cloud.reset();
   read_depth_frame(path, images_, frame);
-  // The first image says what size all have, where the description does not.
+  // The first image sets what size all have, where the description does not.
   images_.camera.width = frame.camera.width;
   images_.camera.height = frame.camera.height;
 }

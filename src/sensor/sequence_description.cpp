@@ -114,7 +114,7 @@ json parse(std::string_view text, const std::string& name) {
   return document;
 }
 
-// A field that nobody knows is a slip of the pen more often than not.
+// An unknown field is a slip of the pen more often than not.
 void check_names(const json& document, const std::string& name) {
   for (const auto& [field, value] : document.items()) {
     if (std::ranges::find(kFields, field) != kFields.end() || field.ends_with("note")) continue;
@@ -129,8 +129,8 @@ CameraModel camera_of(const Fields& fields) {
   CameraModel camera;
   camera.width = static_cast<int>(fields.number("width", 1, kWidest, "pixels", 0));
   camera.height = static_cast<int>(fields.number("height", 1, kWidest, "pixels", 0));
-  const auto said = [&](const char* field) { return fields.find(field) != nullptr; };
-  if (std::ranges::none_of(kLens, said)) return camera;
+  const auto given = [&](const char* field) { return fields.find(field) != nullptr; };
+  if (std::ranges::none_of(kLens, given)) return camera;
   constexpr std::string_view kFocal = "the focal length in pixels";
   constexpr std::string_view kCentre = "the principal point in pixels";
   camera.pinhole.fx = fields.number("fx", 1e-3, kFar, kFocal);
@@ -205,7 +205,7 @@ SequenceDescription parse_description(std::string_view text, const std::string& 
   sequence.poses = file_of(fields, "pose");
   sequence.world_to_camera =
       second_of(fields, "pose_direction", "camera_to_world", "world_to_camera");
-  sequence.T_told_sensor = mounting_of(fields);
+  sequence.T_posed_sensor = mounting_of(fields);
   return sequence;
 }
 

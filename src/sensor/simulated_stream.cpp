@@ -44,8 +44,8 @@ double frame_time_of(const CameraInfo& camera, const std::string& name) {
 
 }  // namespace
 
-// A camera that is asked for frames, and its last answer.
-struct AskedCamera {
+// A camera that is polled for frames, and its last answer.
+struct PolledCamera {
   DepthCamera& camera;
   DepthFrame frame = {};
   std::string reason = {};  // why the last answer was no frame
@@ -53,7 +53,7 @@ struct AskedCamera {
   int failures = 0;         // in a row
 
   DepthCamera::Status look(double patience) {
-    const DepthCamera::Status status = ask(camera, frame, silent ? 0 : patience, reason);
+    const DepthCamera::Status status = try_read(camera, frame, silent ? 0 : patience, reason);
     silent = status == DepthCamera::Status::waiting;
     failures = status == DepthCamera::Status::failed ? failures + 1 : 0;
     return status;
@@ -65,7 +65,7 @@ struct SimulatedStream::Player {
          const SimulatedStreamOptions& wishes, std::function<void()> at_end)
       : options(checked(wishes, name)),
         frame_time(frame_time_of(from.info(), name)),
-        asked{from},
+        polled{from},
         sink(std::move(to)),
         ended(std::move(at_end)),
         log(name, from.info().name, options.stall, 0),
@@ -83,14 +83,14 @@ struct SimulatedStream::Player {
 
   const SimulatedStreamOptions options;
   const double frame_time;  // s
-  AskedCamera asked;
+  PolledCamera polled;
   const Stream::Sink sink;
   const std::function<void()> ended;  // may be empty
   StreamStatistics log;
   FrameCheck check;
   bool waits = false;      // is there a frame that waits for its time?
   bool over = false;       // none will come any more
-  double next = 0;         // when the frame is due, or the camera is asked again, s
+  double next = 0;         // when the frame is due, or the camera is polled again, s
   double newest = -kEver;  // when the newest frame so far was due, s
   double now = 0;          // s
 };
@@ -107,8 +107,8 @@ void SimulatedStream::Player::advance(double time) {
 }
 
 void SimulatedStream::Player::look() {
-  if (asked.failures > 0) log.retried();
-  const DepthCamera::Status status = asked.look(options.patience);
+  if (polled.failures > 0) log.retried();
+  const DepthCamera::Status status = polled.look(options.patience);
   waits = status == DepthCamera::Status::frame;
   if (waits) return schedule();
   if (status == DepthCamera::Status::ended) return finish();
@@ -117,7 +117,7 @@ void SimulatedStream::Player::look() {
 
 // A stamp that is none, or not after the one before, takes a frame's time: time goes on.
 void SimulatedStream::Player::schedule() {
-  const double due = asked.frame.stamp + options.latency - options.lead;
+  const double due = polled.frame.stamp + options.latency - options.lead;
   if (due > newest && due < kEver) {
     newest = due;
     next = std::max(next, due);
@@ -128,24 +128,24 @@ void SimulatedStream::Player::schedule() {
 
 void SimulatedStream::Player::do_without(DepthCamera::Status status) {
   if (left_out(status))
-    log.frame_received(next, objection_to(status, asked.reason), check.size_changes());
-  if (status == DepthCamera::Status::waiting) log.waiting(next, asked.reason);
-  if (status == DepthCamera::Status::failed) log.failed(next, asked.reason, asked.failures > 1);
+    log.frame_received(next, objection_to(status, polled.reason), check.size_changes());
+  if (status == DepthCamera::Status::waiting) log.waiting(next, polled.reason);
+  if (status == DepthCamera::Status::failed) log.failed(next, polled.reason, polled.failures > 1);
   next += frame_time;
 }
 
 void SimulatedStream::Player::take() {
   waits = false;
-  const auto objection = check.examine(asked.frame, kEver);
+  const auto objection = check.examine(polled.frame, kEver);
   log.frame_received(next, objection, check.size_changes());
   if (!objection) prepare();
 }
 
 void SimulatedStream::Player::prepare() {
   bool shown = false;
-  const double start = asked.frame.stamp + options.latency;
+  const double start = polled.frame.stamp + options.latency;
   try {
-    sink(asked.frame, [&] {
+    sink(polled.frame, [&] {
       shown = true;
       return start;
     });

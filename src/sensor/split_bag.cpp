@@ -30,7 +30,8 @@ bool SplitBag::next(bag::Message& message) {
 std::optional<std::string> SplitBag::next_loss() {
   for (Part& part : parts_) {
     const auto& losses = part.reader->contents().losses;
-    if (part.told < losses.size()) return fmt::format("{}: {}", part.file, losses[part.told++]);
+    if (part.reported < losses.size())
+      return fmt::format("{}: {}", part.file, losses[part.reported++]);
   }
   return {};
 }

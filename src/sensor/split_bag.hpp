@@ -30,14 +30,14 @@ class SplitBag {
     return parts_[at_].reader->channel_of(message);
   }
 
-  /// What was lost of a file and was not told yet, with the file's name.
+  /// What was lost of a file and was not reported yet, with the file's name.
   [[nodiscard]] std::optional<std::string> next_loss();
 
  private:
   struct Part {
     std::string file;
     std::unique_ptr<bag::McapReader> reader;
-    std::size_t told = 0;  // losses
+    std::size_t reported = 0;  // losses
   };
 
   std::vector<Part> parts_;

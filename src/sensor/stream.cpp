@@ -1,4 +1,4 @@
-// The threads of a stream: one asks the camera, one prepares the newest frame.
+// The threads of a stream: one reads the camera, one prepares the newest frame.
 #include "palpate/sensor/stream.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 namespace palpate {
 namespace sensor {
 
-// Chooses the wait before a failed camera is asked again: none after one failure, then ever longer.
+// Chooses the wait before a failed camera is read again: none after one failure, then ever longer.
 class Retry {
  public:
   Retry(double first, double longest) : first_(first), longest_(longest) {}
@@ -60,10 +60,10 @@ using namespace sensor;
 
 // A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
 constexpr double kAhead = 1;  // s (judgement)
-// No frame is on its way for so long: a first one that seems to be was stamped by another clock.
+// No frame takes so long to arrive: a first one that seems to be was stamped by another clock.
 constexpr double kOtherClock = 30;  // s (judgement)
 
-// Work left after preparation asked for a start is predicted from the longest so far, which decays
+// Work left after preparation requested a start is predicted from the longest so far, which decays
 // by kForget a frame and is capped at kLongestTail, so that one hiccup costs little (judgement).
 constexpr double kForget = 0.9;
 constexpr double kLongestTail = 0.02;  // s
@@ -91,7 +91,7 @@ struct Preparation {
   const double lead;                  // s
   const Clock& clock;
   StreamStatistics& log;
-  double tail = 0;  // s from asking for a start to the end, recent
+  double tail = 0;  // s from requesting a start to the end, recent
 
   void run(FrameExchange& exchange);
   void prepare(const DepthFrame& frame);
@@ -161,7 +161,7 @@ void Stream::Threads::stop() {
 void Stream::Threads::read() {
   DepthFrame frame;
   while (exchange.wait_for_room()) {
-    const DepthCamera::Status status = ask(camera, frame, options.patience, reason);
+    const DepthCamera::Status status = try_read(camera, frame, options.patience, reason);
     if (status == DepthCamera::Status::waiting) log.waiting(clock.now(), reason);
     if (left_out(status)) leave_out(status);
     if (status == DepthCamera::Status::ended) break;
@@ -185,7 +185,7 @@ bool Stream::Threads::take(DepthFrame& frame) {
   return outcome != FrameExchange::Offer::stopped;
 }
 
-// A device that sends damaged frames is there: it is asked for the next at once.
+// A device that sends damaged frames is there: it is read again at once.
 void Stream::Threads::leave_out(DepthCamera::Status status) {
   retry.succeeded();
   log.frame_received(clock.now(), objection_to(status, reason), check.size_changes());
@@ -225,18 +225,18 @@ void Preparation::finish() {
 }
 
 void Preparation::prepare(const DepthFrame& frame) {
-  std::optional<double> asked;
-  const Source::StartTime ask_start = [&] {
-    asked = clock.now();
-    return *asked + tail + lead;
+  std::optional<double> requested;
+  const Source::StartTime request_start = [&] {
+    requested = clock.now();
+    return *requested + tail + lead;
   };
   try {
     const double ahead = tail + lead;
-    sink(frame, ask_start);
-    if (!asked) return;
+    sink(frame, request_start);
+    if (!requested) return;
     const double now = clock.now();
-    log.touchable(std::max(*asked + ahead, now) - frame.stamp);
-    tail = std::min(std::max(kForget * tail, now - *asked), kLongestTail);
+    log.touchable(std::max(*requested + ahead, now) - frame.stamp);
+    tail = std::min(std::max(kForget * tail, now - *requested), kLongestTail);
   } catch (const std::exception& error) {
     log.refused(clock.now(), error.what());
   }

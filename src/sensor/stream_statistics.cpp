@@ -168,8 +168,8 @@ std::string_view name_of(StreamState::Phase phase) noexcept {
 
 namespace palpate::sensor {
 
-DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
-                        std::string& reason) {
+DepthCamera::Status try_read(DepthCamera& camera, DepthFrame& frame, double timeout,
+                             std::string& reason) {
   try {
     const DepthCamera::Status status = camera.read(frame, timeout);
     if (status != DepthCamera::Status::frame) reason = camera.reason();
@@ -214,7 +214,7 @@ void StreamStatistics::frame_received(double now, const std::optional<Objection>
     return;
   }
   useful_ = now;
-  told_ = false;
+  counted_ = false;
   state_.phase = StreamState::Phase::running;
 }
 
@@ -273,7 +273,7 @@ void StreamStatistics::look(double now) {
       state_.phase == StreamState::Phase::stalled || state_.phase == StreamState::Phase::ended;
   if (over || failing_ || now - useful_ <= stall_) return;
   state_.phase = StreamState::Phase::stalled;
-  if (std::exchange(told_, true)) return;
+  if (std::exchange(counted_, true)) return;
   ++state_.stalls;
   const std::string_view kind = objection_.empty() ? "" : "usable ";
   const std::string why = !objection_.empty() ? "; the last: " + objection_ : reason_;

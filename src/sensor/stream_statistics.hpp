@@ -66,10 +66,10 @@ inline void require_time(bool good, double seconds, const char* what, const std:
       fmt::format("stream to {}: {} cannot be {} s. Give a time in seconds.", name, what, seconds));
 }
 
-/// DepthCamera::read() of a camera that may also throw: it has failed then. `reason` says why where
-/// no whole frame came, if the camera knows, and is left as it is otherwise.
-[[nodiscard]] DepthCamera::Status ask(DepthCamera& camera, DepthFrame& frame, double timeout,
-                                      std::string& reason);
+/// DepthCamera::read() of a camera that may also throw: it has failed then. `reason` states why
+/// where no whole frame came, if the camera reports it, and is left as it is otherwise.
+[[nodiscard]] DepthCamera::Status try_read(DepthCamera& camera, DepthFrame& frame, double timeout,
+                                           std::string& reason);
 
 /// Pushes into `source`, which outlives it. Throws Error when no snapshot is free.
 [[nodiscard]] Stream::Sink sink_of(Source& source);
@@ -87,7 +87,7 @@ class StreamStatistics {
   void refused(double now, const std::string& why);
   void touchable(double latency);
   void failed(double now, const std::string& why, bool repeatedly);
-  /// The camera is well and has no frame yet; `reason` says why, or is empty.
+  /// The camera is well and has no frame yet; `reason` states why, or is empty.
   void waiting(double now, const std::string& reason);
   /// Notes a warning without a dropped frame.
   void warning(double now, const std::string& what);
@@ -106,12 +106,12 @@ class StreamStatistics {
   double stall_;
   double useful_;                // when the last frame of use came, or the stream began
   bool failing_ = false;         // the camera's last answer was that it cannot
-  bool told_ = false;            // the stall since the last frame of use is counted
+  bool counted_ = false;         // the stall since the last frame of use is counted
   std::deque<double> arrivals_;  // of the last frames, s
   double latency_sum_ = 0;
   std::uint64_t latencies_ = 0;
   std::string objection_;  // to the last frame; empty: none
-  std::string reason_;     // ": " and why there is no frame since then; empty: not known
+  std::string reason_;     // ": " and why there is no frame since then; empty: unknown
 };
 
 }  // namespace palpate::sensor

@@ -83,7 +83,7 @@ TEST(Poses, ReadsMatricesByNumberAndWhatStandsBehindThem) {
                   "a"));
   ASSERT_EQ(numbered.poses.size(), 1u);
   EXPECT_TRUE(numbered.poses.at(12).isApprox(pose(0, {5, 6, 7})));
-  EXPECT_TRUE(numbered.T_told_sensor.isApprox(pose(0, {0.1, 0, 0})));
+  EXPECT_TRUE(numbered.T_posed_sensor.isApprox(pose(0, {0.1, 0, 0})));
 }
 
 TEST(Poses, AreMissingWhereTrackingWasLost) {

@@ -34,7 +34,7 @@ TEST(SequenceDescription, HasDefaults) {
   EXPECT_FALSE(sequence.rate);
   EXPECT_FALSE(sequence.swapped);
   EXPECT_TRUE(sequence.poses.empty());
-  EXPECT_TRUE(sequence.T_told_sensor.isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(sequence.T_posed_sensor.isApprox(Eigen::Isometry3d::Identity()));
 }
 
 TEST(SequenceDescription, TellsEveryField) {
@@ -60,7 +60,7 @@ TEST(SequenceDescription, TellsEveryField) {
   EXPECT_TRUE(sequence.world_to_camera);
   EXPECT_TRUE(sequence.swapped);
   EXPECT_TRUE(
-      (sequence.T_told_sensor * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(0, 2, 3)));
+      (sequence.T_posed_sensor * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(0, 2, 3)));
 }
 
 TEST(SequenceDescription, RefusesWhatItCannotUnderstand) {

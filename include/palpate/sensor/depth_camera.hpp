@@ -31,11 +31,11 @@ class DepthCamera {
   enum class Status {
     frame,    ///< a new frame
     waiting,  ///< none within the time that was given
-    damaged,  ///< one that cannot be used (cut, garbage): reason() says why; the next may be good
+    damaged,  ///< one that cannot be used (cut, garbage): reason() states why; the next may be good
     unposed,  ///< one of a recording with poses that has none; reason() names it, the next may have
               ///< one
     ended,    ///< a recording has come to its end
-    failed,   ///< unplugged, out of order: reason() says why; asking again may help
+    failed,   ///< unplugged, out of order: reason() states why; another read may help
   };
 
   virtual ~DepthCamera() = default;

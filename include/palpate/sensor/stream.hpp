@@ -36,7 +36,7 @@ struct StreamState {
     starting,  ///< no frame has come yet
     running,   ///< frames come
     stalled,  ///< no frame of use came for some time: silence, one picture again and again, garbage
-    failed,   ///< the camera says that it cannot; it is asked again, ever more rarely
+    failed,   ///< the camera reports that it cannot; it is read again, ever more rarely
     ended,    ///< the recording is over and its last frame is prepared
   };
 
@@ -78,7 +78,7 @@ struct StreamOptions {
 };
 
 /// Brings a camera's frames to a source: one thread reads, another prepares. A frame that comes
-/// while the one before is being prepared waits, and the next takes its place: frames are dropped,
+/// while the one before is being prepared waits, and the next replaces it: frames are dropped,
 /// never queued, so that the rendered surface is no older than it must be. A camera that does not
 /// pace itself (CameraInfo::paces) is read when preparation is ready, and loses nothing.
 ///
@@ -87,7 +87,7 @@ struct StreamOptions {
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
-  /// Takes a frame and makes it touchable, asking its second argument for the time from which on.
+  /// Takes a frame and makes it touchable; its second argument returns the time from which on.
   /// Called on a thread of the stream.
   using Sink = std::function<void(const DepthFrame&, const Source::StartTime&)>;
 
@@ -102,7 +102,7 @@ class Stream {
   Stream(DepthCamera& camera, const std::string& name, Sink sink, const Clock& clock,
          const StreamOptions& options = {}, std::function<void()> ended = {});
 
-  /// Stops: waits for a read() and a preparation that are under way, and for nothing else.
+  /// Stops: waits for a read() and a preparation that are in progress, and for nothing else.
   ~Stream();
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
