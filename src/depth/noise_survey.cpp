@@ -101,7 +101,7 @@ void NoiseSurvey::find_power(std::span<const SeenNoise> windows, std::size_t lev
   levels_[level].power = *middle / kMedianOfFour;
 }
 
-// Ratio of the variances in windows of two sizes, where both are known; 0: nowhere.
+// Ratio of the variances in windows of two sizes, where both were measured; 0: nowhere.
 double NoiseSurvey::growth(std::size_t from, std::size_t to) const {
   double sum = 0;
   double weights = 0;

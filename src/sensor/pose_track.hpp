@@ -53,15 +53,14 @@ using Poses = std::variant<PoseTrack, PosesByOrder, PosesByNumber>;
 
 /// Reads poses, camera to world: lines "time x y z qx qy qz qw" (TUM), groups of a line of three
 /// counts and four of a 4 x 4 matrix (Redwood's .log), or 4 x 4 matrices under comments that name
-/// "frame-NUMBER". Numbers that are infinite or no numbers ("nan") state that tracking was lost: that
-/// frame has no pose.
+/// "frame-NUMBER". Numbers that are infinite or no numbers ("nan") state that tracking was lost:
+/// that frame has no pose.
 /// @throws Error that names the line and what it should be.
 [[nodiscard]] Poses parse_poses(std::string_view text, const std::string& name);
 
 /// The pose at a time between two given ones: positions in a straight line, rotations along the
-/// shortest arc (slerp). One that is given within a
-/// millisecond is taken as it is. Nothing before the first, after the last, in gaps above 0.25 s,
-/// and beside a pose that was lost.
+/// shortest arc (slerp). One that is given within a millisecond is taken as it is. Nothing
+/// before the first, after the last, in gaps above 0.25 s, and beside a pose that was lost.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_at(const PoseTrack& track, double stamp);
 
 }  // namespace palpate::sensor

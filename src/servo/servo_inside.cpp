@@ -99,7 +99,7 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
                         slot[1].load(std::memory_order_acquire),
                         slot[2].load(std::memory_order_acquire));
   }
-  // The step that is under way writes over the slot of the one kSteps before it.
+  // The step that is in progress writes over the slot of the one kSteps before it.
   const std::uint64_t now = count_.load(std::memory_order_acquire);
   const std::uint64_t whole = now >= kSteps ? now - kSteps + 1 : 0;
   const std::uint64_t lost = whole > begin ? std::min(whole, end) - begin : 0;

@@ -22,7 +22,7 @@ class Histogram {
   /// s; what is negative counts as 0, what is not a number is left out.
   void add(double duration) noexcept;
 
-  /// Counts so far; a step under way may be in some numbers and not in others.
+  /// Counts so far; a step in progress may be in some numbers and not in others.
   [[nodiscard]] Durations look() const noexcept;
 
  private:

@@ -19,7 +19,7 @@ struct PosedFrame {
 
 /// Ages up to which a frame counts at most, s; infinite: it stays.
 struct FrameLimits {
-  double at_first = 0;  ///< while it is uncertain when frames are due
+  double at_first = 0;  ///< while it is unknown when frames are due
   double later = 0;     ///< however late they are due then
 };
 

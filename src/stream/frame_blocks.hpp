@@ -38,8 +38,8 @@ struct alignas(64) SeenPoint {
   /// it goes farther along the ray.
   [[nodiscard]] float advance_from(const Eigen::Vector3f& from) const;
 
-  /// Does a surface that faced along `normal` face elsewhere now? One whose normal is not known
-  /// does not.
+  /// Does a surface that faced along `normal` face elsewhere now? One whose normal is unknown does
+  /// not.
   [[nodiscard]] bool turns_from(const Eigen::Vector3f& normal) const {
     return !normal.isZero(0) && state.normal.dot(normal) < kTurns * state.normal.squaredNorm();
   }

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-// Mean intervals that a frame lasts while it is not known when frames are due: two may be lost. As
+// Mean intervals that a frame lasts while it is unknown when frames are due: two may be lost. As
 // many periods of its device stop a servo (guard_for()).
 constexpr double kMissedFrames = 2.5;
 

@@ -85,8 +85,7 @@ class Tiler {
     }
   }
 
-  // Leaves what identifies the owner of the folder, and what makes a store of files that are in
-  // place.
+  // Leaves the file that names the job, and the one that makes a store of the moved files.
   void clear_folder() const {
     for (const auto& each : fs::directory_iterator(work_)) {
       const fs::path name = each.path().filename();
