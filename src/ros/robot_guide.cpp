@@ -63,21 +63,23 @@ RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& option
   for (const Source* source : sources_) (void)source->seen({}, 0);  // requests frames
 }
 
-// The highest answer of the sources counts, in the order of Seen::Says. But free yields to solid
+// The highest answer of the sources counts, in the order of Seen::Verdict. But free yields to solid
 // where its frame is older than kStays, or than the moment when the solid came. `memory`: of that
 // moment, of the tool or the robot, which stay where they are for long enough; it is renewed. The
 // hand and the path bring copies.
 RobotGuide::Verdict RobotGuide::judge(const Vector3d& x, double now, Memory& memory) const {
-  const auto rank = [](const Seen& seen) { return std::tuple(seen.says, -seen.behind, -seen.age); };
+  const auto rank = [](const Seen& seen) {
+    return std::tuple(seen.verdict, -seen.behind, -seen.age);
+  };
   Verdict best;
   Verdict solid;
   Memory last = (x - memory.where).norm() <= kJoin ? memory : Memory{};
   for (const Source* source : sources_) {
     std::optional<Seen> seen = source->seen({x, tool_radius_}, now);
-    if (!seen && !source->points()) seen = {.says = Seen::Says::old};  // nothing came yet
+    if (!seen && !source->points()) seen = {.verdict = Seen::Verdict::old};  // nothing came yet
     if (!seen) continue;
     if (best.source == nullptr || rank(*seen) > rank(best.seen)) best = {source, *seen};
-    if (seen->says != Seen::Says::solid) continue;
+    if (seen->verdict != Seen::Verdict::solid) continue;
     const double stamp = now - seen->age;
     if (seen->came) {
       last = stamp > last.came ? Memory{source, stamp, x} : Memory{last.source, last.came, x};

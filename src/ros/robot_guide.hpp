@@ -58,8 +58,8 @@ class RobotGuide {
     const Source* source = nullptr;  // that decided; null: there is no camera
     Seen seen = {};
 
-    [[nodiscard]] bool free() const { return seen.says == Seen::Says::free; }
-    [[nodiscard]] bool solid() const { return seen.says == Seen::Says::solid; }
+    [[nodiscard]] bool free() const { return seen.verdict == Seen::Verdict::free; }
+    [[nodiscard]] bool solid() const { return seen.verdict == Seen::Verdict::solid; }
     [[nodiscard]] bool sighted() const { return free() || solid(); }
   };
 

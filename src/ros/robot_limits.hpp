@@ -9,7 +9,7 @@ namespace palpate::ros {
 
 using Reason = std::string_view;
 
-// In the order of Seen::Says.
+// In the order of Seen::Verdict.
 inline constexpr std::array<Reason, 5> kReasons = {
     "no camera sees where the tool is", "nothing is measured where the tool is",
     "the tool is behind what a camera sees", "",

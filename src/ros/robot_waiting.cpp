@@ -27,7 +27,7 @@ RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt)
     answer.reason = robot_.over.what;
     answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
   } else if (!proxy.free()) {
-    answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.says)];
+    answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.verdict)];
     answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
   } else {
     answer.reason = follows_ ? kPath : kNotYet;

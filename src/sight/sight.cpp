@@ -128,7 +128,7 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
   }
   seen.lift = std::max(seen.lift, lift);
   if (behind <= seen.behind) return;
-  seen.says = Seen::Says::solid;
+  seen.verdict = Seen::Verdict::solid;
   seen.behind = behind;
   seen.came = compares && before->free();
 }
@@ -145,13 +145,13 @@ Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball,
   const Pinhole& p = newest.frame.camera.pinhole;
   const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
   const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
-  seen.says = Seen::Says::free;
+  seen.verdict = Seen::Verdict::free;
   for (const Vector3d& point : points_on(ball, eye, pitch)) {
     const Look shown = look(newest, ball, point, half);
     if (shown.gap) {
       add(*shown.gap, span > 0 ? look(*before, ball, point, half).gap : std::nullopt, span, seen);
-    } else if (seen.says == Seen::Says::free) {
-      seen.says = shown.outside ? Seen::Says::outside : Seen::Says::nothing;
+    } else if (seen.verdict == Seen::Verdict::free) {
+      seen.verdict = shown.outside ? Seen::Verdict::outside : Seen::Verdict::nothing;
     }
   }
   return seen;
@@ -222,14 +222,14 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& l
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
   if (frames_ > 2 && base == nullptr && is_base(base_, newest_)) base = &base_;
   Seen seen = judge(newest_, base, ball, now, kHalfWindow);
-  if (seen.says == Seen::Says::outside) return seen;
+  if (seen.verdict == Seen::Verdict::outside) return seen;
   if (seen.age > lasts) {
-    seen.says = Seen::Says::old;
+    seen.verdict = Seen::Verdict::old;
     return seen;
   }
-  if (seen.says != Seen::Says::nothing || !before_counts(now, lasts)) return seen;
+  if (seen.verdict != Seen::Verdict::nothing || !before_counts(now, lasts)) return seen;
   // Around the point the newest frame shows what came since the one before.
-  if (judge(newest_, base, ball, now, kWideWindow).says != Seen::Says::free) return seen;
+  if (judge(newest_, base, ball, now, kWideWindow).verdict != Seen::Verdict::free) return seen;
   const PosedFrame* earlier = frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr;
   return judge(before_, earlier, ball, now, kHalfWindow);
 }

@@ -8,7 +8,7 @@ namespace palpate {
 namespace {
 
 using namespace test;
-using Says = Seen::Says;
+using Verdict = Seen::Verdict;
 
 constexpr double kSeenPeriod = 0.03;  // s
 
@@ -21,10 +21,10 @@ TEST(Seen, IsThereFromTheFirstQuestionOn) {
   const Ball ball{{0, 0, 0.4}, 0};
   EXPECT_FALSE(source.seen(ball, 0));
   ASSERT_TRUE(push(0));
-  EXPECT_EQ(source.seen(ball, 0.01)->says, Says::free);
+  EXPECT_EQ(source.seen(ball, 0.01)->verdict, Verdict::free);
   ASSERT_TRUE(push(0.03));
-  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old);
+  EXPECT_EQ(source.seen(ball, 0.08)->verdict, Verdict::free);
+  EXPECT_EQ(source.seen(ball, 0.4)->verdict, Verdict::old);
 }
 
 TEST(Seen, LastsTwoAndAHalfIntervalsUntilItIsKnownWhenFramesAreDue) {
@@ -38,11 +38,11 @@ TEST(Seen, LastsTwoAndAHalfIntervalsUntilItIsKnownWhenFramesAreDue) {
     stamp = k * kSeenPeriod;
     ASSERT_TRUE(
         source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + kDelay; }));
-    EXPECT_EQ(source.seen(ball, stamp + kDelay)->says, Says::free);
+    EXPECT_EQ(source.seen(ball, stamp + kDelay)->verdict, Verdict::free);
   }
   const double lasts = kDelay + 2.5 * kSeenPeriod;
-  EXPECT_EQ(source.seen(ball, stamp + lasts - 1e-3)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, stamp + lasts + 1e-3)->says, Says::old);
+  EXPECT_EQ(source.seen(ball, stamp + lasts - 1e-3)->verdict, Verdict::free);
+  EXPECT_EQ(source.seen(ball, stamp + lasts + 1e-3)->verdict, Verdict::old);
 }
 
 TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
@@ -56,11 +56,11 @@ TEST(Seen, IsTooOldOnceTheNextFrameIsDueHoweverManyAreLost) {
     if (k % 5 == 1 || k % 5 == 3) continue;
     stamp = k * kSeenPeriod;
     ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [&] { return stamp + 1; }));
-    EXPECT_EQ(source.seen(ball, stamp + kDelay)->says, Says::free);
+    EXPECT_EQ(source.seen(ball, stamp + kDelay)->verdict, Verdict::free);
   }
   const double due = kSeenPeriod + kDelay;
-  EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->says, Says::old);
+  EXPECT_EQ(source.seen(ball, stamp + due - 1e-3)->verdict, Verdict::free);
+  EXPECT_EQ(source.seen(ball, stamp + due + 1e-3)->verdict, Verdict::old);
 }
 
 TEST(Seen, LastsNoLongerAfterNobodyAskedForAWhile) {
@@ -75,7 +75,7 @@ TEST(Seen, LastsNoLongerAfterNobodyAskedForAWhile) {
     if (k < 30 || k > 50) (void)source.seen(ball, stamp);
     if (k == 50) (void)source.seen(ball, stamp + 0.9 * kSeenPeriod);
   }
-  EXPECT_EQ(source.seen(ball, stamp + kSeenPeriod + 1e-3)->says, Says::old);
+  EXPECT_EQ(source.seen(ball, stamp + kSeenPeriod + 1e-3)->verdict, Verdict::old);
 }
 
 TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
@@ -87,18 +87,18 @@ TEST(Seen, OfAStreamThatHasEndedIsTooOldAsOfOneThatIsSilent) {
     ASSERT_TRUE(source.push(frame_of(small_camera(), stamp, wall(0.5)), [=] { return stamp; }));
   }
   source.keep();
-  EXPECT_EQ(source.seen(ball, 0.08)->says, Says::free);
-  EXPECT_EQ(source.seen(ball, 0.4)->says, Says::old) << "what is felt stays";
+  EXPECT_EQ(source.seen(ball, 0.08)->verdict, Verdict::free);
+  EXPECT_EQ(source.seen(ball, 0.4)->verdict, Verdict::old) << "what is felt stays";
 }
 
 TEST(Seen, OfAFrameThatStaysIsNeverTooOld) {
   Scene scene;
   Source& source = scene.add("image");
   source.set(frame_of(small_camera(), 0, wall(0.5)));
-  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
-  EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->says, Says::solid);
+  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->verdict, Verdict::free);
+  EXPECT_EQ(source.seen({{0, 0, 0.52}, 0}, 1e6)->verdict, Verdict::solid);
   source.keep();
-  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->says, Says::free);
+  EXPECT_EQ(source.seen({{0, 0, 0.4}, 0}, 1e6)->verdict, Verdict::free);
 }
 
 TEST(Seen, IsNothingOfClouds) {

@@ -110,7 +110,7 @@ struct Snapshot {
 /// What a depth camera's newest frames show of a ball.
 struct Seen {
   /// In rising order: of several cameras' answers, the last one in this list counts.
-  enum class Says {
+  enum class Verdict {
     outside,  ///< the ball, or part of it, is not in the picture
     nothing,  ///< nothing is measured there
     solid,    ///< it, or part of it, is behind what is seen
@@ -118,7 +118,7 @@ struct Seen {
     old,      ///< the camera looks there, but has been silent for too long
   };
 
-  Says says = Says::outside;
+  Verdict verdict = Verdict::outside;
   double behind =
       0;            ///< m; a solid ball that goes so far towards the camera is free, noise allowed
   double lift = 0;  ///< m; how far to move it towards the camera: up to what is measured, less
