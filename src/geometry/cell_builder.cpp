@@ -100,7 +100,7 @@ std::span<Record> CellBuilder::allocate(std::size_t count) {
 }
 
 CellBuilder::Bounds CellBuilder::bounds_of(const CellGrid::Cell& cell) const {
-  const auto at = [&](std::size_t i) { return positions_[records_[i] & kPlaceMask]; };
+  const auto at = [&](std::size_t i) { return positions_[records_[i] & kIndexMask]; };
   Bounds bounds{at(cell.begin), at(cell.begin)};
   for (std::size_t i = cell.begin + 1; i < cell.end; ++i) {
     bounds.lower = bounds.lower.cwiseMin(at(i));
@@ -134,7 +134,7 @@ void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const CellGr
   const Eigen::Vector3d lower = cube.lower;
   const double steps = std::ldexp(1., levels);
   const double scale = cube.edge > 0 ? steps / cube.edge : 0;
-  const int shift = kPlaceBits + kKeyBits - 3 * levels;
+  const int shift = kIndexBits + kKeyBits - 3 * levels;
   parallel_ranges(end - begin, kGrain, [&](std::size_t from, std::size_t to) {
     const auto cell = [&](double v, double low) {
       return static_cast<std::uint32_t>(std::clamp((v - low) * scale, 0., steps - 1));
@@ -152,11 +152,11 @@ void CellBuilder::make_keys(std::uint32_t begin, std::uint32_t end, const CellGr
 void CellBuilder::divide(std::size_t cell) {
   if (cells_[cell].size() <= CellGrid::kLeafPoints) return;
   const auto difference = [&] {
-    return (records_[cells_[cell].begin] ^ records_[cells_[cell].end - 1]) >> kPlaceBits;
+    return (records_[cells_[cell].begin] ^ records_[cells_[cell].end - 1]) >> kIndexBits;
   };
   if (difference() == 0 && !sort_again(cell)) return;
   const int level = (static_cast<int>(std::bit_width(difference())) - 1) / 3;
-  append_children(cell, kPlaceBits + 3 * level);
+  append_children(cell, kIndexBits + 3 * level);
 }
 
 // False when the cell's points coincide, or its keys may have no more levels.
@@ -166,7 +166,7 @@ bool CellBuilder::sort_again(std::size_t cell) {
   const int levels = std::min(levels_for(end - begin), CellGrid::kMaxDepth - depths_[cell]);
   if (bounds.lower == bounds.upper || levels <= 0) return false;
   make_keys(begin, end, bounds.cube(), levels,
-            [this](std::size_t i) { return records_[i] & kPlaceMask; });
+            [this](std::size_t i) { return records_[i] & kIndexMask; });
   sort_records(records_.subspan(begin, end - begin), scratch_.subspan(begin, end - begin),
                3 * levels);
   depths_[cell] = static_cast<std::uint8_t>(depths_[cell] + levels);
@@ -201,7 +201,7 @@ void CellBuilder::append_children(std::size_t cell, int shift) {
 std::vector<std::uint32_t> CellBuilder::order() const {
   std::vector<std::uint32_t> order(records_.size());
   parallel_each(order.size(), kGrain, [&](std::size_t i) {
-    order[i] = static_cast<std::uint32_t>(records_[i] & kPlaceMask);
+    order[i] = static_cast<std::uint32_t>(records_[i] & kIndexMask);
   });
   return order;
 }
@@ -209,7 +209,7 @@ std::vector<std::uint32_t> CellBuilder::order() const {
 std::vector<Eigen::Vector3f> CellBuilder::points() const {
   std::vector<Eigen::Vector3f> points(records_.size());
   parallel_each(points.size(), kGrain,
-                [&](std::size_t i) { points[i] = positions_[records_[i] & kPlaceMask]; });
+                [&](std::size_t i) { points[i] = positions_[records_[i] & kIndexMask]; });
   return points;
 }
 

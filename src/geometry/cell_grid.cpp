@@ -72,9 +72,9 @@ CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions, const Cube& cube)
     : CellGrid(positions, &cube) {}
 
 CellGrid::CellGrid(std::span<const Eigen::Vector3f> positions, const Cube* cube) {
-  if (positions.size() > detail::kPlaceMask) {
+  if (positions.size() > detail::kIndexMask) {
     throw Error(fmt::format("index: {} points exceed the limit of {}; downsample them",
-                            positions.size(), detail::kPlaceMask));
+                            positions.size(), detail::kIndexMask));
   }
   const detail::CellBuilder builder(positions, cube);
   order_ = builder.order();

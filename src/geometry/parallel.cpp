@@ -80,13 +80,13 @@ std::vector<std::uint32_t> block_offsets(std::span<const Record> records, int sh
 }  // namespace
 
 void sort_records(std::span<Record> records, std::span<Record> scratch, int bits) {
-  const int lowest = kPlaceBits + kKeyBits - bits;
+  const int lowest = kIndexBits + kKeyBits - bits;
   if (records.size() < kPartitionFrom || bits <= kPartitionBits) {
     sort_by_digits(records, scratch, lowest, bits);
     return;
   }
   // Too many for the cache: first into parts by the leading bits, then each part by itself.
-  const int shift = kPlaceBits + kKeyBits - kPartitionBits;
+  const int shift = kIndexBits + kKeyBits - kPartitionBits;
   const std::size_t digits = std::size_t{1} << kPartitionBits;
   std::vector<std::uint32_t> offsets = block_offsets(records, shift);
   const std::vector<std::uint32_t> starts(offsets.begin(),

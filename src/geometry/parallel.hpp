@@ -127,9 +127,9 @@ inline std::uint64_t morton_key(std::uint32_t x, std::uint32_t y, std::uint32_t 
 /// and by index among equal keys.
 using Record = std::uint64_t;
 
-inline constexpr int kPlaceBits = 31;  ///< what a key leaves of 64 bits
+inline constexpr int kIndexBits = 31;  ///< what a key leaves of 64 bits
 inline constexpr int kKeyBits = 33;    ///< eleven levels of three bits (judgement)
-inline constexpr std::uint64_t kPlaceMask = (std::uint64_t{1} << kPlaceBits) - 1;  ///< the index
+inline constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;  ///< the index
 
 /// Sorts records by the upper `bits` of their kKeyBits key; equal keys keep their order. `scratch`
 /// is as long as `records`. Runs on several threads when there are many records; the result does

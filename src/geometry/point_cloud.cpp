@@ -36,9 +36,9 @@ PointCloud clip(const PointCloud& cloud, const Box& box) {
 
 namespace {
 
+using detail::kIndexBits;
+using detail::kIndexMask;
 using detail::kKeyBits;
-using detail::kPlaceBits;
-using detail::kPlaceMask;
 using detail::Record;
 
 constexpr std::size_t kVoxelGrain = std::size_t{1} << 16;  // points of a thread's share (judgement)
@@ -103,7 +103,7 @@ std::vector<Record> sort_by(const PointCloud& cloud, const Lattice& lattice, int
   std::vector<Record> records(cloud.size());
   detail::parallel_each(records.size(), kVoxelGrain, [&](std::size_t i) {
     const std::uint64_t key = lattice.key(cloud.positions[index_of(i)]) >> shift;
-    records[i] = key << (kPlaceBits + kKeyBits - bits) | i;
+    records[i] = key << (kIndexBits + kKeyBits - bits) | i;
   });
   std::vector<Record> scratch(records.size());
   detail::sort_records(records, scratch, bits);
@@ -117,13 +117,13 @@ std::vector<std::uint32_t> sort_indices(const PointCloud& cloud, const Lattice& 
   std::vector<std::uint32_t> indices(cloud.size());
   const auto low = sort_by(cloud, lattice, 0, low_bits, [](std::size_t i) { return i; });
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    indices[i] = static_cast<std::uint32_t>(low[i] & kPlaceMask);
+    indices[i] = static_cast<std::uint32_t>(low[i] & kIndexMask);
   }
   if (bits == low_bits) return indices;
   const auto high =
       sort_by(cloud, lattice, low_bits, bits - low_bits, [&](std::size_t i) { return indices[i]; });
   std::vector<std::uint32_t> sorted(indices.size());
-  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = indices[high[i] & kPlaceMask];
+  for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = indices[high[i] & kIndexMask];
   return sorted;
 }
 
@@ -184,9 +184,9 @@ PointCloud voxel_downsample(const PointCloud& cloud, double leaf,
   PointCloud result;
   result.origin = cloud.origin;
   result.viewpoint = cloud.viewpoint;
-  if (cloud.size() > kPlaceMask) {
+  if (cloud.size() > kIndexMask) {
     throw Error(fmt::format("voxel filter: {} points exceed the limit of {}; split the cloud",
-                            cloud.size(), kPlaceMask));
+                            cloud.size(), kIndexMask));
   }
   const Lattice lattice = make_lattice(cloud, leaf);
   const std::vector<std::uint32_t> indices = sort_indices(cloud, lattice);

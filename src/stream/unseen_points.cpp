@@ -49,15 +49,15 @@ void UnseenPoints::write(PointWriter& writer, PointWriter::Extremes& extremes,
     const Array3f share = (motions_[i].from.position.array() - lower) / extent;
     const Eigen::Array<std::uint32_t, 3, 1> cell = (kUnseenSteps * share).cast<std::uint32_t>();
     const std::uint64_t code = detail::morton_key(cell.x(), cell.y(), cell.z());
-    order_.push_back(code << detail::kPlaceBits | i);
+    order_.push_back(code << detail::kIndexBits | i);
   }
   sorting_.resize(order_.size());
   detail::sort_records(order_, sorting_, detail::kKeyBits);
   std::size_t at = writer.append(motions_.size());
   entries.resize(writer.count());
   for (const detail::Record record : order_) {
-    PointMotion& motion = motions_[record & detail::kPlaceMask];
-    motion.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kPlaceBits);
+    PointMotion& motion = motions_[record & detail::kIndexMask];
+    motion.code = kUnseenCode | static_cast<std::uint32_t>(record >> detail::kIndexBits);
     writer.write(at, motion, extremes);
     writer.add_edge(at, motion.edge);
     writer.add_eye(motion);

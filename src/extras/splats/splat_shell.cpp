@@ -47,7 +47,7 @@ void sort_lines(std::span<const SplatCell> cells, const Step& step, std::vector<
       const std::int64_t meets = at[k] - step[k] * at[axis] + (step[k] > 0 ? kMostIndices : 0);
       line = line << (SplatGrid::kBits + 1) | static_cast<std::uint64_t>(meets);
     }
-    lines[c] = line << detail::kPlaceBits | c;
+    lines[c] = line << detail::kIndexBits | c;
   });
   detail::sort_records(lines, scratch, detail::kKeyBits);
 }
@@ -65,8 +65,8 @@ void sweep(Lines first, Lines last, std::span<const SplatCell> cells, const Eige
            std::vector<Light>& light) {
   float left = 1;
   for (auto before = first; first != last; before = first++) {
-    if ((*before ^ *first) >> detail::kPlaceBits != 0) left = 1;
-    const std::size_t cell = *first & detail::kPlaceMask;
+    if ((*before ^ *first) >> detail::kIndexBits != 0) left = 1;
+    const std::size_t cell = *first & detail::kIndexMask;
     Light& there = light[cell];
     there.brightest = std::max(there.brightest, left);
     const float cosine = cells[cell].normal.dot(from);
