@@ -21,10 +21,10 @@ using Reach = Ball;
 /// locks: a version that is odd while a position is being written makes readers look again.
 class ReachTable {
  public:
-  static constexpr std::size_t kPlaces = Handoff<Snapshot>::kReaders;  // one a reader
+  static constexpr std::size_t kSlots = Handoff<Snapshot>::kReaders;  // one a reader
 
   ReachTable() {
-    for (std::size_t i = 0; i < kPlaces; ++i) clear(i);
+    for (std::size_t i = 0; i < kSlots; ++i) clear(i);
   }
 
   /// One thread a slot. Wait-free.
@@ -45,7 +45,7 @@ class ReachTable {
     std::array<std::atomic<double>, 4> values{};  // center, radius
   };
 
-  std::array<Slot, kPlaces> slots_;
+  std::array<Slot, kSlots> slots_;
 };
 
 /// Foresees where a tool can be until the next frames have become a surface. Real-time.

@@ -25,7 +25,7 @@ const SourceOptions& SourceTrace::options() const {
 
 void SourceTrace::impose_reach(std::span<const Reach> reach) {
   ReachTable& table = source_->inside_->reaches;
-  for (std::size_t i = 0; i < ReachTable::kPlaces; ++i) {
+  for (std::size_t i = 0; i < ReachTable::kSlots; ++i) {
     if (i < reach.size()) {
       table.write(i, reach[i]);
     } else {

@@ -26,7 +26,7 @@ class SourceTrace {
   /// The options of the last push.
   [[nodiscard]] const SourceOptions& options() const;
 
-  /// The next push reads these, at most ReachTable::kPlaces, and nothing of fields.
+  /// The next push reads these, at most ReachTable::kSlots, and nothing of fields.
   void impose_reach(std::span<const Reach> reach);
 
   /// Fields widen all supports of this source to this radius, m, until sources are compared again.
