@@ -81,7 +81,7 @@ void Aligner::fill_deviations(const Poses& poses, std::vector<AlignedSource>& re
     shift.rightCols<3>().setIdentity();
     const Index own = 6 * static_cast<Index>(s - 1);
     const Matrix6d c = covariance.block<6, 6>(own, own);
-    results[s].place_deviation = largest(shift * c * shift.transpose());
+    results[s].position_deviation = largest(shift * c * shift.transpose());
     results[s].turn_deviation = largest(c.topLeftCorner<3, 3>()) / size_;
   }
 }

@@ -69,7 +69,7 @@ TEST(Align, FindsASourceBack) {
   const auto found = align({{"a", corner(1, Isometry3d::Identity())}, {"b", corner(2, moved)}});
   expect_found(found[1], moved, 0.5e-3, 0.3);
   EXPECT_TRUE(found[0].T_aligned_rough.isApprox(Isometry3d::Identity(), 0));
-  EXPECT_EQ(found[0].place_deviation, 0);
+  EXPECT_EQ(found[0].position_deviation, 0);
   EXPECT_GT(found[1].before.residual, 5e-3);
   EXPECT_LT(found[1].after.residual, 0.5e-3);
   EXPECT_GT(found[1].after.overlap, 0.9);
@@ -111,7 +111,7 @@ TEST(Align, TellsHowSureItIs) {
                               {"b", corner(200 + seed, Isometry3d::Identity(), 3, 1e-3)}});
     const Vector3d middle(0.04, 0.04, 0.04);
     square += (found[1].T_aligned_rough * middle - middle).squaredNorm() / 3;
-    told += found[1].place_deviation * found[1].place_deviation;
+    told += found[1].position_deviation * found[1].position_deviation;
   }
   EXPECT_GT(std::sqrt(told / square), 0.5);
   EXPECT_LT(std::sqrt(told / square), 3) << "the worst of three directions is told";

@@ -158,10 +158,10 @@ Report report_of(const SourcePlan& source, const AlignedSource& aligned) {
              aligned.before.residual, aligned.before.overlap);
   report.row("after", "residual {after/residual_m}, {after/overlap} overlap with the others",
              aligned.after.residual, aligned.after.overlap);
-  const bool moves = aligned.place_deviation > 0;
+  const bool moves = aligned.position_deviation > 0;
   const double turned = Eigen::AngleAxisd(aligned.T_aligned_rough.linear()).angle();
   report.row("rotated", "[{?}{} degrees]", moves, fmt::format("{:.2f}", kDegrees * turned));
-  report.row("sigma", "[{sigma/place_m} and {} degrees]", aligned.place_deviation,
+  report.row("sigma", "[{sigma/place_m} and {} degrees]", aligned.position_deviation,
              fmt::format("{:.3f}", kDegrees * aligned.turn_deviation));
   report.data["sigma"]["turn_rad"] = aligned.turn_deviation;
   report.row("pose", "--pose {}={}", name, fmt::format("{:.6g}", fmt::join(pose, ",")));

@@ -28,7 +28,7 @@ struct AlignedSource {
   Fit after;
   /// Standard deviations of position (m, in the worst direction, in the middle of the overlap) and
   /// of rotation (rad, about the worst axis); 0: the first source.
-  double place_deviation = 0;
+  double position_deviation = 0;
   double turn_deviation = 0;
 };
 
