@@ -184,11 +184,11 @@ struct TabProgram::Parts {
   void tell(double now) {
     if (now - done.states >= view.kStatePeriod) {
       done.states = now;
-      view.tell_states(now);
+      view.send_states(now);
     }
     if (now - done.reports >= view.kReportPeriod) {
       done.reports = now;
-      view.tell_faults();
+      view.send_faults();
     }
     const std::set<std::size_t> budgets = view.budgets();
     if (budgets.empty()) return;

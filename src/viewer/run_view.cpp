@@ -144,7 +144,7 @@ void RunView::check_faults(const std::vector<ViewedStream>& streams) {
   for (const Notice& notice : notices_.update(streams, faults)) sessions_.send(notice);
 }
 
-void RunView::tell_faults() {
+void RunView::send_faults() {
   if (sessions_.greeted().empty()) return;
   check_faults(streams());
   std::vector<DeviceReport> reports;
@@ -164,7 +164,7 @@ std::set<std::size_t> RunView::budgets() const {
   return budgets;
 }
 
-void RunView::tell_states(double now) {
+void RunView::send_states(double now) {
   if (sessions_.greeted().empty()) return;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     if (const auto state = states_[i].next(now, radii_[i], sessions_.taken(i))) {

@@ -36,9 +36,9 @@ class RunView {
   /// Point budgets of the pages that are there; empty: nobody looks.
   [[nodiscard]] std::set<std::size_t> budgets() const;
   /// Sends the newest states at `now`, s, where somebody looks: to be called every kStatePeriod.
-  void tell_states(double now);
+  void send_states(double now);
   /// Sends what is wrong with streams and devices, where somebody looks: every kReportPeriod.
-  void tell_faults();
+  void send_faults();
   void show(const EncodedScene& encoded);
   /// Reports long work, done from 0 to 1, to pages that come later, too.
   void show_progress(std::string what, double share);

@@ -113,7 +113,7 @@ struct Viewer::Parts {
         server(run.options(), run.sessions()),
         encoder(scene, run.encoding(), [this](EncodedScene encoded) { post(std::move(encoded)); }) {
     server.every(RunView::kStatePeriod, [this] { tick(); });
-    server.every(RunView::kReportPeriod, [this] { run.tell_faults(); });
+    server.every(RunView::kReportPeriod, [this] { run.send_faults(); });
     network = std::jthread([this] { server.run(); });
   }
   ~Parts() {
@@ -125,7 +125,7 @@ struct Viewer::Parts {
 
   void tick() {
     encoder.set_budgets(run.budgets());
-    run.tell_states(SteadyClock().now());
+    run.send_states(SteadyClock().now());
     counts.set(server.counts());
   }
   void post(EncodedScene encoded) {
