@@ -29,7 +29,7 @@ TEST(SplatShell, LiesInTheSurfaceWithNormalsToTheOutside) {
     outward += shell.cloud.normals[i].dot(shell.cloud.positions[i]) > 0 ? 1 : 0;
   }
   EXPECT_GT(outward, shell.cloud.size() * 99 / 100);  // the rest is seen into the shell
-  EXPECT_LT(shell.unsure, 0.01);
+  EXPECT_LT(shell.without_normal, 0.01);
 }
 
 TEST(SplatShell, LeavesOutWhatFloatsAndWhatIsHidden) {

@@ -212,7 +212,7 @@ void add_splats(Report& report, const SplatFacts& splats, std::size_t declared, 
              "{splats/unsure_share} without a normal of their own][; {splats/pieces} pieces of "
              "less than 60 cells dropped]",
              declared, dropped, splats.visible, splats.far, splats.huge, points, splats.spacing,
-             splats.unsure, splats.pieces);
+             splats.without_normal, splats.pieces);
 }
 
 void add_mesh(Report& report, const MeshFacts& mesh, std::size_t points) {

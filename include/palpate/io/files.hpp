@@ -31,12 +31,12 @@ struct ReadOptions {
 
 /// How the Gaussian splats of a file became points.
 struct SplatFacts {
-  std::size_t visible = 0;  ///< splats of opacity 0.02 and more
-  double spacing = 0;       ///< edge of the cells, each of which gave a point at most, m
-  double unsure = 0;        ///< share of points without a normal of their own, 0 to 1
-  std::size_t far = 0;      ///< left out, as they are more than 16 384 cells from the middle
-  std::size_t huge = 0;     ///< left out, as they are the largest, and 50 samples a splat are over
-  std::size_t pieces = 0;   ///< groups of fewer than 60 cells that were dropped
+  std::size_t visible = 0;    ///< splats of opacity 0.02 and more
+  double spacing = 0;         ///< edge of the cells, each of which gave a point at most, m
+  double without_normal = 0;  ///< share of points without a normal of their own, 0 to 1
+  std::size_t far = 0;        ///< left out, as they are more than 16 384 cells from the middle
+  std::size_t huge = 0;    ///< left out, as they are the largest, and 50 samples a splat are over
+  std::size_t pieces = 0;  ///< groups of fewer than 60 cells that were dropped
 };
 
 /// What a file's faces became.

@@ -164,7 +164,7 @@ void take_cells(std::span<const SplatCell> cells, SplatShell& shell) {
     shell.cloud.colors.push_back({byte(0), byte(1), byte(2)});
     uncertain += cell.confident ? 0 : 1;
   }
-  shell.unsure = static_cast<double>(uncertain) / static_cast<double>(cells.size());
+  shell.without_normal = static_cast<double>(uncertain) / static_cast<double>(cells.size());
 }
 
 }  // namespace

@@ -23,14 +23,14 @@ struct Splat {
 
 /// The surface of a splat scene, and how it was found.
 struct SplatShell {
-  PointCloud cloud;         ///< with normals, zero where a point has none of its own, and colours
-  std::size_t visible = 0;  ///< splats of opacity kLeastOpacity and more
-  double spacing = 0;       ///< edge of a cell, which holds a point at most, m
-  double unsure = 0;        ///< share of points without a normal, 0 to 1
-  std::size_t far = 0;      ///< splats left out, as their middles are beyond the grid
-  std::size_t huge = 0;     ///< splats left out, as their samples would be too many
-  std::size_t samples = 0;  ///< taken of the others: what time and memory follow
-  std::size_t pieces = 0;   ///< groups of fewer than kSmallestPiece cells that were dropped
+  PointCloud cloud;           ///< with normals, zero where a point has none of its own, and colours
+  std::size_t visible = 0;    ///< splats of opacity kLeastOpacity and more
+  double spacing = 0;         ///< edge of a cell, which holds a point at most, m
+  double without_normal = 0;  ///< share of points without a normal, 0 to 1
+  std::size_t far = 0;        ///< splats left out, as their middles are beyond the grid
+  std::size_t huge = 0;       ///< splats left out, as their samples would be too many
+  std::size_t samples = 0;    ///< taken of the others: what time and memory follow
+  std::size_t pieces = 0;     ///< groups of fewer than kSmallestPiece cells that were dropped
 };
 
 inline constexpr float kLeastOpacity = 0.02F;      ///< fainter splats show nothing (judgement)

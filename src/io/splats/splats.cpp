@@ -88,7 +88,7 @@ CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   file.dropped = rows.dropped;
   file.splats = {.visible = shell.visible,
                  .spacing = shell.spacing,
-                 .unsure = shell.unsure,
+                 .without_normal = shell.without_normal,
                  .far = shell.far,
                  .huge = shell.huge,
                  .pieces = shell.pieces};
