@@ -46,7 +46,7 @@ void Eyes::add(const ActiveLayer& layer, std::span<const std::uint32_t> indices)
   }
   const auto& remembered = points.eye->remembered;
   const auto first = static_cast<std::uint32_t>(points.size() - remembered.size());
-  if (indices.front() < first) add(Eye{source, false, points.eye->place - center_});
+  if (indices.front() < first) add(Eye{source, false, points.eye->position - center_});
   for (auto at = std::ranges::lower_bound(indices, first); at != indices.end(); ++at) {
     add(Eye{source, true, remembered[*at - first].cast<double>()});
   }

@@ -73,7 +73,7 @@ void Morph::start(const MorphInput& input, const FrameTiming& moment, SurfacePoi
   points.origin = origin_;
   points.kernel = options_.kernel;
   if (!points.eye) points.eye.emplace();
-  points.eye->place = camera;
+  points.eye->position = camera;
   points.eye->remembered.clear();
   const std::size_t old = shown_.entries().size();
   const std::size_t blocks = blocks_.order().size();

@@ -55,7 +55,7 @@ void PointWriter::add_eye(const PointMotion& motion) {
   SurfaceEye& eye = *points_->eye;
   const Eigen::Vector3d position = points_->origin + motion.from.position.cast<double>();
   const bool is_new = motion.to_eye.isZero(0);
-  eye.remembered.push_back(is_new ? (eye.place - position).normalized().cast<float>().eval()
+  eye.remembered.push_back(is_new ? (eye.position - position).normalized().cast<float>().eval()
                                   : motion.to_eye);
 }
 

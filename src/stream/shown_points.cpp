@@ -58,7 +58,7 @@ Eigen::Vector3f ShownPoints::to_eye(std::uint32_t i) const {
   const std::size_t first = points_->size() - remembered.size();
   if (i >= first) return remembered[i - first];
   const Eigen::Vector3d position = points_->origin + points_->grid.points()[i].cast<double>();
-  return (points_->eye->place - position).normalized().cast<float>();
+  return (points_->eye->position - position).normalized().cast<float>();
 }
 
 void ShownPoints::forget() {

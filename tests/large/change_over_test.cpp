@@ -137,7 +137,7 @@ TEST(ChangeOver, WhatAnEyeSawHoldsTowardsItFromTheFirstBlockOn) {
   ASSERT_TRUE(expected);
   Begun begun(cloud, options);
   ASSERT_TRUE(begun.source->points()->eye);
-  EXPECT_EQ(begun.source->points()->eye->place, expected->place);
+  EXPECT_EQ(begun.source->points()->eye->position, expected->position);
   change_over(begun, 2);
   ASSERT_TRUE(begun.source->points()->eye);
 }

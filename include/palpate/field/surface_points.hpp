@@ -15,9 +15,9 @@ namespace palpate {
 
 /// Where surface points were seen from.
 struct SurfaceEye {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< world frame, m
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world frame, m
   /// Unit directions, world frame, from the last points of the index to where each was seen from:
-  /// what a camera remembers while it moves on. All others are seen from `place`.
+  /// what a camera remembers while it moves on. All others are seen from `position`.
   std::vector<Eigen::Vector3f> remembered = {};
 };
 
