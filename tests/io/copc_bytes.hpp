@@ -51,7 +51,7 @@ inline std::string copc_bytes(const std::function<void(std::vector<CopcEntry>&)>
       {0, 0, 0, 0}, {1, 0, 1, 1}, {1, 1, 0, 0}, {2, 2, 1, 0}, {3, 5, 3, 1}};
   std::vector<CopcEntry> entries;
   for (std::size_t i = 0; i < 5; ++i) {
-    entries.push_back({keys[i], chunks[i].place, static_cast<std::int32_t>(chunks[i].bytes),
+    entries.push_back({keys[i], chunks[i].offset, static_cast<std::int32_t>(chunks[i].bytes),
                        static_cast<std::int32_t>(chunks[i].points)});
   }
   entries.push_back({{1, 1, 1, 1}, 0, 0, 0});  // a node without points

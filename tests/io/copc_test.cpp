@@ -44,7 +44,7 @@ void expect_all_points(const std::string& bytes, const io::Copc& copc) {
   const auto all = io::laz::read_points(input, header);
   std::size_t points = 0;
   for (const io::laz::Chunk& chunk : io::laz::read_chunk_table(input, header)) {
-    const auto node = std::ranges::find(copc.nodes, chunk.place, &io::StoredNode::offset);
+    const auto node = std::ranges::find(copc.nodes, chunk.offset, &io::StoredNode::offset);
     ASSERT_NE(node, copc.nodes.end());
     EXPECT_EQ(node->bytes, chunk.bytes);
     const std::vector<io::LasPoint> own =

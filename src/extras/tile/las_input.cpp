@@ -74,9 +74,9 @@ class LasFile {
   [[nodiscard]] std::vector<LasPoint> decode(std::size_t piece) const {
     const laz::Chunk& chunk = chunks_[piece];
     std::vector<LasPoint> points(chunk.points);
-    const Bytes bytes = file_.read(chunk.place, chunk.bytes);
+    const Bytes bytes = file_.read(chunk.offset, chunk.bytes);
     if (header_.compressed && !points.empty()) {
-      laz::require_whole(input(), chunk.place,
+      laz::require_whole(input(), chunk.offset,
                          fmt::format("chunk {} of {}", piece + 1, chunks_.size()),
                          laz::decode_points(header_, bytes.span(), points), points.size());
       return points;

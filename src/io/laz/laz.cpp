@@ -31,14 +31,14 @@ std::unique_ptr<LasPoint[]> read_points(const Input& input, const LasHeader& hea
   const std::thread::id caller = std::this_thread::get_id();
   detail::parallel_each(chunks.size(), 1, [&](std::size_t i) {
     const Chunk& chunk = chunks[i];
-    decoded[i] = decode_points(header, input.bytes.subspan(chunk.place, chunk.bytes),
+    decoded[i] = decode_points(header, input.bytes.subspan(chunk.offset, chunk.bytes),
                                {points.get() + chunk.first, chunk.points});
     done += chunk.points;
     // The caller's callback is for its own thread; it throws to give up.
     if (std::this_thread::get_id() == caller) progress.at(done);
   });
   for (std::size_t i = 0; i < chunks.size(); ++i) {
-    require_whole(input, chunks[i].place, fmt::format("chunk {} of {}", i + 1, chunks.size()),
+    require_whole(input, chunks[i].offset, fmt::format("chunk {} of {}", i + 1, chunks.size()),
                   decoded[i], chunks[i].points);
   }
   return points;

@@ -172,7 +172,7 @@ class ChunkTableReader {
     const Bytes table = file_.read(table_ + 8, std::min(rest, kLongestEntry * (count + 1)));
     RangeDecoder in(table.span());
     NumberModel sizes(32, 2);
-    Chunk chunk{.place = begin()};
+    Chunk chunk{.offset = begin()};
     std::uint32_t varying = 0;
     std::uint32_t bytes = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -184,7 +184,7 @@ class ChunkTableReader {
       chunk.bytes = bytes;
       check(chunk, i);
       chunks_.push_back(chunk);
-      chunk.place += chunk.bytes;
+      chunk.offset += chunk.bytes;
       chunk.first += chunk.points;
     }
     if (chunk.first != header_.points) {
@@ -194,9 +194,9 @@ class ChunkTableReader {
   }
 
   void check(const Chunk& chunk, std::size_t i) const {
-    if (chunk.bytes > table_ - chunk.place) {
+    if (chunk.bytes > table_ - chunk.offset) {
       wrong(fmt::format("chunk {} of {} bytes at byte {} reaches into the table", i + 1,
-                        chunk.bytes, chunk.place));
+                        chunk.bytes, chunk.offset));
     }
     if (chunk.points > header_.points - chunk.first) {
       wrong(fmt::format("chunk {} ends with point {}, but the header announces {}", i + 1,

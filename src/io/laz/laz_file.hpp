@@ -14,7 +14,7 @@ namespace palpate::io::laz {
 
 /// Some points of a file, compressed by themselves.
 struct Chunk {
-  std::size_t place = 0;  ///< bytes from the start of the file
+  std::size_t offset = 0;  ///< bytes from the start of the file
   std::size_t bytes = 0;
   std::size_t first = 0;  ///< its first point among those of the file
   std::size_t points = 0;
