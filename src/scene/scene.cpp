@@ -32,7 +32,7 @@ Source& Scene::add(std::string name, const SourceOptions& options) {
         fmt::format("the scene already has a source named '{}'; choose another name", name));
   if (!seams_) seams_ = std::make_shared<Seams>();
   Source& source = sources_.emplace_back(std::move(name), options);
-  source.inside_->place = {seams_, sources_.size() - 1};
+  source.inside_->slot = {seams_, sources_.size() - 1};
   return source;
 }
 

@@ -41,7 +41,7 @@ struct SceneField::State {
   struct FollowedSource {
     FollowedSource(Source::Inside& source, const SourceOptions::SoftMaterial& its_soft,
                    const std::string& name)
-        : view(source.handoff, source.place.seams->least_radius(source.place.number), name),
+        : view(source.handoff, source.slot.seams->least_radius(source.slot.number), name),
           board(&source.reaches),
           soft(its_soft) {}
 

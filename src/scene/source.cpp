@@ -102,7 +102,7 @@ void Source::publish(std::shared_ptr<const Snapshot> snapshot) {
   }
   forget_frames(inside_->streaming.get());
   inside_->handoff.publish(std::move(snapshot));
-  inside_->place.compare(*this);
+  inside_->slot.compare(*this);
 }
 
 std::shared_ptr<const SurfacePoints> Source::points() const {

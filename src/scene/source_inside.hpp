@@ -87,7 +87,7 @@ auto named(const std::string& name, const Act& act) {
 }
 
 /// Where a source stands among those of its scene, whose seams it has. By itself it has none.
-struct ScenePlace {
+struct SceneSlot {
   std::shared_ptr<Seams> seams;
   std::size_t number = 0;
 
@@ -116,7 +116,7 @@ struct Source::Inside {
   std::shared_ptr<Streaming> streaming;
   std::uint64_t publications = 0;  // the preparing thread's
   ReachTable reaches;
-  ScenePlace place;
+  SceneSlot slot;
   Handoff<Snapshot> handoff;
 };
 

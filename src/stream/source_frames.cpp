@@ -191,7 +191,7 @@ void Streaming::hand_over(std::shared_ptr<Snapshot> snapshot, const CloudNotes* 
     to.state.clipped = cloud && !cloud->whole.empty();
   }
   to.handoff.publish(std::move(snapshot));
-  if (to.state.frames % kComparedFrames == 1) to.place.compare(source);
+  if (to.state.frames % kComparedFrames == 1) to.slot.compare(source);
 }
 
 void Streaming::note_surface(const Snapshot& snapshot, Source::Inside& source) {

@@ -35,7 +35,7 @@ void SourceTrace::impose_reach(std::span<const Reach> reach) {
 }
 
 void SourceTrace::impose_least_radius(double radius) {
-  source_->inside_->place.seams->set_least_radius(source_->inside_->place.number, radius);
+  source_->inside_->slot.seams->set_least_radius(source_->inside_->slot.number, radius);
 }
 
 }  // namespace palpate
