@@ -101,7 +101,7 @@ test("a cloud is read with and without colours, normals, trust and radii", () =>
   assert.equal(all.stamp, 2.5);
   assert.deepEqual(all.lower, [-1, -2, -3]);
   assert.deepEqual(all.extent, [2, 4, 6]);
-  assert.deepEqual([...all.places], [0, 0, 0, 65535, 65535, 65535, 1, 2, 3]);
+  assert.deepEqual([...all.positions], [0, 0, 0, 65535, 65535, 65535, 1, 2, 3]);
   assert.deepEqual([...all.colours!], [10, 20, 30, 40, 50, 60, 70, 80, 255]);
   assert.deepEqual([...all.normals!], [127, 0, 0, -127, -1, 1]);
   assert.deepEqual([...all.trust!], [0, 127, 255]);

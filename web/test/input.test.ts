@@ -27,7 +27,7 @@ test("with a controller and a 3D mouse, a button that is held is pressed once", 
   let taken = 0;
   const input = new Input(world, hand, keys, mouse, new Stroke(world, hand, () => undefined), () => {
     taken += 1;
-    hand.take(0, hand.place);
+    hand.take(0, hand.position);
     return true;
   });
   input.update(0);
@@ -38,7 +38,7 @@ test("with a controller and a 3D mouse, a button that is held is pressed once", 
   for (let i = 5; i < 9; i += 1) input.update(16 * i);
   assert.equal(taken, 1, "held since it was let go");
   pads = [pad(8)];
-  hand.take(0, hand.place);
+  hand.take(0, hand.position);
   const pressed: number[] = [];
   hand.press = (buttons) => void pressed.push(buttons);
   for (let i = 9; i < 12; i += 1) input.update(16 * i);

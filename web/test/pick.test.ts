@@ -33,7 +33,7 @@ test("a ray meets a level surface and a slanted one where they are, with their n
     for (const [x, y] of [[0.003, 0.111], [-0.207, 0.052], [0.31, -0.3]] as const) {
       const seen = surfaceAlong(from(x, y), [cloud], 0);
       assert.ok(seen !== undefined);
-      assert.ok(Math.abs(seen.place.z - slope * x) < 2e-3, `slope ${slope}: ${seen.place.z} at ${x}`);
+      assert.ok(Math.abs(seen.position.z - slope * x) < 2e-3, `slope ${slope}: ${seen.position.z} at ${x}`);
       assert.ok(seen.normal.angleTo(normal) < 0.1, `slope ${slope}: ${seen.normal.toArray().join(",")}`);
     }
   }
@@ -43,7 +43,7 @@ test("of two surfaces the nearer one is met; a stray in front is none, and besid
   const far = cloudOf(square(0.01, (x, y) => new Vector3(x, y, -0.4)), 0.01);
   const near = cloudOf([...level, new Vector3(0.1, 0.1, 0.5), new Vector3(0.102, 0.1, 0.5)], 0.01);
   const seen = surfaceAlong(from(0.1, 0.1), [far, near], 0);
-  assert.ok(Math.abs(seen!.place.z) < 1e-3, `${seen!.place.z}`);
+  assert.ok(Math.abs(seen!.position.z) < 1e-3, `${seen!.position.z}`);
   assert.equal(surfaceAlong(from(0.8, 0.1), [far, near], 0), undefined);
   assert.equal(surfaceAlong(new Ray(new Vector3(0, 0, -0.9), kDown.clone()), [far, near], 0), undefined, "behind the eye");
 });
@@ -53,16 +53,16 @@ test("beside an edge the place is on the surface", () => {
   const cloud = cloudOf(level, 0.01);
   for (const beyond of [0, 0.003, 0.006]) {
     const seen = surfaceAlong(from(0.5 + beyond, 0.013), [cloud], 0);
-    assert.ok(seen !== undefined && seen.place.x < 0.503 && seen.place.x > 0.48, `${beyond}: ${seen?.place.x}`);
+    assert.ok(seen !== undefined && seen.position.x < 0.503 && seen.position.x > 0.48, `${beyond}: ${seen?.position.x}`);
   }
   const inside = surfaceAlong(from(0.2, 0.013), [cloud], 0);
-  assert.ok(inside!.place.distanceTo(new Vector3(0.2, 0.013, 0)) < 1e-3);
+  assert.ok(inside!.position.distanceTo(new Vector3(0.2, 0.013, 0)) < 1e-3);
 });
 
 test("the nearest point of all clouds", () => {
   const clouds = [cloudOf(level, 0.01), cloudOf([new Vector3(0.1, 0.1, 0.2)], 0.02)];
   assert.equal(nearestTo(new Vector3(0.1, 0.1, 0.15), clouds)?.spacing, 0.02);
   const found = nearestTo(new Vector3(0.204, -0.101, 0.08), clouds);
-  assert.ok(found!.place.distanceTo(new Vector3(0.2, -0.1, 0)) < 1e-3);
+  assert.ok(found!.point.distanceTo(new Vector3(0.2, -0.1, 0)) < 1e-3);
   assert.equal(nearestTo(new Vector3(), []), undefined);
 });

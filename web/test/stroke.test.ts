@@ -13,10 +13,10 @@ function setUp() {
   const camera = new PerspectiveCamera();
   camera.position.set(0, 0, 1);
   const tool = {
-    hipPlace: new Vector3(0, 0, 2 * kReach), proxyPlace: new Vector3(), normal: new Vector3(0, 0, 1), force: new Vector3(0, 0, 0.1),
+    hipPosition: new Vector3(0, 0, 2 * kReach), proxyPosition: new Vector3(), normal: new Vector3(0, 0, 1), force: new Vector3(0, 0, 0.1),
     touching: false, behind: false, weak: false, faulty: false,
   };
-  const seen = () => ({ place: new Vector3(), normal: new Vector3(0, 0, 1), reach: kReach, inward: new Vector3() });
+  const seen = () => ({ position: new Vector3(), normal: new Vector3(0, 0, 1), reach: kReach, inward: new Vector3() });
   const world = { tools: [tool], stage: { camera }, surfaceAlong: seen } as unknown as World;
   const aims: number[] = []; // heights that the hand is asked to go to, m
   const hand = { device: 0, held: true, moveTo: (place: Vector3) => aims.push(place.z) };
@@ -25,7 +25,7 @@ function setUp() {
   stroke.press(true);
   const at = (now: number, height: number, touching: boolean, weak: boolean) => {
     Object.assign(tool, { touching, weak });
-    tool.hipPlace.z = height;
+    tool.hipPosition.z = height;
     stroke.update(now);
     return aims.at(-1)!;
   };

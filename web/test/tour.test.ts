@@ -13,7 +13,7 @@ function setUp(meets: (at: Vector2) => boolean) {
   const hand = { held: false, letGo: () => (hand.held = false) };
   const stroke = {
     led: false, presses: new Set<boolean>(), places: [] as number[],
-    under: (at: Vector2) => (meets(at) ? { place: new Vector3(at.x, at.y, 0), normal: new Vector3(0, 0, 1), reach: 0.02 } : undefined),
+    under: (at: Vector2) => (meets(at) ? { position: new Vector3(at.x, at.y, 0), normal: new Vector3(0, 0, 1), reach: 0.02 } : undefined),
     aim: (at: Vector2) => stroke.places.push(at.x), press: (on: boolean) => stroke.presses.add(on), rest: () => void (stroke.led = false),
   };
   const values = new Map<string, number>([["stiffness", 800], ["friction", 0.2]]);

@@ -89,10 +89,10 @@ test("trust changes its hue where a byte stands for a half", () => {
 });
 
 test("a slider's scale is even for small ranges and by ratio for wide ones", () => {
-  assert.equal(new Scale(0, 10).place(2.5), 0.25);
+  assert.equal(new Scale(0, 10).position(2.5), 0.25);
   const wide = new Scale(10, 1000);
-  assert.ok(Math.abs(wide.place(100) - 0.5) < 1e-12);
-  for (const value of [10, 57, 1000]) assert.ok(Math.abs(wide.value(wide.place(value)) - value) < 1e-9);
+  assert.ok(Math.abs(wide.position(100) - 0.5) < 1e-12);
+  for (const value of [10, 57, 1000]) assert.ok(Math.abs(wide.value(wide.position(value)) - value) < 1e-9);
 });
 
 test("sticks rest inside their dead zone and reach one at their end", () => {
@@ -114,16 +114,16 @@ test("controllers and 3D mice mean the same directions", () => {
 
 test("bounds leave outliers out", () => {
   const samples = sheet((u, v) => new Vector3(u, v, 0), new Vector3(0, 0, 1));
-  samples.push({ place: new Vector3(1000, 0, 0), normal: undefined });
+  samples.push({ position: new Vector3(1000, 0, 0), normal: undefined });
   const bounds = boundsOf(samples);
   assert.ok(bounds !== undefined && bounds.radius < 1);
-  assert.ok(bounds.samples.every(({ place }) => place.x < 2));
+  assert.ok(bounds.samples.every(({ position }) => position.x < 2));
   assert.equal(boundsOf([]), undefined);
 });
 
-/** 400 places over 0..1 x 0..1. */
+/** 400 points over 0..1 x 0..1. */
 function sheet(at: (u: number, v: number) => Vector3, normal: Vector3): Sample[] {
-  return Array.from({ length: 400 }, (_, i) => ({ place: at((i % 20) / 19, Math.floor(i / 20) / 19), normal }));
+  return Array.from({ length: 400 }, (_, i) => ({ position: at((i % 20) / 19, Math.floor(i / 20) / 19), normal }));
 }
 
 test("a corner of a room is seen first from where its walls face, whatever the axes", () => {
@@ -142,7 +142,7 @@ test("a corner of a room is seen first from where its walls face, whatever the a
 
 test("what has no normals is seen from its cameras' side", () => {
   const up = new Vector3(0, 0, 1);
-  const flat = sheet((u, v) => new Vector3(u, v, 0), up).map(({ place }) => ({ place, normal: undefined }));
+  const flat = sheet((u, v) => new Vector3(u, v, 0), up).map(({ position }) => ({ position, normal: undefined }));
   const direction = firstDirection(up, [new Vector3(5, 0.5, 1)], boundsOf(flat)!);
   assert.ok(direction.x > 0.5);
 });

@@ -9,7 +9,7 @@ const kInterval = 8; // ms: 125 messages a second at most
 export class Hand {
   held = false;
   device = 0;
-  readonly place = new Vector3();
+  readonly position = new Vector3();
   private force: number | undefined; // N, that it pulls with at most; undefined: as hard as it can
   private buttons = 0;
   private sent = -Infinity;
@@ -20,9 +20,9 @@ export class Hand {
     private readonly changed: () => void,
   ) {}
 
-  take(device: number, place: Vector3): void {
+  take(device: number, position: Vector3): void {
     this.device = device;
-    this.place.copy(place);
+    this.position.copy(position);
     this.held = true;
     this.force = undefined;
     this.mark();
@@ -38,9 +38,9 @@ export class Hand {
     this.changed();
   }
 
-  moveTo(place: Vector3, force?: number): void {
-    if (!this.held || !Number.isFinite(place.lengthSq())) return;
-    this.place.copy(place);
+  moveTo(position: Vector3, force?: number): void {
+    if (!this.held || !Number.isFinite(position.lengthSq())) return;
+    this.position.copy(position);
     this.force = force;
     this.mark();
   }
@@ -49,7 +49,7 @@ export class Hand {
   nudge(camera: PerspectiveCamera, right: number, up: number, away: number): void {
     if (!this.held || (right === 0 && up === 0 && away === 0)) return;
     this.force = undefined;
-    this.place.add(new Vector3(right, up, -away).applyQuaternion(camera.quaternion));
+    this.position.add(new Vector3(right, up, -away).applyQuaternion(camera.quaternion));
     this.mark();
   }
 
@@ -71,7 +71,7 @@ export class Hand {
     if (!this.held) return;
     this.sent = performance.now();
     this.send({
-      type: "hand", device: this.device, position: this.place.toArray(), buttons: this.buttons,
+      type: "hand", device: this.device, position: this.position.toArray(), buttons: this.buttons,
       ...(this.force === undefined ? {} : { force: this.force }),
     });
   }

@@ -63,7 +63,7 @@ export class Input {
     if (right === 0 && up === 0 && away === 0) return;
     this.stroke.rest();
     const { stage } = this.world;
-    const height = stage.pixelAt(this.hand.place) * stage.height;
+    const height = stage.pixelAt(this.hand.position) * stage.height;
     this.hand.nudge(stage.camera, right * height, up * height, away * height);
   }
 }

@@ -63,7 +63,7 @@ export class PointerInput {
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
     if (this.free) {
-      this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+      this.offset.copy(this.hand.position).sub(this.onPlane(event) ?? this.hand.position);
     } else {
       this.stroke.press(true);
       this.aim(event);
@@ -78,8 +78,8 @@ export class PointerInput {
     } else if (!this.free) {
       this.aim(event);
     } else {
-      const place = this.onPlane(event);
-      if (place !== undefined) this.hand.moveTo(place.add(this.offset));
+      const position = this.onPlane(event);
+      if (position !== undefined) this.hand.moveTo(position.add(this.offset));
     }
   }
 
@@ -114,9 +114,9 @@ export class PointerInput {
     const notches = -event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3);
     if (!this.free) return this.stroke.harder(notches);
     const camera = this.world.stage.camera;
-    const away = notches * kNotch * camera.position.distanceTo(this.hand.place);
+    const away = notches * kNotch * camera.position.distanceTo(this.hand.position);
     this.hand.nudge(camera, 0, 0, away);
-    this.offset.copy(this.hand.place).sub(this.onPlane(event) ?? this.hand.place);
+    this.offset.copy(this.hand.position).sub(this.onPlane(event) ?? this.hand.position);
   }
 
   /** Would a press here move the tool? */
@@ -137,7 +137,7 @@ export class PointerInput {
     const camera = this.world.stage.camera;
     this.ray.setFromCamera(this.seen(event), camera);
     const plane = new Plane().setFromNormalAndCoplanarPoint(
-      camera.getWorldDirection(new Vector3()), this.hand.place,
+      camera.getWorldDirection(new Vector3()), this.hand.position,
     );
     return this.ray.ray.intersectPlane(plane, new Vector3()) ?? undefined;
   }
@@ -145,8 +145,8 @@ export class PointerInput {
   private onHand(event: PointerEvent): boolean {
     const tool = this.world.tools[this.hand.device];
     if (tool === undefined || !tool.group.visible) return false;
-    const place = this.hand.held ? this.hand.place : tool.hipPlace;
-    const at = place.clone().project(this.world.stage.camera);
+    const position = this.hand.held ? this.hand.position : tool.hipPosition;
+    const at = position.clone().project(this.world.stage.camera);
     const box = this.canvas.getBoundingClientRect();
     const seen = this.seen(event);
     return Math.hypot((at.x - seen.x) * box.width, (at.y - seen.y) * box.height) / 2 < (event.pointerType === "touch" ? kFinger : kGrasp);

@@ -71,7 +71,7 @@ export class Stroke {
   /** Something else moves the tool. */
   rest(): void {
     const tool = this.world.tools[this.hand.device];
-    if (this.pressing && tool !== undefined) this.hand.moveTo(tool.hipPlace); // not deep below a surface, with all force
+    if (this.pressing && tool !== undefined) this.hand.moveTo(tool.hipPosition); // not deep below a surface, with all force
     this.at = undefined;
     this.pressing = this.content = this.led = false;
     this.there = false;
@@ -87,47 +87,47 @@ export class Stroke {
     this.last = seen ?? this.beside() ?? this.last;
     if (this.last === undefined) return;
     const felt = this.refine(this.last, tool);
-    const { place, normal, reach } = this.last;
-    const above = place.clone().addScaledVector(normal, kAbove * reach);
+    const { position, normal, reach } = this.last;
+    const above = position.clone().addScaledVector(normal, kAbove * reach);
     this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
     if (!this.pressing || tool.touching) this.misses = 0;
     this.judge(tool, above, felt, now);
     const height = -this.below(tool);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
-    if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPlace); // until it is free
+    if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPosition); // until it is free
     else if (!pressing) this.hand.moveTo(above);
-    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(place.clone().addScaledVector(normal, -kNear * reach));
-    else this.hand.moveTo(place.clone().addScaledVector(normal, -this.depth(tool, reach)), this.pen ?? this.force);
+    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(position.clone().addScaledVector(normal, -kNear * reach));
+    else this.hand.moveTo(position.clone().addScaledVector(normal, -this.depth(tool, reach)), this.pen ?? this.force);
   }
 
   /** m; so deep that the hand's spring pulls with all of the force. */
   private depth(tool: Tool, reach: number): number {
-    const given = tool.proxyPlace.distanceTo(tool.hipPlace) / tool.force.length(); // m/N; NaN where nothing is touched
+    const given = tool.proxyPosition.distanceTo(tool.hipPosition) / tool.force.length(); // m/N; NaN where nothing is touched
     const least = kBelow * reach;
     return MathUtils.clamp(kGive * (given || 0) * (this.pen ?? this.force), least, kDeepest * least);
   }
 
   /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
-  private refine({ place, normal, reach, inward }: Seen, tool: Tool): boolean {
+  private refine({ position, normal, reach, inward }: Seen, tool: Tool): boolean {
     const facing = -tool.normal.dot(this.caster.ray.direction);
     if (!tool.touching || facing <= 0) return false;
-    const tangent = facing > kGrazing ? this.tangent(tool.proxyPlace, tool.normal)?.add(inward.clone().projectOnPlane(tool.normal)) : undefined;
-    if ((tangent ?? tool.proxyPlace).distanceTo(place) > kAbove * reach) return false;
-    if (tangent !== undefined) place.copy(tangent);
+    const tangent = facing > kGrazing ? this.tangent(tool.proxyPosition, tool.normal)?.add(inward.clone().projectOnPlane(tool.normal)) : undefined;
+    if ((tangent ?? tool.proxyPosition).distanceTo(position) > kAbove * reach) return false;
+    if (tangent !== undefined) position.copy(tangent);
     normal.copy(tool.normal);
     return true;
   }
 
   /** Is the tool on the surface or above it? It has to go there if it is far off in depth, or has missed it. */
   private judge(tool: Tool, above: Vector3, felt: boolean, now: number): void {
-    const { place, reach } = this.last!;
-    const way = place.clone().sub(tool.hipPlace);
+    const { position, reach } = this.last!;
+    const way = position.clone().sub(tool.hipPosition);
     const deep = Math.abs(way.dot(this.caster.ray.direction));
     const aside = Math.sqrt(Math.max(0, way.lengthSq() - deep * deep));
     const was = this.there;
     if (felt) this.there = true;
     else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;
-    else if (tool.hipPlace.distanceTo(above) < reach) this.there = true;
+    else if (tool.hipPosition.distanceTo(above) < reach) this.there = true;
     this.sunk = tool.touching && (this.sunk || (tool.weak && this.below(tool) > kSunk * reach));
     if (this.sunk) this.there = false;
     if (!tool.touching || !tool.weak || this.content) this.strong = now;
@@ -149,12 +149,12 @@ export class Stroke {
 
   /** How deep the hand is below the surface, m. */
   private below(tool: Tool): number {
-    return this.last!.place.clone().sub(tool.hipPlace).dot(this.last!.normal);
+    return this.last!.position.clone().sub(tool.hipPosition).dot(this.last!.normal);
   }
 
   /** How far it has not gone straight through the surface, m. */
   private aside(tool: Tool): number {
-    return tool.hipPlace.clone().sub(this.last!.place).projectOnPlane(this.last!.normal).length();
+    return tool.hipPosition.clone().sub(this.last!.position).projectOnPlane(this.last!.normal).length();
   }
 
   private putToHand(now: number, faulty: boolean): void {
@@ -164,7 +164,7 @@ export class Stroke {
     this.free();
   }
 
-  /** The surface at a place of the picture. */
+  /** The surface at a point of the picture. */
   under(at: Vector2, finger: boolean): Seen | undefined {
     const { camera } = this.world.stage;
     camera.updateMatrixWorld(); // it may have moved since the last picture
@@ -176,13 +176,13 @@ export class Stroke {
   private beside(): Seen | undefined {
     if (this.last === undefined) return undefined;
     const forward = this.world.stage.camera.getWorldDirection(new Vector3());
-    const place = this.tangent(this.last.place, forward);
-    return place && { place, normal: forward.negate(), reach: this.last.reach, inward: new Vector3() };
+    const position = this.tangent(this.last.position, forward);
+    return position && { position, normal: forward.negate(), reach: this.last.reach, inward: new Vector3() };
   }
 
   /** What the pointer shows of a plane. */
-  private tangent(place: Vector3, normal: Vector3): Vector3 | undefined {
-    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, place);
+  private tangent(position: Vector3, normal: Vector3): Vector3 | undefined {
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, position);
     return this.caster.ray.intersectPlane(plane, new Vector3()) ?? undefined;
   }
 }

@@ -31,7 +31,7 @@ const kTurn = 6; // s of a stroke to and fro
 // The first two before others hear of them; keys after them, since one lets the tool go by itself.
 const kDoings = [["pointerdown", true], ["wheel", true], ["keydown", false]] as const;
 const kRings = 6; // around the middle of the picture in which a surface is looked for
-const kPlaces = 8;
+const kAngles = 8; // around a ring
 const kNear = 0.02; // of the half picture, to tell how far that is
 const kFarthest = 0.8; // of the half picture
 const kTurned = 0.7; // cosine between normals of one stroke
@@ -56,7 +56,7 @@ export class Tour {
   /** False where there is nothing to touch or the tool cannot be taken. */
   start(now: number): boolean {
     this.stop();
-    if (!this.findPlace() || !this.take()) return false;
+    if (!this.findMiddle() || !this.take()) return false;
     this.stroke.rest(); // with the force that it begins with
     this.stroke.led = true;
     for (const [type, capture] of kDoings) window.addEventListener(type, this.disturb, { capture });
@@ -133,17 +133,17 @@ export class Tour {
     if (button === null) this.stop();
   };
 
-  /** Nearest to the middle of the picture, of places that can be stroked if there is one. */
-  private findPlace(): boolean {
-    const places: Vector2[] = [];
+  /** Sets `middle` to the candidate nearest to the picture's middle, preferably one whose strokes stay on the surface. */
+  private findMiddle(): boolean {
+    const candidates: Vector2[] = [];
     for (let ring = 0; ring < kRings; ring += 1) {
-      for (let k = 0; k < (ring === 0 ? 1 : kPlaces); k += 1) {
-        const angle = (2 * Math.PI * k) / kPlaces;
-        places.push(new Vector2(Math.cos(angle), Math.sin(angle)).multiplyScalar((kFarthest * ring) / kRings));
+      for (let k = 0; k < (ring === 0 ? 1 : kAngles); k += 1) {
+        const angle = (2 * Math.PI * k) / kAngles;
+        candidates.push(new Vector2(Math.cos(angle), Math.sin(angle)).multiplyScalar((kFarthest * ring) / kRings));
       }
     }
     let found = false;
-    for (const at of places) {
+    for (const at of candidates) {
       const seen = this.beside(at, 0);
       if (seen === undefined) continue;
       const wide = this.wideAt(at, seen);
@@ -164,7 +164,7 @@ export class Tour {
   private wideAt(at: Vector2, middle: Seen): number {
     const beside = this.beside(at, kNear);
     if (beside === undefined) return kNear;
-    return Math.min(kWidest, (kReaches * middle.reach * kNear) / beside.place.distanceTo(middle.place));
+    return Math.min(kWidest, (kReaches * middle.reach * kNear) / beside.position.distanceTo(middle.position));
   }
 
   /** Is this one surface, seen from above, as far as strokes go? */
@@ -172,7 +172,7 @@ export class Tour {
     return [-0.5, 0.5, -1, 1].every((part) => {
       const other = this.beside(at, part * wide);
       if (other === undefined || other.normal.dot(middle.normal) < kTurned) return false;
-      const way = other.place.clone().sub(middle.place);
+      const way = other.position.clone().sub(middle.position);
       return Math.abs(way.dot(middle.normal)) < kSteep * way.length() + middle.reach;
     });
   }

@@ -40,7 +40,7 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     const near = step ? least + Math.round((value - least) / step) * step : value;
     return clamped(Number(near.toPrecision(9)));
   };
-  const place = (value: number) => String(Math.round(scale.place(value) * kSlider));
+  const position = (value: number) => String(Math.round(scale.position(value) * kSlider));
   const say = (value: number) => {
     field.value = inStep(value, step);
     slider.setAttribute("aria-valuetext", `${field.value} ${setting.unit ?? ""}`.trim());
@@ -50,7 +50,7 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     return text === "" || text === inStep(held, step) || Number.isNaN(Number(text)) ? held : Number(text);
   };
   slider.addEventListener("input", () => {
-    const value = slider.value === place(held) ? held : snapped(scale.value(Number(slider.value) / kSlider));
+    const value = slider.value === position(held) ? held : snapped(scale.value(Number(slider.value) / kSlider));
     say(value);
     later(value);
   });
@@ -60,14 +60,14 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     event.preventDefault();
     const value = snapped(typed() + notches * (step ?? (most - least) / 100));
     say(value);
-    slider.value = place(value);
+    slider.value = position(value);
     later(value);
   };
   slider.addEventListener("keydown", move);
   field.addEventListener("change", () => {
     const value = clamped(typed());
     say(value);
-    slider.value = place(value);
+    slider.value = position(value);
     if (value !== held) wanted(value);
     held = value;
   });
@@ -80,7 +80,7 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     row: make("div", { class: "field number" }, label(setting, id), field, slider),
     show: (value) => {
       held = Number(value);
-      if (document.activeElement !== slider) slider.value = place(held);
+      if (document.activeElement !== slider) slider.value = position(held);
       if (document.activeElement !== field) say(held);
     },
   };

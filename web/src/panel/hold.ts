@@ -70,7 +70,7 @@ export class HoldPanel {
     if (this.hand.held) return true;
     const state = this.session.tool?.latest;
     if (!this.takeable() || state === undefined) return false;
-    this.hand.take(this.session.device, this.world.tools[this.session.device]!.hipPlace);
+    this.hand.take(this.session.device, this.world.tools[this.session.device]!.hipPosition);
     return true;
   }
 

@@ -70,15 +70,15 @@ export class Scale {
   }
 
   /** 0 to 1. */
-  place(value: number): number {
+  position(value: number): number {
     const part = this.byRatio
       ? Math.log(value / this.least) / Math.log(this.most / this.least)
       : (value - this.least) / (this.most - this.least);
     return Math.min(1, Math.max(0, part));
   }
 
-  value(place: number): number {
-    if (this.byRatio) return this.least * (this.most / this.least) ** place;
-    return this.least + place * (this.most - this.least);
+  value(position: number): number {
+    if (this.byRatio) return this.least * (this.most / this.least) ** position;
+    return this.least + position * (this.most - this.least);
   }
 }

@@ -109,7 +109,7 @@ function drawnHere<T>(makes: () => T): T {
 export class Plot {
   readonly figure: HTMLElement;
   private readonly legend = make("span", { class: "curves" });
-  private readonly place = make("span", { class: "at" });
+  private readonly readout = make("span", { class: "at" });
   private readonly values: HTMLElement[] = []; // of the curves, at the cursor
   private readonly box = make("div", { class: "plot" });
   private readonly plot: uPlot;
@@ -121,7 +121,7 @@ export class Plot {
     this.figure = make("figure", { class: `chart ${options.name}` },
       make("figcaption", {},
         make("span", {}, make("b", {}, options.title), " ", make("span", { class: "unit" }, options.unit)),
-        this.legend, this.place),
+        this.legend, this.readout),
       this.box);
     const range = options.logarithmic ? logRange(least, options.most ?? 1) : linearRange(least);
     this.plot = drawnHere(() => new uPlot({
@@ -189,7 +189,7 @@ export class Plot {
   private showValues(): void {
     const at = this.plot.cursor.idx;
     const x = at === null || at === undefined ? undefined : this.plot.data[0][at];
-    this.place.textContent = x === undefined ? "" : `${tick(x)} ${this.options.xUnit}`;
+    this.readout.textContent = x === undefined ? "" : `${tick(x)} ${this.options.xUnit}`;
     this.values.forEach((element, i) => {
       const value = x === undefined ? undefined : this.plot.data[i + 1]?.[at!];
       element.textContent = typeof value === "number" ? ` ${threeDigits(value)}` : "";

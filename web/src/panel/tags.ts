@@ -23,7 +23,7 @@ export class Tags {
     const { camera, width, height } = this.world.stage;
     this.tags.forEach((tag, i) => {
       const tool = this.world.tools[i]!;
-      const at = tool.hipPlace.clone().project(camera);
+      const at = tool.hipPosition.clone().project(camera);
       tag.hidden = !tool.group.visible || Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || at.z > 1;
       if (tag.hidden) return;
       tag.classList.toggle("chosen", i === chosen);

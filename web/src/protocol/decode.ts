@@ -1,4 +1,4 @@
-// Binary messages of the program. Places are metres relative to the scene's origin.
+// Binary messages of the program. Positions are in metres relative to the scene's origin.
 // Typed arrays look into the message itself: nothing is copied. They read in the host's byte order,
 // which is little-endian wherever a browser runs.
 
@@ -50,7 +50,7 @@ export interface CloudMessage {
   stamp: number; // s
   lower: Vector;
   extent: Vector;
-  places: Uint16Array; // lower + extent * u / 65535
+  positions: Uint16Array; // lower + extent * u / 65535
   colours: Uint8Array | undefined;
   normals: Int8Array | undefined; // octahedral
   trust: Uint8Array | undefined; // 255 is 1
@@ -134,8 +134,8 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
   const count = view.getUint32(4, true);
   const colours = (flags & 1) !== 0;
   const normals = (flags & 2) !== 0;
-  const afterPlaces = 40 + 6 * count;
-  const afterColours = afterPlaces + (colours ? 3 * count : 0);
+  const afterPositions = 40 + 6 * count;
+  const afterColours = afterPositions + (colours ? 3 * count : 0);
   const afterNormals = afterColours + (normals ? 2 * count : 0);
   const trust = (flags & 4) !== 0;
   const afterTrust = afterNormals + (trust ? count : 0);
@@ -148,8 +148,8 @@ function decodeCloud(buffer: ArrayBuffer, view: DataView): CloudMessage {
     stamp: view.getFloat64(8, true),
     lower: vector(view, 16),
     extent: vector(view, 28),
-    places: new Uint16Array(buffer, 40, 3 * count),
-    colours: colours ? new Uint8Array(buffer, afterPlaces, 3 * count) : undefined,
+    positions: new Uint16Array(buffer, 40, 3 * count),
+    colours: colours ? new Uint8Array(buffer, afterPositions, 3 * count) : undefined,
     normals: normals ? new Int8Array(buffer, afterColours, 2 * count) : undefined,
     trust: trust ? new Uint8Array(buffer, afterNormals, count) : undefined,
     radii: radii ? new Uint8Array(buffer, afterTrust, count) : undefined,

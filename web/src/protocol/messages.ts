@@ -64,7 +64,7 @@ export interface Welcome {
   settings: Setting[];
   presets: string[];
   opens?: number; // bytes of a file that a page may send to be touched; absent: none
-  timeline?: { length: number }; // s, of a recording that is shown in place of a run
+  timeline?: { length: number }; // s, of a recording that is shown instead of a run
 }
 
 /** What is shown of a recording. */

@@ -13,7 +13,7 @@ import { kCloudLayer } from "./layers";
 
 const kStill = 120; // ms of a still eye, before its picture becomes sharp (judgement)
 const kLive = 2000; // ms: what changes more often is a camera's, which is drawn quickly until two changes fail to come (measured: a busy page hears 1.6 a second)
-const kSharp = 8; // pictures with places in a pixel that the sharp one is the mean of
+const kSharp = 8; // pictures with sample points in a pixel that the sharp one is the mean of
 const kAtOnce = 4; // that are enough where each pixel of the screen is four
 const kSampled = 2 ** 24; // samples in memory, of 8 bytes (colour and depth): 128 MiB
 // ms between two frames: below the first a larger part is drawn in the next, above the second a smaller one; but it ends
@@ -42,7 +42,7 @@ export function samplesOf(pixels: number, most: number): number {
   return samples > 1 ? samples : 0;
 }
 
-/** The n-th of places spread over 0 to 1 (van der Corput). */
+/** The n-th of values spread over 0 to 1 (van der Corput). */
 function spread(n: number, base: number): number {
   let [sum, part] = [0, 1 / base];
   for (let i = n; i > 0; i = Math.floor(i / base), part /= base) sum += part * (i % base);
@@ -55,7 +55,7 @@ function countOf(clouds: readonly Cloud[]): number {
 
 /** What throws a shadow, and lets what it touches glow. */
 export interface Caster {
-  place: Vector3;
+  position: Vector3;
   radius: number; // m
   heat: number; // 0 to 1
 }
@@ -215,7 +215,7 @@ export class Backdrop {
     this.show(this.sharp);
   }
 
-  /** The quick picture is smoothed: few places are compared for its hollows. */
+  /** The quick picture is smoothed: few points are compared for its hollows. */
   private show({ texture, depthTexture, width, height }: WebGLRenderTarget): void {
     const between = { value: texture === this.quick.texture ? [0.5 / width, 0.5 / height] : [0, 0] };
     Object.assign(this.screen.material.uniforms, { colours: { value: texture }, depths: { value: depthTexture }, between });
@@ -265,9 +265,9 @@ export class Backdrop {
     uniforms["slopes"]!.value = [1 / projection[0], 1 / projection[5]];
     (uniforms["up"]!.value as Vector3).copy(up).transformDirection(camera.matrixWorldInverse);
     uniforms["count"]!.value = Math.min(casters.length, this.casters.length);
-    casters.slice(0, this.casters.length).forEach(({ place, radius, heat }, i) => {
+    casters.slice(0, this.casters.length).forEach(({ position, radius, heat }, i) => {
       this.heats[i] = heat;
-      this.casters[i]!.set(...place.clone().applyMatrix4(camera.matrixWorldInverse).toArray(), radius);
+      this.casters[i]!.set(...position.clone().applyMatrix4(camera.matrixWorldInverse).toArray(), radius);
     });
   }
 }

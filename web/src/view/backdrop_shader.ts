@@ -1,6 +1,6 @@
 // The passes over the whole picture: one that shades clouds, and one that shows them behind the tools.
 
-const kPairs = 5; // of places that are compared with each (judgement: more take longer than points do)
+const kPairs = 5; // of points that are compared with each (judgement: more take longer than points do)
 const kNearest = 1.4; // style-sheet pixels to the nearest of them: edges (judgement)
 const kFarthest = 26; // hollows (judgement)
 const kDark = 3.5; // of hollows (judgement)
@@ -22,7 +22,7 @@ export const kScreen = /* glsl */ `
 `;
 
 /** Fills holes of a pixel, and shades what lies in hollows or behind its neighbours. A depth is linear in the picture
- * where the surface is flat: of two neighbours on opposite sides the mean tells by how much a place lies deeper, however
+ * where the surface is flat: of two neighbours on opposite sides the mean tells by how much a point lies deeper, however
  * steep its surface is. */
 export const kShade = /* glsl */ `
   uniform sampler2D colours;

@@ -10,7 +10,7 @@ const kKept = 0.8; // of the points: what lies thin, such as a far floor or outl
 const kNeighbours = 6; // that tell how densely points lie (judgement)
 
 export interface Sample {
-  place: Vector3;
+  position: Vector3;
   normal: Vector3 | undefined;
 }
 
@@ -25,17 +25,17 @@ export function samplesOf(message: CloudMessage): Sample[] {
   const samples: Sample[] = [];
   for (let i = 0; i < message.count; i += stride) {
     const u = (axis: 0 | 1 | 2) =>
-      message.lower[axis] + (message.extent[axis] * message.places[3 * i + axis]!) / 65535;
+      message.lower[axis] + (message.extent[axis] * message.positions[3 * i + axis]!) / 65535;
     const bent = message.normals?.subarray(2 * i, 2 * i + 2);
     const normal = bent && new Vector3(...decodeOctahedral(bent[0]!, bent[1]!));
-    samples.push({ place: new Vector3(u(0), u(1), u(2)), normal });
+    samples.push({ position: new Vector3(u(0), u(1), u(2)), normal });
   }
   return samples;
 }
 
 /** Along up, low and high, without outliers, m. */
 export function heightsOf(samples: readonly Sample[], up: Vector3): Vector2 {
-  const heights = samples.map(({ place }) => place.dot(up)).sort((a, b) => a - b);
+  const heights = samples.map(({ position }) => position.dot(up)).sort((a, b) => a - b);
   const at = (q: number) => heights[Math.round(q * (heights.length - 1))] ?? 0;
   return new Vector2(at(kTail), at(1 - kTail));
 }
@@ -43,8 +43,8 @@ export function heightsOf(samples: readonly Sample[], up: Vector3): Vector2 {
 /** Square of the distance to the last of the nearest others, m². */
 function thinness(sample: Sample, samples: readonly Sample[]): number {
   const nearest: number[] = new Array<number>(kNeighbours + 1).fill(Infinity);
-  for (const { place } of samples) {
-    const square = place.distanceToSquared(sample.place);
+  for (const { position } of samples) {
+    const square = position.distanceToSquared(sample.position);
     if (square >= nearest[kNeighbours]!) continue;
     let i = kNeighbours;
     for (; i > 0 && nearest[i - 1]! > square; i -= 1) nearest[i] = nearest[i - 1]!;
@@ -59,9 +59,9 @@ export function boundsOf(all: readonly Sample[]): Bounds | undefined {
   const samples = byThinness.slice(0, Math.ceil(kKept * all.length)).map(({ sample }) => sample);
   const lower = new Vector3(Infinity, Infinity, Infinity);
   const upper = lower.clone().negate();
-  for (const { place } of samples) {
-    lower.min(place);
-    upper.max(place);
+  for (const { position } of samples) {
+    lower.min(position);
+    upper.max(position);
   }
   return {
     samples,

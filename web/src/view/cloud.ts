@@ -1,5 +1,5 @@
-// One source's points. What the program sends goes to the graphics card as it is; the place of the
-// cloud is the object's position and scale.
+// One source's points. What the program sends goes to the graphics card as it is; the origin and
+// size of the cloud are the object's position and scale.
 
 import {
   BufferAttribute, BufferGeometry, CustomBlending, GLSL3, OneFactor, Points, ShaderMaterial, Vector2,
@@ -90,7 +90,7 @@ export class Cloud {
     this.hasColours = message.colours !== undefined;
     this.hasNormals = message.normals !== undefined;
     this.hasTrust = message.trust !== undefined;
-    this.fill("position", message.places);
+    this.fill("position", message.positions);
     if (message.colours !== undefined) this.fill("own", message.colours);
     if (message.normals !== undefined) this.fill("bend", message.normals);
     this.fill("trust", message.trust ?? new Uint8Array(message.count).fill(255));

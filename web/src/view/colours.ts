@@ -1,4 +1,4 @@
-// Colours of the view come from the style sheet, so that light and dark are decided in one place.
+// Colours of the view come from the style sheet, so that light and dark are decided in one file.
 
 import { Color, DataTexture, LinearFilter, RGBAFormat, SRGBColorSpace } from "three";
 
@@ -45,9 +45,9 @@ const kWidth = 256;
 function fill(pixels: Uint8Array, first: number, width: number, stops: string[]): void {
   const colours = stops.map((stop) => new Color(stop).getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace));
   for (let i = 0; i < width; i += 1) {
-    const place = (i / (width - 1)) * (colours.length - 1);
-    const k = Math.min(Math.floor(place), colours.length - 2);
-    const part = place - k;
+    const position = (i / (width - 1)) * (colours.length - 1);
+    const k = Math.min(Math.floor(position), colours.length - 2);
+    const part = position - k;
     const [a, b] = [colours[k]!, colours[k + 1]!];
     const at = 4 * (first + i);
     pixels[at] = 255 * (a.r + part * (b.r - a.r));

@@ -38,7 +38,7 @@ function seenFrom(direction: Vector3, up: Vector3, { samples, centre, radius }: 
   const upward = new Vector3().crossVectors(direction, right);
   const cells = new Map<number, { nearest: number; samples: [Sample, number][] }>();
   for (const sample of samples) {
-    const from = sample.place.clone().sub(centre).divideScalar(radius);
+    const from = sample.position.clone().sub(centre).divideScalar(radius);
     const [u, v] = [from.dot(right), from.dot(upward)].map((x) => Math.floor(((x + 1) / 2) * kCells));
     const near = from.dot(direction);
     const cell = cells.get(kCells * v! + u!) ?? { nearest: -Infinity, samples: [] };

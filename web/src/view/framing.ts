@@ -83,7 +83,7 @@ export class Framing {
 
   private frame(): void {
     const samples = this.samples.flat();
-    const centre = samples[0]?.place.clone() ?? new Vector3();
+    const centre = samples[0]?.position.clone() ?? new Vector3();
     const bounds = boundsOf(samples) ?? { samples: [], centre, radius: this.radius };
     const towards = this.cameras.length > 0 ? this.cameras : this.eye.map((place) => place.clone().sub(bounds.centre));
     this.navigation.frame(bounds, firstDirection(this.up, towards, bounds));

@@ -1,4 +1,4 @@
-// The eye: orbit, zoom, pan; a first place that shows what the cameras see.
+// The eye: orbit, zoom, pan; a first view that shows what the cameras see.
 
 import { MOUSE, TOUCH, Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -8,7 +8,7 @@ const kTurn = 1.6; // radians a second by keys
 const kCloser = 1.2; // of the distance's logarithm a second
 const kMargin = 0.88; // of the free picture that is used
 const kFoot = 90; // pixels at its lower edge, where a hint and a button stand
-const kLoose = 0.8; // of the radius, while no place is known
+const kLoose = 0.8; // of the radius, while no point is known
 const kRounds = 4;
 const kStep = 1.25; // of the distance: noise gives no other view at the next start
 const kLag = 0.25; // s
@@ -35,7 +35,7 @@ export class Navigation {
     this.controls = this.makeControls();
   }
 
-  /** Shows all places, from a direction. */
+  /** Shows all points, from a direction. */
   frame(bounds: Bounds, direction: Vector3): void {
     this.radius = bounds.radius;
     const { target, distance } = this.fitting(bounds, direction);
@@ -47,7 +47,7 @@ export class Navigation {
     this.look(target.clone().addScaledVector(direction, distance), target);
   }
 
-  /** Looks from a place at another one. */
+  /** Looks from one point at another. */
   look(from: Vector3, at: Vector3): void {
     this.controls.target.copy(at);
     this.camera.position.copy(from);
@@ -57,7 +57,7 @@ export class Navigation {
     this.changed();
   }
 
-  /** Middle and distance from which all places are seen, with a margin. */
+  /** Middle and distance from which all points are seen, with a margin. */
   private fitting(bounds: Bounds, direction: Vector3): { target: Vector3; distance: number } {
     const right = new Vector3().crossVectors(this.camera.up, direction).normalize();
     const upward = new Vector3().crossVectors(direction, right);
@@ -69,8 +69,8 @@ export class Navigation {
     let distance = (kLoose * bounds.radius) / Math.min(tall, wide);
     for (let round = 0; round < kRounds && bounds.samples.length > 0; round += 1) {
       let [left, most, low, high, needed] = [Infinity, -Infinity, Infinity, -Infinity, 0];
-      for (const { place } of bounds.samples) {
-        const from = place.clone().sub(target);
+      for (const { position } of bounds.samples) {
+        const from = position.clone().sub(target);
         const [x, y, near] = [from.dot(right), from.dot(upward), from.dot(direction)];
         needed = Math.max(needed, near + Math.max(Math.abs(x) / wide, Math.abs(y) / tall));
         const depth = Math.max(distance - near, 1e-9);
@@ -79,7 +79,7 @@ export class Navigation {
       }
       target.addScaledVector(right, ((left + most) / 2) * distance);
       target.addScaledVector(upward, ((low + high) / 2) * distance);
-      distance = Math.max(needed, 0.1 * bounds.radius); // all may be at one place
+      distance = Math.max(needed, 0.1 * bounds.radius); // all points may coincide
     }
     distance = kStep ** Math.ceil(Math.log(distance) / Math.log(kStep));
     target.addScaledVector(upward, -foot * half * distance);
@@ -93,17 +93,17 @@ export class Navigation {
     this.controls.touches.TWO = on ? TOUCH.DOLLY_PAN : TOUCH.DOLLY_ROTATE;
   }
 
-  /** Looks at a place from a distance. */
-  approach(place: Vector3, distance: number): void {
+  /** Looks at a position from a distance. */
+  approach(position: Vector3, distance: number): void {
     const arm = this.camera.position.clone().sub(this.controls.target).setLength(distance);
-    this.controls.target.copy(place);
-    this.camera.position.copy(place).add(arm);
+    this.controls.target.copy(position);
+    this.camera.position.copy(position).add(arm);
     this.changed();
   }
 
-  /** Goes along with a place, softly. */
-  follow(place: Vector3, seconds: number): void {
-    const way = place.clone().sub(this.controls.target).multiplyScalar(1 - Math.exp(-seconds / kLag));
+  /** Follows a position, smoothed. */
+  follow(position: Vector3, seconds: number): void {
+    const way = position.clone().sub(this.controls.target).multiplyScalar(1 - Math.exp(-seconds / kLag));
     this.controls.target.add(way);
     this.camera.position.add(way);
     this.changed();

@@ -1,4 +1,4 @@
-// Places on clouds as they are drawn: under a pointer, and nearest to a tool.
+// Points on clouds as they are drawn: under a pointer, and nearest to a tool.
 
 import { Vector3, type Ray } from "three";
 import type { Cloud } from "./cloud";
@@ -16,10 +16,10 @@ const kInward = 1.6;
 
 /** Where a ray meets a surface. */
 export interface Seen {
-  place: Vector3;
+  position: Vector3;
   normal: Vector3; // towards the eye
   reach: number; // how far points may lie from the ray, m
-  inward: Vector3; // from the ray to the place: beside an edge the place is on the surface all the same, m
+  inward: Vector3; // from the ray to the position, which is on the surface beside an edge, too, m
 }
 
 function strideOf(cloud: Cloud): number {
@@ -31,8 +31,8 @@ function spacingOf(cloud: Cloud): number {
   return cloud.spacing * Math.sqrt(strideOf(cloud));
 }
 
-/** Each of some points with its place; what is shown is what can be picked. */
-function eachPlace(cloud: Cloud, take: (x: number, y: number, z: number) => void): void {
+/** Calls `take` with the position of every stride-th point; what is shown is what can be picked. */
+function eachPoint(cloud: Cloud, take: (x: number, y: number, z: number) => void): void {
   const { position, scale, geometry } = cloud.points;
   const units = geometry.getAttribute("position").array;
   const stride = strideOf(cloud);
@@ -48,7 +48,7 @@ export function surfaceAlong(ray: Ray, clouds: readonly Cloud[], slope: number):
   let least = Infinity;
   for (const cloud of clouds) {
     const found = meets(ray, cloud, slope);
-    const far = found?.place.distanceTo(ray.origin) ?? Infinity;
+    const far = found?.position.distanceTo(ray.origin) ?? Infinity;
     if (far < least) [nearest, least] = [found, far];
   }
   return nearest;
@@ -68,7 +68,7 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
   const near = kReach * spacingOf(cloud);
   const hits: Hit[] = [];
   const way = new Vector3();
-  eachPlace(cloud, (x, y, z) => {
+  eachPoint(cloud, (x, y, z) => {
     way.set(x, y, z).sub(origin);
     const along = way.dot(direction);
     const reach = Math.max(near, slope * along);
@@ -111,23 +111,23 @@ function planeOf(ray: Ray, [U, V]: readonly [Vector3, Vector3], layer: readonly 
   inward.setLength(kInward * Math.max(0, aside - kInside * reach));
   const depth = along + b * (inward.dot(U) - u) + c * (inward.dot(V) - v);
   const normal = ray.direction.clone().negate().addScaledVector(U, b).addScaledVector(V, c).normalize();
-  return { place: ray.at(depth, new Vector3()).add(inward), normal, reach, inward };
+  return { position: ray.at(depth, new Vector3()).add(inward), normal, reach, inward };
 }
 
 /** The nearest point of all, and the spacing of its cloud, m. */
-export function nearestTo(place: Vector3, clouds: readonly Cloud[]): { place: Vector3; spacing: number } | undefined {
+export function nearestTo(position: Vector3, clouds: readonly Cloud[]): { point: Vector3; spacing: number } | undefined {
   let least = Infinity;
-  let nearest: { place: Vector3; spacing: number } | undefined;
+  let nearest: { point: Vector3; spacing: number } | undefined;
   for (const cloud of clouds) {
-    const [x0, y0, z0] = [place.x, place.y, place.z];
+    const [x0, y0, z0] = [position.x, position.y, position.z];
     const found = new Vector3(Infinity);
-    eachPlace(cloud, (x, y, z) => {
+    eachPoint(cloud, (x, y, z) => {
       const square = (x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2;
       if (square >= least) return;
       least = square;
       found.set(x, y, z);
     });
-    if (found.x !== Infinity) nearest = { place: found, spacing: spacingOf(cloud) };
+    if (found.x !== Infinity) nearest = { point: found, spacing: spacingOf(cloud) };
   }
   return nearest;
 }

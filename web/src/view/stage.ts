@@ -89,10 +89,10 @@ export class Stage {
     this.wanted = true;
   }
 
-  /** The length of one style-sheet pixel at a place, m. */
-  pixelAt(place: Vector3): number {
+  /** The length of one style-sheet pixel at a position, m. */
+  pixelAt(position: Vector3): number {
     this.camera.updateMatrixWorld(); // it may have moved since the last picture
-    const depth = place.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
+    const depth = position.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
     return Math.max(-depth, this.camera.near) / this.pixelsPerSlope;
   }
 

@@ -44,7 +44,7 @@ const kWide = 0.28; // of the patch, where a press shows (judgement)
 export class Surface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   shown = true;
-  private readonly place = new Vector3();
+  private readonly centre = new Vector3();
   private readonly proxy = new Vector3(); // in the patch's units
   private some = false; // a surface without vertices says that nothing is near
 
@@ -79,20 +79,20 @@ export class Surface {
     geometry.dispose();
     geometry.setAttribute("position", new BufferAttribute(message.vertices, 3, true));
     geometry.setIndex(new BufferAttribute(message.triangles, 1));
-    this.place.set(...message.centre);
+    this.centre.set(...message.centre);
     this.mesh.scale.setScalar(Math.max(message.extent, 1e-9));
   }
 
   /** Colours it under the proxy by the force there. */
-  press(tool: { proxyPlace: Vector3; heat: number }): void {
-    this.proxy.copy(tool.proxyPlace).sub(this.place).divideScalar(this.mesh.scale.x);
+  press(tool: { proxyPosition: Vector3; heat: number }): void {
+    this.proxy.copy(tool.proxyPosition).sub(this.centre).divideScalar(this.mesh.scale.x);
     this.mesh.material.uniforms["force"]!.value = tool.heat;
   }
 
   /** lift: towards the eye, above the points that lie in the surface, m. */
   update(eye: Vector3, lift: number): void {
     this.mesh.visible = this.shown && this.some;
-    const towards = eye.clone().sub(this.place).normalize();
-    this.mesh.position.copy(this.place).addScaledVector(towards, lift);
+    const towards = eye.clone().sub(this.centre).normalize();
+    this.mesh.position.copy(this.centre).addScaledVector(towards, lift);
   }
 }

@@ -42,7 +42,7 @@ function ghostOf(material: MeshLambertMaterial, opacity: number): MeshBasicMater
   return ghost;
 }
 
-/** A rod from one place to another, shown if it is long enough, m. */
+/** A rod from one point to another, shown if it is long enough, m. */
 function place(rod: Mesh, from: Vector3, to: Vector3, thickness: number, least: number): void {
   const way = to.clone().sub(from);
   const length = way.length();
@@ -53,7 +53,7 @@ function place(rod: Mesh, from: Vector3, to: Vector3, thickness: number, least: 
   rod.scale.set(thickness, length, thickness);
 }
 
-/** How much of the way from a place in the picture to another stays in it, 0 to 1. */
+/** How much of the segment from a point in the picture to another stays in it, 0 to 1. */
 export function shareInPicture(camera: Camera, from: Vector3, to: Vector3): number {
   const [a, b] = [from, to].map(({ x, y, z }) =>
     new Vector4(x, y, z).applyMatrix4(camera.matrixWorldInverse).applyMatrix4(camera.projectionMatrix)) as [Vector4, Vector4];
@@ -74,8 +74,8 @@ export interface Sizes {
 export class Tool {
   readonly group = new Group();
   readonly trail = new Trail();
-  readonly hipPlace = new Vector3();
-  readonly proxyPlace = new Vector3();
+  readonly hipPosition = new Vector3();
+  readonly proxyPosition = new Vector3();
   showSupport = true;
   touching = false;
   behind = false; // what a camera sees
@@ -83,7 +83,7 @@ export class Tool {
   faulty = false; // no force until somebody resets
   readonly force = new Vector3(); // N, on the hand
   readonly normal = new Vector3(); // of the tangent constraint
-  below: { place: Vector3; spacing: number } | undefined; // the nearest point of the surface, while the hand is free
+  below: { point: Vector3; spacing: number } | undefined; // the nearest point of the surface, while the hand is free
   private readonly handMaterial = new MeshLambertMaterial();
   private readonly proxyMaterial = new MeshLambertMaterial();
   private readonly forceMaterial = new MeshLambertMaterial({ emissiveIntensity: 0.35 });
@@ -150,8 +150,8 @@ export class Tool {
 
   take(state: StateMessage): void {
     this.group.visible = true;
-    this.hipPlace.set(...state.hip);
-    this.proxyPlace.set(...state.proxy);
+    this.hipPosition.set(...state.hip);
+    this.proxyPosition.set(...state.proxy);
     this.force.set(...state.force);
     this.normal.set(...state.normal);
     this.stem.set(0, state.orientation ? -1 : 0, 0);
@@ -161,27 +161,27 @@ export class Tool {
     this.behind = (state.flags & Flag.behind) !== 0;
     this.weak = (state.flags & (Flag.starting | Flag.softer)) !== 0;
     this.faulty = (state.flags & Flag.fault) !== 0;
-    this.trail.take(this.proxyPlace, state.time);
+    this.trail.take(this.proxyPosition, state.time);
   }
 
   update({ pixel, perNewton, camera, lift }: Sizes): void {
     const proxySize = Math.max(0.16 * this.radius, kProxyPixels * pixel);
     this.proxy.visible = this.touching; // elsewhere it is where the hand is
     this.proxyGhost.visible = this.touching;
-    const towards = camera.position.clone().sub(this.proxyPlace).normalize().multiplyScalar(lift);
-    this.proxy.position.copy(this.proxyPlace).add(towards);
+    const towards = camera.position.clone().sub(this.proxyPosition).normalize().multiplyScalar(lift);
+    this.proxy.position.copy(this.proxyPosition).add(towards);
     this.proxy.scale.setScalar(proxySize);
-    this.hand.position.copy(this.hipPlace);
+    this.hand.position.copy(this.hipPosition);
     this.hand.scale.setScalar(Math.max(0.14 * this.radius, kHandPixels * pixel));
     this.proxyGhost.position.copy(this.proxy.position);
     this.proxyGhost.scale.copy(this.proxy.scale);
     this.handGhost.position.copy(this.hand.position);
     this.handGhost.scale.copy(this.hand.scale);
     this.halo.visible = this.showSupport && this.radius > 2 * proxySize;
-    this.halo.position.copy(this.proxyPlace);
+    this.halo.position.copy(this.proxyPosition);
     this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
     this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
-    place(this.spring, this.hipPlace, this.proxyPlace, pixel, 2 * pixel);
+    place(this.spring, this.hipPosition, this.proxyPosition, pixel, 2 * pixel);
     this.placeDrop(pixel);
     this.placeStylus(kStylus * pixel, pixel);
     this.placeArrow(proxySize, pixel, perNewton, camera);
@@ -193,7 +193,7 @@ export class Tool {
     this.rim.visible = known;
     if (!known) return;
     for (const mesh of [this.disk, this.rim]) {
-      mesh.position.copy(this.proxyPlace).add(towards);
+      mesh.position.copy(this.proxyPosition).add(towards);
       mesh.quaternion.setFromUnitVectors(kForward, this.normal);
       mesh.scale.setScalar(size);
     }
@@ -202,7 +202,7 @@ export class Tool {
   /** The ball that is seen of it: the proxy in contact, else the hand. */
   get caster(): Caster {
     const ball = this.touching ? this.proxy : this.hand;
-    return { place: this.touching ? this.proxyPlace : this.hipPlace, radius: kShadow * ball.scale.x, heat: this.heat };
+    return { position: this.touching ? this.proxyPosition : this.hipPosition, radius: kShadow * ball.scale.x, heat: this.heat };
   }
 
   /** How much its dent glows, 0 to 1. */
@@ -213,7 +213,7 @@ export class Tool {
   /** How far it is to the surface, m; undefined where it is no farther than points are apart. */
   get height(): number | undefined {
     const { below } = this;
-    const height = below === undefined || this.touching ? 0 : below.place.distanceTo(this.hipPlace);
+    const height = below === undefined || this.touching ? 0 : below.point.distanceTo(this.hipPosition);
     return below !== undefined && height > 2 * below.spacing ? height : undefined;
   }
 
@@ -224,17 +224,17 @@ export class Tool {
       this.drop.visible = false;
       return;
     }
-    const foot = this.below!.place;
-    place(this.drop, this.hipPlace, foot, 0.6 * pixel, kRing * pixel);
+    const foot = this.below!.point;
+    place(this.drop, this.hipPosition, foot, 0.6 * pixel, kRing * pixel);
     this.ring.position.copy(foot);
-    this.ring.quaternion.setFromUnitVectors(kForward, this.hipPlace.clone().sub(foot).normalize());
+    this.ring.quaternion.setFromUnitVectors(kForward, this.hipPosition.clone().sub(foot).normalize());
     this.ring.scale.setScalar(kRing * pixel);
   }
 
   private placeStylus(length: number, pixel: number): void {
     this.stylus.visible = this.stem.lengthSq() > 0.5;
     if (!this.stylus.visible) return;
-    this.stylus.position.copy(this.hipPlace).addScaledVector(this.stem, length / 2);
+    this.stylus.position.copy(this.hipPosition).addScaledVector(this.stem, length / 2);
     this.stylus.quaternion.setFromUnitVectors(kUp, this.stem);
     this.stylus.scale.set(3.5 * pixel, length, 3.5 * pixel);
   }
@@ -249,18 +249,18 @@ export class Tool {
     if (!shown) return;
     const along = this.force.clone().divideScalar(size);
     const longest = Math.min(size * perNewton, kLongest * pixel);
-    const tip = this.proxyPlace.clone().addScaledVector(along, start + longest);
-    const length = Math.max(longest * shareInPicture(camera, this.proxyPlace, tip), 10 * pixel);
+    const tip = this.proxyPosition.clone().addScaledVector(along, start + longest);
+    const length = Math.max(longest * shareInPicture(camera, this.proxyPosition, tip), 10 * pixel);
     const headLength = Math.min(17 * pixel, 0.5 * length);
     const shaftLength = length - headLength;
-    this.shaft.position.copy(this.proxyPlace).addScaledVector(along, start + shaftLength / 2);
+    this.shaft.position.copy(this.proxyPosition).addScaledVector(along, start + shaftLength / 2);
     this.shaft.quaternion.setFromUnitVectors(kUp, along);
     this.shaft.scale.set(2.8 * pixel, shaftLength, 2.8 * pixel);
-    this.head.position.copy(this.proxyPlace).addScaledVector(along, start + length - headLength / 2);
+    this.head.position.copy(this.proxyPosition).addScaledVector(along, start + length - headLength / 2);
     this.head.quaternion.copy(this.shaft.quaternion);
-    const towards = camera.position.clone().sub(this.proxyPlace).normalize();
+    const towards = camera.position.clone().sub(this.proxyPosition).normalize();
     this.endOn.visible = Math.abs(along.dot(towards)) > kEndOn;
-    this.endOn.position.copy(this.proxyPlace);
+    this.endOn.position.copy(this.proxyPosition);
     this.endOn.quaternion.setFromUnitVectors(kForward, towards);
     this.endOn.scale.setScalar(Math.min(start + 0.5 * length, kRingPixels * pixel));
     this.head.scale.set(headLength * 0.45, headLength, headLength * 0.45);

@@ -146,7 +146,7 @@ export class World {
     const tool = device === undefined ? undefined : this.tools[device];
     if (tool === undefined) return this.framing.fit();
     const distance = Math.max(kClose * tool.support, 0.02 * this.framing.radius);
-    this.navigation.approach(tool.proxyPlace, Math.min(distance, this.framing.radius));
+    this.navigation.approach(tool.proxyPosition, Math.min(distance, this.framing.radius));
   }
 
   retint(): void {
@@ -181,7 +181,7 @@ export class World {
     const seconds = Math.min(0.5, (now - this.before) / 1000);
     const followed = this.followed === undefined ? undefined : this.tools[this.followed];
     if (followed?.group.visible && !this.dragging) {
-      this.navigation.follow(followed.proxyPlace, seconds);
+      this.navigation.follow(followed.proxyPosition, seconds);
     }
     this.before = now;
     this.dropLines(now);
@@ -207,7 +207,7 @@ export class World {
     for (const tool of this.tools) {
       tool.showSupport = look.support;
       tool.trail.line.visible = look.trail;
-      const pixel = stage.pixelAt(tool.proxyPlace);
+      const pixel = stage.pixelAt(tool.proxyPosition);
       tool.update({
         pixel,
         perNewton: Math.min(kArrow * this.framing.radius, kArrowPixels * pixel),
@@ -234,7 +234,7 @@ export class World {
     this.dropped = now;
     for (const tool of this.tools) {
       const free = tool.group.visible && !tool.touching;
-      tool.below = free ? nearestTo(tool.hipPlace, this.shownClouds()) : undefined;
+      tool.below = free ? nearestTo(tool.hipPosition, this.shownClouds()) : undefined;
     }
   }
 
