@@ -186,7 +186,7 @@ export class App {
     return performance.now() < this.calmUntil && text.includes(": no frame for ");
   }
 
-  /** The program waits for a `release`, held or not: what this page said of its hand may still be on the way. */
+  /** The program waits for a `release`, held or not: what this page sent of its hand may still be in transit. */
   private lose(device: number, why: string): void {
     if (this.hand.held && device === this.hand.device) this.hand.letGo();
     else this.connection.send({ type: "release", device });

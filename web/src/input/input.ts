@@ -52,8 +52,8 @@ export class Input {
       if ((pressed & 1) !== 0 && !this.hand.held) this.take();
       else if ((pressed & 2) !== 0) this.hand.letGo();
       if (!this.hand.held) return;
-      const way = kPadPace * passed;
-      this.move(reading.right * way, reading.up * way, reading.away * way);
+      const step = kPadPace * passed;
+      this.move(reading.right * step, reading.up * step, reading.away * step);
     });
     if (this.hand.held && readings.some((reading) => reading !== undefined)) this.hand.press(buttons & ~3);
   }

@@ -15,7 +15,7 @@ const kPen = 3; // of a pen that is pressed as hard as it can tell
 const kNotch = 1.25; // times the force, a notch of the wheel
 const kAbove = 2; // reaches of a pick, where it hovers
 const kBelow = 3; // and where a hand that presses wants to be at least
-const kGive = 6; // times as deep as the surface gives way to the force, as the hand's spring is not much softer
+const kGive = 6; // times as deep as the surface yields to the force, as the hand's spring is not much softer
 const kDeepest = 20; // times the least
 const kSunk = 2; // reaches below what is seen, some 20 mm of the hand: a press that goes so deep, and is soft, ends
 const kNear = 0.25; // and from where it pulls with a limited force
@@ -121,9 +121,9 @@ export class Stroke {
   /** Is the tool on the surface or above it? It has to go there if it is far off in depth, or has missed it. */
   private judge(tool: Tool, above: Vector3, felt: boolean, now: number): void {
     const { position, reach } = this.last!;
-    const way = position.clone().sub(tool.hipPosition);
-    const deep = Math.abs(way.dot(this.caster.ray.direction));
-    const aside = Math.sqrt(Math.max(0, way.lengthSq() - deep * deep));
+    const offset = position.clone().sub(tool.hipPosition);
+    const deep = Math.abs(offset.dot(this.caster.ray.direction));
+    const aside = Math.sqrt(Math.max(0, offset.lengthSq() - deep * deep));
     const was = this.there;
     if (felt) this.there = true;
     else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;

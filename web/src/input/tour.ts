@@ -157,8 +157,8 @@ export class Tour {
     return found;
   }
 
-  private beside(at: Vector2, way: number): Seen | undefined {
-    return this.stroke.under(new Vector2(at.x + way, at.y), false);
+  private beside(at: Vector2, shift: number): Seen | undefined {
+    return this.stroke.under(new Vector2(at.x + shift, at.y), false);
   }
 
   private wideAt(at: Vector2, middle: Seen): number {
@@ -172,8 +172,8 @@ export class Tour {
     return [-0.5, 0.5, -1, 1].every((part) => {
       const other = this.beside(at, part * wide);
       if (other === undefined || other.normal.dot(middle.normal) < kTurned) return false;
-      const way = other.position.clone().sub(middle.position);
-      return Math.abs(way.dot(middle.normal)) < kSteep * way.length() + middle.reach;
+      const offset = other.position.clone().sub(middle.position);
+      return Math.abs(offset.dot(middle.normal)) < kSteep * offset.length() + middle.reach;
     });
   }
 }

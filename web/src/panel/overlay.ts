@@ -42,12 +42,12 @@ export class Overlay {
   private showAxes(): void {
     const turn = new Quaternion().copy(this.world.stage.camera.quaternion).invert();
     this.axes.forEach(({ line, text }, i) => {
-      const way = new Vector3().setComponent(i, 1).applyQuaternion(turn);
-      line.setAttribute("x2", (kArm * way.x).toFixed(1));
-      line.setAttribute("y2", (-kArm * way.y).toFixed(1));
-      line.setAttribute("opacity", way.z < -0.3 ? "0.4" : "1");
-      text.setAttribute("x", ((kArm + 6) * way.x).toFixed(1));
-      text.setAttribute("y", (-(kArm + 6) * way.y).toFixed(1));
+      const axis = new Vector3().setComponent(i, 1).applyQuaternion(turn);
+      line.setAttribute("x2", (kArm * axis.x).toFixed(1));
+      line.setAttribute("y2", (-kArm * axis.y).toFixed(1));
+      line.setAttribute("opacity", axis.z < -0.3 ? "0.4" : "1");
+      text.setAttribute("x", ((kArm + 6) * axis.x).toFixed(1));
+      text.setAttribute("y", (-(kArm + 6) * axis.y).toFixed(1));
     });
   }
 

@@ -1,5 +1,5 @@
 // Unit vectors in two bytes. Cigolini and others, JCGT 3(2), 2014: "Survey of Efficient
-// Representations for Independent Unit Vectors". The cloud's shader decodes the same way.
+// Representations for Independent Unit Vectors". The cloud's shader decodes in the same manner.
 
 import type { Vector } from "./messages";
 

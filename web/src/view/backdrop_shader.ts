@@ -6,7 +6,7 @@ const kFarthest = 26; // hollows (judgement)
 const kDark = 3.5; // of hollows (judgement)
 
 /** A spiral of golden angles. */
-function ways(): string {
+function offsets(): string {
   return Array.from({ length: kPairs }, (_, i) => {
     const pixels = kNearest + (kFarthest - kNearest) * (i / (kPairs - 1)) ** 1.5;
     return `vec2(${(pixels * Math.cos(2.4 * i)).toFixed(3)}, ${(pixels * Math.sin(2.4 * i)).toFixed(3)})`;
@@ -35,7 +35,7 @@ export const kShade = /* glsl */ `
   in vec2 at;
   out vec4 shown;
 
-  const vec2 kWays[${kPairs}] = vec2[](${ways()}); // style-sheet pixels
+  const vec2 kWays[${kPairs}] = vec2[](${offsets()}); // style-sheet pixels
   ivec2 last;
   float depth(ivec2 place) { return texelFetch(depths, clamp(place, ivec2(0), last), 0).r; }
 

@@ -103,9 +103,9 @@ export class Navigation {
 
   /** Follows a position, smoothed. */
   follow(position: Vector3, seconds: number): void {
-    const way = position.clone().sub(this.controls.target).multiplyScalar(1 - Math.exp(-seconds / kLag));
-    this.controls.target.add(way);
-    this.camera.position.add(way);
+    const step = position.clone().sub(this.controls.target).multiplyScalar(1 - Math.exp(-seconds / kLag));
+    this.controls.target.add(step);
+    this.camera.position.add(step);
     this.changed();
   }
 

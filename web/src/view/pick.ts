@@ -67,13 +67,13 @@ function meets(ray: Ray, cloud: Cloud, slope: number): Seen | undefined {
   const axes = [sideways, direction.clone().cross(sideways)] as const;
   const near = kReach * spacingOf(cloud);
   const hits: Hit[] = [];
-  const way = new Vector3();
+  const offset = new Vector3();
   eachPoint(cloud, (x, y, z) => {
-    way.set(x, y, z).sub(origin);
-    const along = way.dot(direction);
+    offset.set(x, y, z).sub(origin);
+    const along = offset.dot(direction);
     const reach = Math.max(near, slope * along);
-    const part = (way.lengthSq() - along * along) / (reach * reach);
-    if (along > 0 && part < 1) hits.push({ along, u: way.dot(axes[0]), v: way.dot(axes[1]), weight: 1 - part });
+    const part = (offset.lengthSq() - along * along) / (reach * reach);
+    if (along > 0 && part < 1) hits.push({ along, u: offset.dot(axes[0]), v: offset.dot(axes[1]), weight: 1 - part });
   });
   if (hits.length > kMany) thin(hits);
   hits.sort((a, b) => a.along - b.along);

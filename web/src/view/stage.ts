@@ -1,4 +1,4 @@
-// Renderer, camera and light; draws when something asked for it. Sharpness gives way where the
+// Renderer, camera and light; draws when something asked for it. Sharpness is reduced where the
 // graphics card cannot follow; where there is none, it comes once the eye stands still.
 
 import {
@@ -13,7 +13,7 @@ import type { ScaleBar } from "./scale_bar";
 
 const kFieldOfView = 40; // degrees
 const kSlow = 45; // ms a picture
-const kPatience = 40; // slow pictures before sharpness gives way
+const kPatience = 40; // slow pictures before sharpness is reduced
 const kRest = 300; // ms between two pictures of clouds that change, where drawing is slow (judgement)
 const kPeriod = 100; // elsewhere: the program sends no more
 const kMost = 40_000; // points of a picture while the eye moves, where the processor draws: 0.8 us each (measured)

@@ -20,7 +20,7 @@ const kHandPixels = 7.5;
 const kLongest = 240; // pixels of an arrow
 const kLeastForce = 0.01; // N that shows
 const kStylus = 90; // pixels from the tip to its end
-const kEndOn = 0.85; // cosine between the arrow and the way to the eye, from which on it is seen end on
+const kEndOn = 0.85; // cosine between the arrow and the direction to the eye, from which on it is seen end on
 const kRingPixels = 30; // radius of the ring of an arrow that is seen end on, at most
 const kFirm = 2; // N, that lets the dent glow by 63 %
 const kShadow = 1.6; // of its ball, where its shadow is half as dark (judgement)
@@ -44,12 +44,12 @@ function ghostOf(material: MeshLambertMaterial, opacity: number): MeshBasicMater
 
 /** A rod from one point to another, shown if it is long enough, m. */
 function place(rod: Mesh, from: Vector3, to: Vector3, thickness: number, least: number): void {
-  const way = to.clone().sub(from);
-  const length = way.length();
+  const offset = to.clone().sub(from);
+  const length = offset.length();
   rod.visible = length > least;
   if (!rod.visible) return;
-  rod.position.copy(from).addScaledVector(way, 0.5);
-  rod.quaternion.setFromUnitVectors(kUp, way.divideScalar(length));
+  rod.position.copy(from).addScaledVector(offset, 0.5);
+  rod.quaternion.setFromUnitVectors(kUp, offset.divideScalar(length));
   rod.scale.set(thickness, length, thickness);
 }
 

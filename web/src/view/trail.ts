@@ -1,4 +1,4 @@
-// The proxy's way of the last seconds, fading.
+// The proxy's path of the last seconds, fading.
 
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, type Vector3 } from "three";
 import { colourOf } from "./colours";
