@@ -1,4 +1,4 @@
-// Holds the parts together: what the program says goes to the parts, what the person does to the program.
+// Connects the components: passes the program's messages to them, and the person's actions to the program.
 
 import { Hand } from "./input/hand";
 import { Input } from "./input/input";
@@ -38,7 +38,7 @@ import { World } from "./view/world";
 
 const kPlotInterval = 50; // ms
 const kCalm = 3000; // ms from the start, in which late frames are listed only
-const kCalmInterval = 250; // ms, where less motion is asked for
+const kCalmInterval = 250; // ms, where less motion is requested
 
 export class App {
   private readonly session = new Session();
@@ -70,7 +70,7 @@ export class App {
   private plotted = 0;
   private calmUntil = 0; // ms: a start has its own troubles, which pass
   private run: string | undefined;
-  private linked = true; // what the link asks for is still to be set
+  private linked = true; // what the link requests is still to be set
 
   constructor(private readonly link: Link, private readonly end: End, graphics: Graphics, private readonly panels: Panels) {
     const send = (message: ToProgram) => this.connection.send(message);
@@ -80,7 +80,7 @@ export class App {
     const set = (key: string, value: SettingValue) => void send({ type: "set", key, value });
     this.settings = new SettingsPanel(set, (name) => send({ type: "preset", name }));
     this.nextRun = new NextRun(set);
-    this.look = new LookPanel(() => this.relook(), () => this.tellPoints());
+    this.look = new LookPanel(() => this.relook(), () => this.sendPoints());
     this.hand = new Hand(send, () => this.holdChanged());
     this.stroke = new Stroke(this.world, this.hand, () => send({ type: "reset", device: this.hand.device }));
     this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
@@ -145,7 +145,7 @@ export class App {
     return document.hidden ? 0 : this.look.points;
   }
 
-  private tellPoints(): void {
+  private sendPoints(): void {
     this.connection.send({ type: "points", points: this.drawn() });
   }
 
@@ -244,7 +244,7 @@ export class App {
       if (message.device !== this.session.device) return;
       this.readout.begin(this.session.welcome?.devices[message.device]?.scale ?? 1, this.session.motors);
       this.readout.note(tool, now, this.stroke.nothing);
-      this.sound.hear(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
+      this.sound.play(message, surfaceOf(this.session.welcome?.settings ?? [], this.session.values));
       if (this.hand.held) this.rumble.feel(message, now);
     }
   }
@@ -291,7 +291,7 @@ export class App {
     document.addEventListener("visibilitychange", () => {
       if (document.hidden) this.tour.stop();
       if (document.hidden) this.hand.letGo();
-      this.tellPoints();
+      this.sendPoints();
     });
   }
 }

@@ -1,4 +1,4 @@
-// The page: who hears of what.
+// The page: connects to the program, and starts the application where the browser can draw.
 
 import "./styles/app.css";
 import { App } from "./app";

@@ -1,5 +1,5 @@
 // The hand of this page: where it wants the tool to be. It is held from `take` on until `letGo`; the
-// program hears of every move, though not more often than it listens.
+// program receives every move, but no more often than it reads messages.
 
 import { Vector3, type PerspectiveCamera } from "three";
 import type { ToProgram } from "../protocol/messages";
@@ -61,11 +61,11 @@ export class Hand {
 
   private mark(): void {
     const wait = this.sent + kInterval - performance.now();
-    if (wait <= 0) this.tell();
-    else if (this.timer === 0) this.timer = window.setTimeout(() => this.tell(), wait + 1);
+    if (wait <= 0) this.report();
+    else if (this.timer === 0) this.timer = window.setTimeout(() => this.report(), wait + 1);
   }
 
-  private tell(): void {
+  private report(): void {
     clearTimeout(this.timer);
     this.timer = 0;
     if (!this.held) return;

@@ -11,7 +11,7 @@ import type { Hand } from "./hand";
 const kFirst = 1; // N, of a press
 const kLeast = 0.1;
 const kMost = 5;
-const kPen = 3; // of a pen that is pressed as hard as it can tell
+const kPen = 3; // of a pen that is pressed as hard as it can report
 const kNotch = 1.25; // times the force, a notch of the wheel
 const kAbove = 2; // reaches of a pick, where it hovers
 const kBelow = 3; // and where a hand that presses wants to be at least
@@ -19,7 +19,7 @@ const kGive = 6; // times as deep as the surface yields to the force, as the han
 const kDeepest = 20; // times the least
 const kSunk = 2; // reaches below what is seen, some 20 mm of the hand: a press that goes so deep, and is soft, ends
 const kNear = 0.25; // and from where it pulls with a limited force
-const kGrazing = 0.25; // cosine: a plane seen flatter says nothing of where the pointer is on it
+const kGrazing = 0.25; // cosine: a plane seen at a flatter angle does not determine where the pointer is on it
 // ms in which a proxy that something else holds may come free, and a force that contact keeps small grow: a hand that
 // nobody moves has to be lifted for that
 const kPatience = 400;
@@ -58,7 +58,7 @@ export class Stroke {
     this.finger = finger;
   }
 
-  /** pressure: of a pen that tells it, 0 to 1. */
+  /** pressure: of a pen that reports it, 0 to 1. */
   press(on: boolean, pressure?: number): void {
     this.pressing = on;
     this.pen = pressure === undefined ? undefined : Math.max(kLeast, kPen * pressure);
@@ -107,7 +107,7 @@ export class Stroke {
     return MathUtils.clamp(kGive * (given || 0) * (this.pen ?? this.force), least, kDeepest * least);
   }
 
-  /** Is the proxy on that side of that surface? Then its tangent plane says finer than points do where the pointer is. */
+  /** Is the proxy on that side of that surface? Then its tangent plane locates the pointer more precisely than points do. */
   private refine({ position, normal, reach, inward }: Seen, tool: Tool): boolean {
     const facing = -tool.normal.dot(this.caster.ray.direction);
     if (!tool.touching || facing <= 0) return false;

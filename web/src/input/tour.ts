@@ -28,11 +28,11 @@ const kLast = "Now you: press on the surface, and use the wheel for more force."
 const kLastSeconds = 5;
 const kLift = 0.8; // s at the beginning of a part in which it hovers
 const kTurn = 6; // s of a stroke to and fro
-// The first two before others hear of them; keys after them, since one lets the tool go by itself.
+// The first two before others receive them; keys after them, since one lets the tool go by itself.
 const kDoings = [["pointerdown", true], ["wheel", true], ["keydown", false]] as const;
 const kRings = 6; // around the middle of the picture in which a surface is looked for
 const kAngles = 8; // around a ring
-const kNear = 0.02; // of the half picture, to tell how far that is
+const kNear = 0.02; // of the half picture, to measure how far that is on the surface
 const kFarthest = 0.8; // of the half picture
 const kTurned = 0.7; // cosine between normals of one stroke
 const kSteep = 0.5; // of its length that a stroke goes down or up

@@ -1,4 +1,4 @@
-// What the page knows of the program now: the newest of everything, and the past that plots need.
+// What the page has received from the program: the newest of everything, and the past that plots need.
 
 import { Flag, type CloudMessage, type PastMessage, type StateMessage } from "../protocol/decode";
 import type { DeviceReport, SettingValue, SourceReport, Welcome } from "../protocol/messages";
@@ -84,7 +84,7 @@ export class SourceHistory {
 
 export class Session {
   welcome: Welcome | undefined;
-  open = false; // the program hears what is said
+  open = false; // the program receives what is sent
   device = 0; // whose force is shown, and which a hand moves
   devices: DeviceHistory[] = [];
   sources: SourceHistory[] = [];

@@ -54,7 +54,7 @@ export class Bar {
     this.showRecording(false);
   }
 
-  /** What the program says of itself shows on the buttons: they may be pressed elsewhere. */
+  /** The buttons show the state that the program reports: they may be pressed elsewhere. */
   update(): void {
     this.nameScene();
     const paused = this.session.tool?.has("paused") ?? false;
@@ -122,9 +122,9 @@ export class Bar {
   }
 
   private async toggleSound(): Promise<void> {
-    const asked = !this.sound.on;
+    const requested = !this.sound.on;
     const on = await this.sound.toggle();
-    if (asked && !on) this.notices.add("warning", "the browser finds no audio device");
+    if (requested && !on) this.notices.add("warning", "the browser finds no audio device");
     byId("sound").setAttribute("aria-pressed", String(on));
     icon(byId("sound"), on ? "sound" : "mute");
   }

@@ -1,4 +1,4 @@
-// Says once what becomes of a device: it is silent, has failed, is heard again.
+// Notifies the person once of each change of a device: it is silent, has failed, responds again.
 
 import type { Session } from "../model/session";
 import type { DeviceReport } from "../protocol/messages";
@@ -16,11 +16,11 @@ export class Devices {
       if (device === undefined) return;
       const before = device.report.status;
       device.report = report;
-      if (report.status !== before) this.tell(this.session.welcome?.devices[i]?.name ?? "", before, report);
+      if (report.status !== before) this.notify(this.session.welcome?.devices[i]?.name ?? "", before, report);
     });
   }
 
-  private tell(name: string, before: string, { status, reason }: DeviceReport): void {
+  private notify(name: string, before: string, { status, reason }: DeviceReport): void {
     if (reason !== undefined) this.notices.add("warning", `${name}: ${reason}`);
     else if (status === "ok" && before === "silent") this.notices.add("info", `${name} is back`);
   }

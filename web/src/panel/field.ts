@@ -34,14 +34,14 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     type: "text", role: "spinbutton", id, "aria-valuemin": least, "aria-valuemax": most, inputmode: "decimal", autocomplete: "off",
   });
   const later = throttle<number>(kInterval, wanted);
-  let held = Number(setting.value); // what the program has, or was asked for last
+  let held = Number(setting.value); // the program's value, or the last requested one
   const clamped = (value: number) => Math.min(most, Math.max(least, value));
   const snapped = (value: number) => {
     const near = step ? least + Math.round((value - least) / step) * step : value;
     return clamped(Number(near.toPrecision(9)));
   };
   const position = (value: number) => String(Math.round(scale.position(value) * kSlider));
-  const say = (value: number) => {
+  const write = (value: number) => {
     field.value = inStep(value, step);
     slider.setAttribute("aria-valuetext", `${field.value} ${setting.unit ?? ""}`.trim());
   };
@@ -51,7 +51,7 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
   };
   slider.addEventListener("input", () => {
     const value = slider.value === position(held) ? held : snapped(scale.value(Number(slider.value) / kSlider));
-    say(value);
+    write(value);
     later(value);
   });
   const move = (event: KeyboardEvent) => {
@@ -59,29 +59,29 @@ function numberRow(setting: Setting, id: string, wanted: Wanted): FieldRow {
     if (notches === undefined) return;
     event.preventDefault();
     const value = snapped(typed() + notches * (step ?? (most - least) / 100));
-    say(value);
+    write(value);
     slider.value = position(value);
     later(value);
   };
   slider.addEventListener("keydown", move);
   field.addEventListener("change", () => {
     const value = clamped(typed());
-    say(value);
+    write(value);
     slider.value = position(value);
     if (value !== held) wanted(value);
     held = value;
   });
   field.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") say(held);
+    if (event.key === "Escape") write(held);
     if (event.key === "ArrowUp" || event.key === "ArrowDown") move(event);
   });
-  field.addEventListener("blur", () => say(held));
+  field.addEventListener("blur", () => write(held));
   return {
     row: make("div", { class: "field number" }, label(setting, id), field, slider),
     show: (value) => {
       held = Number(value);
       if (document.activeElement !== slider) slider.value = position(held);
-      if (document.activeElement !== field) say(held);
+      if (document.activeElement !== field) write(held);
     },
   };
 }

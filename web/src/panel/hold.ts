@@ -13,7 +13,7 @@ import { recall, remember } from "../model/memory";
 import type { Notices } from "./notices";
 
 const kColours = ["red", "blue", "violet", "purple"]; // --hand-0 and those after it
-const kSaid = 3000; // ms
+const kHintTime = 3000; // ms
 const kCoarse = matchMedia("(pointer: coarse)");
 
 export class HoldPanel {
@@ -154,7 +154,7 @@ export class HoldPanel {
   private hint(): string {
     const free = this.pointer?.free === true;
     const around = `drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
-    if (performance.now() < (this.pointer?.missed ?? -Infinity) + kSaid) return `No surface here: nothing was seen; ${around}`;
+    if (performance.now() < (this.pointer?.missed ?? -Infinity) + kHintTime) return `No surface here: nothing was seen; ${around}`;
     if (this.hand.held && free) {
       return kCoarse.matches
         ? "One finger moves the tool, two turn the view"

@@ -29,7 +29,7 @@ export class Notices {
   /** `brief`: what is neither a warning nor work under way is listed only. */
   constructor(private readonly brief: () => boolean) {}
 
-  /** What work was under way is not the next run's, nor are faults: those that hold are said again. */
+  /** What work was under way is not the next run's, nor are faults: those that persist are reported again. */
   begin(): void {
     this.endWork();
     for (const notice of this.shown) if (notice.level === "fault") this.remove(notice);
@@ -55,7 +55,7 @@ export class Notices {
     }
   }
 
-  /** What it said is true no more; the list of messages keeps it. */
+  /** It no longer holds; the list of messages keeps it. */
   takeBack(text: string): void {
     for (const notice of this.shown) if (notice.text === text) this.remove(notice); // other words hold still
   }

@@ -1,4 +1,4 @@
-// Which panels are shown: the simple page, or all of them. An attribute of the body says it; styles/simple.css hides by it.
+// Which panels are shown: the simple page, or all of them. An attribute of the body stores it; styles/simple.css hides by it.
 
 import { recall, remember } from "../model/memory";
 import { byId, icon, say } from "./dom";

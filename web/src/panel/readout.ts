@@ -21,7 +21,7 @@ const kFlagWords: Partial<Record<Name, [level: string, words: string, reason: st
 };
 const kInner = new Set<Name>(["slewed", "braked", "thinned"]); // of the servo: nothing that a first visit can act on
 const kLift = "lift the tool to feel full force again"; // where motors push
-const kLarge = 2; // below it the hand's own depth says little more
+const kLarge = 2; // below it the hand's own depth adds little
 const kFull = 0.95; // of the stiffness
 const kLinger = 700; // ms that a flag stays readable
 const kStale = 1000; // ms without a state
@@ -81,7 +81,7 @@ export class Readout {
     byId("view-area").classList.toggle("touching", tool.has("touching"));
   }
 
-  /** For a screen reader that asks. */
+  /** For a screen reader, on request. */
   sentence(tool: DeviceHistory | undefined): string {
     const state = tool?.latest;
     if (tool === undefined || state === undefined) return "No tool yet.";

@@ -1,4 +1,4 @@
-// Controls for what `welcome` says can be set, and the presets.
+// Controls for the settings that `welcome` lists, and the presets.
 
 import type { Session } from "../model/session";
 import type { Setting, SettingValue } from "../protocol/messages";
@@ -14,7 +14,7 @@ export class SettingsPanel {
   private readonly softer = make("p", { class: "soft", role: "status" });
   private until = 0;
   private readonly buttons = new Map<string, HTMLElement>(); // of presets
-  private asked: string | undefined; // the preset whose values are still to come
+  private requested: string | undefined; // the preset whose values are still to come
   private chosen: string | undefined; // the preset whose values hold
   private held = ""; // these values
 
@@ -35,14 +35,14 @@ export class SettingsPanel {
     byId("units").replaceChildren(...rows(true));
     this.buttons.clear();
     for (const name of presets) {
-      const choose = () => this.preset((this.asked = name));
+      const choose = () => this.preset((this.requested = name));
       this.buttons.set(name, make("button", { type: "button", class: "button", "aria-pressed": "false", "data-preset": name, click: choose }, name));
     }
-    this.asked = this.chosen = undefined;
+    this.requested = this.chosen = undefined;
     byId("presets").replaceChildren(...this.buttons.values());
   }
 
-  /** Says where what is asked for is not felt yet. */
+  /** Notes where a requested stiffness is not felt yet. */
   watch({ tool, motors }: Session, now: number): void {
     if (motors && tool?.has("softer")) this.until = now + kLinger;
     say(this.softer, now < this.until ? kSofter : "");
@@ -55,9 +55,9 @@ export class SettingsPanel {
 
   /** A preset is chosen until a value is no longer as it set it. */
   private markPreset(values: string): void {
-    if (this.asked !== undefined) this.chosen = this.asked;
+    if (this.requested !== undefined) this.chosen = this.requested;
     else if (values !== this.held) this.chosen = undefined;
-    this.asked = undefined;
+    this.requested = undefined;
     this.held = values;
     for (const [name, button] of this.buttons) button.setAttribute("aria-pressed", String(name === this.chosen));
   }

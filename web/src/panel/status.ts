@@ -59,15 +59,15 @@ export class Status {
   private wait(seconds: number, title: string, reason: string): void {
     let left = Math.ceil(seconds);
     say(byId("polite"), `${title}. Reconnecting automatically.`);
-    const tell = () => {
+    const update = () => {
       this.words(left > 0 ? `retry in ${left} s` : "connecting");
       this.cover(title, (reason === "" ? "" : `Reason: ${reason}. `) +
         "The tool is released. This page reconnects automatically" + (left > 0 ? ` in ${left} s.` : " now."));
       left -= 1;
     };
-    tell();
+    update();
     byId("cover-again").hidden = false;
-    this.timer = window.setInterval(tell, 1000);
+    this.timer = window.setInterval(update, 1000);
   }
 
   private end(reason: string): void {

@@ -1,4 +1,4 @@
-// The connection with the program: says hello, hands messages on, comes back by itself when it is lost.
+// The connection with the program: sends hello, passes messages on, comes back by itself when it is lost.
 
 import type { Backoff } from "./backoff";
 import { decode, DecodeError, type BinaryMessage } from "./decode";
@@ -10,7 +10,7 @@ export type Link =
   | { phase: "open" }
   | { phase: "waiting"; seconds: number; reason: string; restarts: boolean } // in the program's words, or empty
   | { phase: "refused"; reason: string } // trying again would not help
-  | { phase: "ended"; reason: string }; // it begins again where somebody says so
+  | { phase: "ended"; reason: string }; // it restarts on request
 
 export interface Listener {
   link(link: Link): void;
@@ -32,7 +32,7 @@ export class Connection {
   private pings = new Map<number, number>();
   private nextPing = 1;
   private welcomed = false;
-  private heard = 0;
+  private received = 0; // ms, when the last message came
 
   constructor(
     private readonly end: End,
@@ -53,7 +53,7 @@ export class Connection {
     });
   }
 
-  /** False where nobody is there to hear it. */
+  /** False where there is no connection to send it over. */
   send(message: ToProgram): boolean {
     return this.welcomed && this.end.send(JSON.stringify(message));
   }
@@ -63,12 +63,12 @@ export class Connection {
     this.end.send(
       JSON.stringify({ type: "hello", token: this.end.token, points: this.points() } satisfies ToProgram),
     );
-    this.heard = performance.now();
+    this.received = performance.now();
     this.pinging = window.setInterval(() => this.ping(), kPing);
   }
 
   private ping(): void {
-    if (!this.end.here && performance.now() - this.heard > kSilence) {
+    if (!this.end.here && performance.now() - this.received > kSilence) {
       this.lost(kAbnormal, "");
       return;
     }
@@ -79,7 +79,7 @@ export class Connection {
   }
 
   private take(data: string | ArrayBuffer): void {
-    this.heard = performance.now();
+    this.received = performance.now();
     try {
       if (typeof data === "string") this.takeText(data);
       else this.listener.binary(decode(data));

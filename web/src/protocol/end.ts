@@ -7,16 +7,16 @@ export interface Hears {
 }
 
 export interface End {
-  readonly token: string; // that it wants to hear; empty: not known
+  readonly token: string; // that it requires; empty: unknown
   readonly here: boolean; // in this tab: it is silent while it prepares, and does not come back by itself
 
   /** Opens it, or again. */
   open(hears: Hears): void;
-  /** False where nobody is there to hear it. */
+  /** False where there is no connection to send it over. */
   send(text: string): boolean;
   /** Gives it a file to touch; resolves to what is wrong with it, in words. */
   give(file: File): Promise<string | undefined>;
-  /** From here on nobody hears it. */
+  /** Nothing is received from it from here on. */
   close(): void;
 }
 

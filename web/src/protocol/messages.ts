@@ -1,4 +1,4 @@
-// What page and program say to each other as JSON: docs/viewer_protocol.md.
+// The messages between page and program as JSON: docs/viewer_protocol.md.
 
 export const kVersion = 2;
 
@@ -36,7 +36,7 @@ export interface DeviceReport {
   reason?: string; // why it is silent or has failed, and what to do
 }
 
-/** What is not known is left out. */
+/** A field is absent where its value is unknown. */
 export interface SourceReport {
   name: string;
   phase: string; // starting, running, stalled, failed, ended; still without a stream
@@ -57,7 +57,7 @@ export interface Welcome {
   scene: string;
   origin: Vector;
   up: Vector;
-  eye?: Vector; // from where to look at first, where no sensor's pose is known
+  eye?: Vector; // from where to look at first, where no sensor reports a pose
   radius: number; // m
   devices: DeviceInfo[];
   sources: SourceInfo[];
@@ -107,7 +107,7 @@ const kTypes = new Set([
   "welcome", "settings", "devices", "sources", "notice", "record", "time", "envelope", "lost", "refused", "pong",
 ]);
 
-/** A text message; undefined where this page does not know its type. Throws SyntaxError. */
+/** A text message; undefined where its type is unknown to this page. Throws SyntaxError. */
 export function parseMessage(text: string): FromProgram | undefined {
   const message = JSON.parse(text) as { type?: unknown } | null;
   if (message === null || typeof message.type !== "string" || !kTypes.has(message.type)) {

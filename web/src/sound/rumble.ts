@@ -2,7 +2,7 @@
 
 import { Flag, type StateMessage } from "../protocol/decode";
 
-const kInterval = 80; // ms between two words to a motor
+const kInterval = 80; // ms between two commands to a motor
 const kOverlap = 40; // ms that it runs on, so that it does not stop in between
 const kFullForce = 3; // N that a motor gives with all it has
 const kFullTexture = 0.5; // N, root of the mean square of what changes between two states
@@ -25,19 +25,19 @@ export function strengths(state: Pick<StateMessage, "flags" | "force" | "samples
 
 export class Rumble {
   on = true;
-  private said = -Infinity; // ms
+  private sent = -Infinity; // ms
 
   /** Of the tool that this page holds; `now` in ms. */
   feel(state: StateMessage, now: number): void {
-    if (!this.on || now - this.said < kInterval) return;
+    if (!this.on || now - this.sent < kInterval) return;
     const { slow, fast } = strengths(state);
     if (slow === 0 && fast === 0) return; // what runs ends by itself
-    this.said = now;
+    this.sent = now;
     for (const pad of navigator.getGamepads?.() ?? []) {
       const effect = { duration: kInterval + kOverlap, strongMagnitude: slow, weakMagnitude: fast };
       void pad?.vibrationActuator?.playEffect("dual-rumble", effect).catch(() => undefined); // it has none after all
     }
-    // A phone's motor knows no strength: the harder, the longer it runs of the time.
+    // A phone's motor has a single strength: the larger the force, the longer it runs of each interval.
     if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(Math.round(kInterval * Math.max(slow, fast)));
   }
 }

@@ -1,7 +1,7 @@
 // Contact and slip to hear, once a person asks for it.
 
 import type { Surface } from "./surface";
-import { Voice, type Heard } from "./voice";
+import { Voice, type ContactState } from "./voice";
 
 const kPatience = 1500; // ms; without a device for sound a browser never answers
 
@@ -23,7 +23,7 @@ export class Sound {
     return this.on;
   }
 
-  hear(state: Heard, surface: Surface): void {
-    if (this.on) this.voice!.hear(state, surface);
+  play(state: ContactState, surface: Surface): void {
+    if (this.on) this.voice!.play(state, surface);
   }
 }

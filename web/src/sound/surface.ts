@@ -1,4 +1,4 @@
-// What a surface sounds like, from what the page is told of it: stiffness, friction and texture.
+// What a surface sounds like, from what the program reports of it: stiffness, friction and texture.
 
 import type { Setting, SettingValue } from "../protocol/messages";
 
@@ -6,7 +6,7 @@ export interface Surface {
   stiff: number; // share of the stiffest that can be set, 0 to 1
   friction: number; // coefficient
   amplitude: number; // of its texture, m; 0: smooth
-  wavelength: number; // of its texture, m; 0: not known
+  wavelength: number; // of its texture, m; 0: unknown
 }
 
 /** What a slip sounds like: noise, the grain that passes, and what sticks and slips. Gains 0 to 1. */
@@ -75,7 +75,7 @@ function metres(setting: Setting | undefined, value: SettingValue | undefined): 
   return setting?.unit === "mm" ? value / 1000 : value;
 }
 
-/** What the settings of a run say of its surface. */
+/** The surface that the settings of a run describe. */
 export function surfaceOf(settings: readonly Setting[], values: ReadonlyMap<string, SettingValue>): Surface {
   const of = (key: string) => settings.find((one) => one.key === key);
   const stiffness = values.get("stiffness");

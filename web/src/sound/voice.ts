@@ -4,7 +4,7 @@ import { Flag, type StateMessage } from "../protocol/decode";
 import type { Vector } from "../protocol/messages";
 import { pitchOf, slipOf, type Surface } from "./surface";
 
-export type Heard = Pick<StateMessage, "time" | "flags" | "hip" | "proxy" | "force">;
+export type ContactState = Pick<StateMessage, "time" | "flags" | "hip" | "proxy" | "force">;
 
 const kLoud = 0.5; // of what a loudspeaker gives: a page is no alarm
 const kSmooth = 0.03; // s, in which a sound follows: two states
@@ -28,7 +28,7 @@ export class Voice {
   private readonly grain: GainNode;
   private readonly reed: OscillatorNode;
   private readonly squeak: GainNode;
-  private before: Heard | undefined;
+  private before: ContactState | undefined;
 
   constructor(private readonly context: BaseAudioContext) {
     this.out = new GainNode(context, { gain: kLoud });
@@ -47,7 +47,7 @@ export class Voice {
     for (const source of [hiss, this.saw, this.reed]) source.start();
   }
 
-  hear(state: Heard, surface: Surface): void {
+  play(state: ContactState, surface: Surface): void {
     const before = this.before;
     this.before = state;
     if (before === undefined) return;

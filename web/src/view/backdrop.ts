@@ -12,7 +12,7 @@ import { screenColour } from "./colours";
 import { kCloudLayer } from "./layers";
 
 const kStill = 120; // ms of a still eye, before its picture becomes sharp (judgement)
-const kLive = 2000; // ms: what changes more often is a camera's, which is drawn quickly until two changes fail to come (measured: a busy page hears 1.6 a second)
+const kLive = 2000; // ms: what changes more often is a camera's, which is drawn quickly until two changes fail to come (measured: a busy page receives 1.6 a second)
 const kSharp = 8; // pictures with sample points in a pixel that the sharp one is the mean of
 const kAtOnce = 4; // that are enough where each pixel of the screen is four
 const kSampled = 2 ** 24; // samples in memory, of 8 bytes (colour and depth): 128 MiB

@@ -22,7 +22,7 @@ export const kScreen = /* glsl */ `
 `;
 
 /** Fills holes of a pixel, and shades what lies in hollows or behind its neighbours. A depth is linear in the picture
- * where the surface is flat: of two neighbours on opposite sides the mean tells by how much a point lies deeper, however
+ * where the surface is flat: of two neighbours on opposite sides the mean shows by how much a point lies deeper, however
  * steep its surface is. */
 export const kShade = /* glsl */ `
   uniform sampler2D colours;

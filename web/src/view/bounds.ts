@@ -7,7 +7,7 @@ import type { CloudMessage } from "../protocol/decode";
 const kSamples = 500; // of one cloud
 const kTail = 0.02; // of heights, left out at each end
 const kKept = 0.8; // of the points: what lies thin, such as a far floor or outliers, is left out (judgement)
-const kNeighbours = 6; // that tell how densely points lie (judgement)
+const kNeighbours = 6; // by which the density is estimated (judgement)
 
 export interface Sample {
   position: Vector3;

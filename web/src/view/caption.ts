@@ -1,4 +1,4 @@
-// What a saved picture says of itself: words, and a length in the middle of the view.
+// The caption of a saved picture: words, and a length in the middle of the view.
 
 import { colourOf } from "./colours";
 import type { ScaleBar } from "./scale_bar";

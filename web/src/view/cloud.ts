@@ -51,7 +51,7 @@ export class Cloud {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
   stamp = NaN;
   count = 0;
-  whole = 0; // points that are felt; 0: not known
+  whole = 0; // points that are felt; 0: unknown
   private every = 1; // that `some` are
   private some: BufferAttribute | undefined;
   private ownTint = [0, 0, 0];
@@ -107,14 +107,14 @@ export class Cloud {
     return this.count < 0.95 * this.whole ? Math.SQRT2 * this.even : this.even;
   }
 
-  knows(colouring: Colouring): boolean {
+  supports(colouring: Colouring): boolean {
     return colouring !== "trust" || this.hasTrust;
   }
 
   /** Without colours of its own it is of clay; beside `others`, of clay with its source's tint. */
   shade(colouring: Colouring, others: boolean, age: number, heights: Vector2, up: Vector3): void {
     const uniforms = this.points.material.uniforms;
-    const isPlain = !this.knows(colouring) || (colouring === "own" && !this.hasColours);
+    const isPlain = !this.supports(colouring) || (colouring === "own" && !this.hasColours);
     uniforms["mode"]!.value = kColourings.indexOf(isPlain ? "source" : colouring);
     const share = !isPlain ? 1 : others ? kTint : 0;
     uniforms["sourceColour"]!.value = this.clay.map((part, i) => part + share * (this.ownTint[i]! - part));

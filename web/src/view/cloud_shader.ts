@@ -1,4 +1,4 @@
-// Points as small disks that lie in the surface where normals are known. Colours are screen colours:
+// Points as small disks that lie in the surface where there are normals. Colours are screen colours:
 // the shader mixes and shades them as they are.
 
 export const kCloudVertex = /* glsl */ `

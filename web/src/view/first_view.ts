@@ -6,11 +6,11 @@ import type { Bounds, Sample } from "./bounds";
 const kRaise = 0.5; // of the distance, upward
 const kAside = 0.55; // radians beside an axis: what stands along the axes has depth there
 const kSides = 8; // that are tried, the same whatever is there: noise gives no other at the next start
-const kCells = 14; // across a coarse picture that tells what hides what
+const kCells = 14; // across a coarse picture that determines what hides what
 const kLayer = 0.06; // of the radius: what is nearer to the foremost than this is not hidden by it
 const kFavour = 0.25; // of the score, for the usual side and against the far one
 const kFavourCameras = 0.6; // where the usual one is the cameras'
-const kUnknown = 0.5; // cosine where no normal is known
+const kUnknown = 0.5; // cosine where there is no normal
 
 /** From the middle to the eye. Of the sides all around, those count more that `cameras` look from: directions towards them. */
 export function firstDirection(up: Vector3, cameras: readonly Vector3[], bounds: Bounds): Vector3 {

@@ -1,4 +1,4 @@
-// Renderer, camera and light; draws when something asked for it. Sharpness is reduced where the
+// Renderer, camera and light; draws on request. Sharpness is reduced where the
 // graphics card cannot follow; where there is none, it comes once the eye stands still.
 
 import {

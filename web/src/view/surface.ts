@@ -46,7 +46,7 @@ export class Surface {
   shown = true;
   private readonly centre = new Vector3();
   private readonly proxy = new Vector3(); // in the patch's units
-  private some = false; // a surface without vertices says that nothing is near
+  private some = false; // a surface without vertices means that nothing is near
 
   constructor() {
     const material = new ShaderMaterial({

@@ -114,7 +114,7 @@ export class Tool {
   private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
   private readonly endOn = new Mesh(new RingGeometry(0.9, 1, 48), this.endOnMaterial);
   private readonly turn = new Quaternion();
-  private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: not known
+  private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: unknown
   private radius = 0;
 
   constructor(private readonly device: number) {
@@ -188,10 +188,10 @@ export class Tool {
   }
 
   private placeDisk(size: number, towards: Vector3): void {
-    const known = this.touching && this.normal.lengthSq() > 0.5;
-    this.disk.visible = known;
-    this.rim.visible = known;
-    if (!known) return;
+    const hasNormal = this.touching && this.normal.lengthSq() > 0.5;
+    this.disk.visible = hasNormal;
+    this.rim.visible = hasNormal;
+    if (!hasNormal) return;
     for (const mesh of [this.disk, this.rim]) {
       mesh.position.copy(this.proxyPosition).add(towards);
       mesh.quaternion.setFromUnitVectors(kForward, this.normal);

@@ -4,7 +4,7 @@ import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, type Vector3 
 import { colourOf } from "./colours";
 
 const kPoints = 150; // 2.5 s at 60 a second
-const kGap = 0.5; // s that nothing was told, or that were passed over in a recording
+const kGap = 0.5; // s without a state, or that were passed over in a recording
 
 export class Trail {
   readonly line: Line<BufferGeometry, LineBasicMaterial>;

@@ -174,7 +174,7 @@ export class World {
   /** What is asked for, if a cloud knows it. */
   get colouring(): Colouring {
     const { colouring } = this.look;
-    return this.clouds.some((cloud) => cloud.knows(colouring)) ? colouring : "own";
+    return this.clouds.some((cloud) => cloud.supports(colouring)) ? colouring : "own";
   }
 
   private update(now: number): void {

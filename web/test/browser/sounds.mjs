@@ -44,7 +44,7 @@ async function hearing(page, name, { speed = 0.1, force = 1, drop = 0, stiffest 
     const tell = (i) => {
       const time = i / 60;
       const z = -drop * time;
-      voice.hear({ time, flags: drop > 0 && i < 31 ? 0 : 1, hip: [speed * time, 0, z], proxy: [speed * time, 0, z], force: [0, 0, force] }, surface);
+      voice.play({ time, flags: drop > 0 && i < 31 ? 0 : 1, hip: [speed * time, 0, z], proxy: [speed * time, 0, z], force: [0, 0, force] }, surface);
     };
     for (let i = 0; i < (60 * (count + rate / 2)) / rate; i += 1) {
       if (drop > 0 && i > 31) break; // one touch
@@ -132,7 +132,7 @@ test("when states stop, the slip is soon over", async () => {
     const context = new window.OfflineAudioContext(1, 48_000, 48_000);
     const voice = new Voice(context);
     const surface = { stiff: 0.25, friction: 1, amplitude: 0, wavelength: 0 };
-    for (let i = 0; i < 2; i += 1) voice.hear({ time: i / 60, flags: 1, hip: [0, 0, 0], proxy: [i / 600, 0, 0], force: [0, 0, 1] }, surface);
+    for (let i = 0; i < 2; i += 1) voice.play({ time: i / 60, flags: 1, hip: [0, 0, 0], proxy: [i / 600, 0, 0], force: [0, 0, 1] }, surface);
     const samples = (await context.startRendering()).getChannelData(0);
     return [samples.slice(0, 10_000), samples.slice(30_000)].map((part) => Math.max(...part));
   });
