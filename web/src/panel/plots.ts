@@ -92,8 +92,8 @@ export class Plots {
     const ring = this.session.tool?.force;
     const interval = this.session.tool?.latest?.interval ?? 0;
     if (ring === undefined || ring.length < kWindow || !(interval > 0)) return;
-    const parts = [1, 2, 3].map((column) => ring.copy(column, ring.length - kWindow));
-    const amplitudes = this.spectrum.update(parts);
+    const components = [1, 2, 3].map((column) => ring.copy(column, ring.length - kWindow));
+    const amplitudes = this.spectrum.update(components);
     const tone = 1 / (interval * kWindow); // Hz
     const count = Math.min(amplitudes.length, Math.ceil(kHighest / tone) + 1);
     this.tones.set([

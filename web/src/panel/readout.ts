@@ -35,13 +35,13 @@ export class Readout {
   private nothing = false;
   private height: number | undefined;
   private scale = 1; // world metres of a metre of the hand
-  private readonly parts = [0, 1, 2].map(() => make("dd"));
+  private readonly components = [0, 1, 2].map(() => make("dd"));
   private readonly flags = new Map<Name, { element: HTMLElement; until: number }>();
 
   constructor() {
     const names = ["x", "y", "z"];
     byId("parts").replaceChildren(
-      ...this.parts.map((part, i) => make("div", {}, make("dt", {}, names[i]!), part)),
+      ...this.components.map((component, i) => make("div", {}, make("dt", {}, names[i]!), component)),
     );
     for (const [name, [level, words, reason]] of Object.entries(kFlagWords)) {
       const inner = kInner.has(name as Name) ? " inner" : "";
@@ -76,7 +76,7 @@ export class Readout {
       return;
     }
     say(this.force, Math.hypot(...state.force).toFixed(2));
-    this.parts.forEach((part, i) => say(part, signed(state.force[i as 0 | 1 | 2])));
+    this.components.forEach((component, i) => say(component, signed(state.force[i as 0 | 1 | 2])));
     say(this.touch, now - tool.received > kStale ? "no data for a while" : this.words(tool));
     byId("view-area").classList.toggle("touching", tool.has("touching"));
   }
@@ -104,7 +104,7 @@ function depthOf({ proxy, hip }: StateMessage): number {
   return Math.hypot(...proxy.map((p, i) => p - hip[i as 0 | 1 | 2]));
 }
 
-/** What part of the surface's stiffness is felt; empty where all of it is. */
+/** The share of the surface's stiffness that is felt; empty where all of it is. */
 function softness(state: StateMessage, stiffness: number): string {
   const share = Math.hypot(...state.force) / (stiffness * depthOf(state));
   return share < kFull ? `soft: ${Math.round(100 * share)} %` : "";

@@ -84,7 +84,7 @@ export type FromProgram =
   | { type: "notice"; level: NoticeLevel; text: string; share?: number; over?: boolean } // share: of work that takes a while, 0 to 1
   | { type: "record"; on: boolean; file?: string }
   | ({ type: "time" } & Moment)
-  | { type: "envelope"; forces: number[] } // N, the largest in equal parts of the length
+  | { type: "envelope"; forces: number[] } // N, the largest in equal intervals of the length
   | { type: "lost"; device: number; text: string }
   | { type: "refused"; text: string }
   | { type: "pong"; id: number };
