@@ -9,12 +9,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <random>
+#include <utility>
 #include <vector>
 
-#include "apps/palpate/replay/playback.hpp"
-#include "apps/palpate/replay/shown_run.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "session/played_run.hpp"
 
 namespace palpate::app {
 namespace {
@@ -36,7 +36,7 @@ void measure(const std::string& path, int seeks) {
   const SteadyClock clock;
   double begin = clock.now();
   const auto passed = [&] { return clock.now() - std::exchange(begin, clock.now()); };
-  ShownRun run(path);
+  session::ShownRun run{bag::RandomFile(path)};
   fmt::print("{:.0f} s, {} hands, {} sources; opened in {:.0f} ms; {:.0f} MB at most\n",
              run.length(), run.hands.size(), run.sources.size(), 1e3 * passed(), megabytes());
   std::mt19937 random(1);
@@ -47,11 +47,12 @@ void measure(const std::string& path, int seeks) {
   for (int i = 0; i < seeks; ++i) {
     const double moment = moments(random);
     passed();
-    for (ShownHand& hand : run.hands) hand.seek(moment);
+    for (session::ShownHand& hand : run.hands) hand.seek(moment);
     steps.push_back(passed());
-    for (ShownHand& hand : run.hands) (void)hand.past(Playback::kPast, [] { return false; });
+    for (session::ShownHand& hand : run.hands)
+      (void)hand.past(session::PlayedRun::kPast, [] { return false; });
     pasts.push_back(passed());
-    for (ShownSource& source : run.sources) {
+    for (session::ShownSource& source : run.sources) {
       if (source.lives()) source.show(moment);
     }
     if (run.sources.front().lives()) frames.push_back(passed());

@@ -17,10 +17,8 @@ constexpr std::uint64_t kMostLoaded = 1 << 30;  // bytes of chunks in memory (ju
 
 }  // namespace
 
-McapReader::McapReader(std::string path) : McapReader(path, walk(RandomFile(path))) {}
-
-McapReader::McapReader(std::string path, Contents contents)
-    : file_(std::move(path)), contents_(std::move(contents)) {
+McapReader::McapReader(RandomFile file, Contents contents)
+    : file_(std::move(file)), contents_(std::move(contents)) {
   order_.resize(contents_.chunks.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return contents_.chunks[i].start; });

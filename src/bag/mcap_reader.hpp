@@ -14,9 +14,10 @@ namespace palpate::bag {
 class McapReader {
  public:
   /// @throws Error when the file cannot be read or is no MCAP file.
-  explicit McapReader(std::string path);
+  explicit McapReader(const std::string& path) : McapReader(RandomFile(path)) {}
+  explicit McapReader(const RandomFile& file) : McapReader(file, walk(file)) {}
   /// The same of a file that was looked at already: `contents` are a reader's of it.
-  McapReader(std::string path, Contents contents);
+  McapReader(RandomFile file, Contents contents);
 
   /// Contents of the file; `losses` grow as messages are read.
   [[nodiscard]] const Contents& contents() const { return contents_; }

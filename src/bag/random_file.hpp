@@ -1,19 +1,23 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 
 #include "bag/mcap_format.hpp"
 
 namespace palpate::bag {
 
-/// A file that is read at any offset. One thread at a time.
+/// A file that is read at any offset, or bytes in memory instead of one. Copies are of the same
+/// file. Any thread.
 class RandomFile {
  public:
   /// @throws Error when it cannot be read or is no plain file.
   explicit RandomFile(std::string path);
-  ~RandomFile();
-  RandomFile(const RandomFile&) = delete;
-  RandomFile& operator=(const RandomFile&) = delete;
+  /// The `size` bytes of a file of that name.
+  RandomFile(std::string name, std::shared_ptr<const std::byte[]> bytes, std::uint64_t size)
+      : path_(std::move(name)), bytes_(std::move(bytes)), size_(size) {}
 
   /// Size when the file was opened, bytes; it may have grown since.
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -23,7 +27,8 @@ class RandomFile {
 
  private:
   std::string path_;
-  int file_ = -1;
+  std::shared_ptr<const int> file_;           // its descriptor
+  std::shared_ptr<const std::byte[]> bytes_;  // null: they are in the file
   std::uint64_t size_ = 0;
 };
 

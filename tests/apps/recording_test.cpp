@@ -57,7 +57,7 @@ Json setup_in(const std::string& path) {
   const bag::McapReader reader(path);
   const auto& attached = reader.contents().attachments;
   for (std::size_t i = 0; i < attached.size(); ++i) {
-    if (attached[i].head.name != kSetupName) continue;
+    if (attached[i].head.name != session::kSetupName) continue;
     const bag::Bytes text = reader.attachment(i).data;
     return Json::parse(text.begin(), text.end());
   }

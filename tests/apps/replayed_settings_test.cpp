@@ -5,23 +5,23 @@
 #include <utility>
 
 #include "apps/palpate/record/recorder.hpp"
-#include "apps/palpate/record/recording.hpp"
 #include "apps/palpate/replay/replay.hpp"
 #include "apps/palpate/run/run.hpp"
 #include "apps/setup_parsed.hpp"
 #include "palpate/base/clock.hpp"
+#include "session/recording.hpp"
 
 namespace palpate::app {
 namespace {
 
 // A device that is as stiff as it needs to be, and anywhere.
-RecordedDevice handle() {
+session::RecordedDevice handle() {
   DeviceInfo info;
   info.name = "handle";
   info.maximum_force = 8;
   info.damping = 2;
   info.delay = 1e-3;
-  return RecordedDevice(info);
+  return session::RecordedDevice(info);
 }
 
 // 3 mm deep in the plane z = 0 and around a circle, and out of it at times.
@@ -54,7 +54,7 @@ TEST(Replay, ChangesOfSettingsInContactAreDoneAgainInTheirSteps) {
   LoadedScene loaded = load_sources(plan.sources, {.keep_clouds = true});
   begin_run(loaded, {});
   Recorder recorder(shell.path("run.mcap"));
-  RecordedDevice device = handle();
+  session::RecordedDevice device = handle();
   ServoOptions options;
   options.traces = recorder.add_hand();
   Servo servo(device, loaded.scene, options);
@@ -98,7 +98,7 @@ TEST(Replay, ChangesOfPreparationAreDoneAgainBeforeTheirFrames) {
   Recorder recorder(shell.path("run.mcap"));
   const Stream::Sink push = recorder.watching(0, feeding(from, source, thread_cpu_seconds));
   const std::function<void()> end = recorder.watching(0, [&] { source.keep(); });
-  RecordedDevice device = handle();
+  session::RecordedDevice device = handle();
   ServoOptions options;
   options.guard.on = false;
   options.traces = recorder.add_hand();

@@ -12,11 +12,11 @@
 
 #include "apps/palpate/record/recorder.hpp"
 #include "apps/palpate/replay/playback.hpp"
-#include "apps/palpate/replay/shown_run.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "bag/mcap_writer.hpp"
 #include "palpate/device/simulated.hpp"
+#include "session/shown_run.hpp"
 #include "support/folder.hpp"
 
 namespace palpate::app {
@@ -85,13 +85,13 @@ class TimeLineTest : public testing::Test {
 };
 
 TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
-  const Recording recording(path());
+  const session::Recording recording(path());
   Scene scene;
-  const ShownSource source(recording, 0, scene);
+  const session::ShownSource source(recording, 0, scene);
   EXPECT_FALSE(source.lives());
   EXPECT_GT(scene.source(0).points()->size(), 100u);
   for (std::size_t i = 0; i < 2; ++i) {
-    ShownHand hand(recording, i, scene);
+    session::ShownHand hand(recording, i, scene);
     for (const double time : {0.0, 5.5, 1.2345, 1.2344, 5.999, 99.0, 3.0, -1.0, 3.0004}) {
       hand.seek(kBegin + time);
       expect_same(hand.servo().state(), at(i, kBegin + time));
@@ -102,9 +102,9 @@ TEST_F(TimeLineTest, ASeekToAnyMomentShowsItsStepExactly) {
 }
 
 TEST_F(TimeLineTest, ThePastIsOfTheStepsBefore) {
-  const Recording recording(path());
+  const session::Recording recording(path());
   Scene scene;
-  ShownHand hand(recording, 0, scene);
+  session::ShownHand hand(recording, 0, scene);
   hand.seek(kBegin + 4);
   const auto past = hand.past(1.5, [] { return false; });
   ASSERT_NEAR(static_cast<double>(past.size()), 1501, 1);
@@ -165,12 +165,12 @@ TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
 
 TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
   Playing playing(path());
-  const double part = playing.line.length / Playback::kEnvelope;
-  std::vector<float> largest(Playback::kEnvelope);
+  const double part = playing.line.length / session::PlayedRun::kEnvelope;
+  std::vector<float> largest(session::PlayedRun::kEnvelope);
   for (const States& felt : felt_states) {
     for (const ServoState& state : felt) {
       const auto i = static_cast<std::size_t>((state.time - kBegin) / part);
-      float& top = largest[std::min(i, Playback::kEnvelope - 1)];
+      float& top = largest[std::min(i, session::PlayedRun::kEnvelope - 1)];
       top = std::max(top, static_cast<float>(state.force.norm()));
     }
   }
@@ -227,9 +227,9 @@ TEST_F(TimeLineTest, InAGapTheLastStepBeforeItStays) {
     }
     writer.close();
   }
-  const Recording recording(gap);
+  const session::Recording recording(gap);
   Scene scene;
-  ShownHand hand(recording, 0, scene);
+  session::ShownHand hand(recording, 0, scene);
   for (const double time : {10.5, 8.5, 11.2, 10.9}) {
     hand.seek(time);
     expect_same(hand.servo().state(), at(0, time < 11 ? 8 : time));
@@ -244,10 +244,10 @@ TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
                      "run.mcap")
                 .code,
             0);
-  const Recording recording(shell.path("run.mcap"));
+  const session::Recording recording(shell.path("run.mcap"));
   const double begin = recording.stretch().begin;
   Scene scene;
-  ShownSource source(recording, 0, scene);
+  session::ShownSource source(recording, 0, scene);
   ASSERT_TRUE(source.lives());
   EXPECT_TRUE(source.stream().frustum);
   const auto shown = [&](double time) {

@@ -11,6 +11,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/scene.hpp"
+#include "session/frames.hpp"
 
 namespace palpate::app {
 
@@ -95,7 +96,7 @@ double measure_frames(DepthCamera& camera, DepthFrame frame, int repeats) {
 
 Fig5 measure_fig5(DepthCamera& camera, int repeats) {
   const DepthFrame frame = first_frame(camera);
-  const PointCloud cloud = cloud_of(frame);
+  const PointCloud cloud = session::cloud_of(frame);
   if (cloud.size() < kSizes.front()) {
     throw Error(fmt::format(
         "the frame has {} points, but the paper's largest cloud has {}; use a larger image",

@@ -15,6 +15,7 @@
 #include "palpate/geometry/spacing.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/sensor/stream.hpp"
+#include "session/frames.hpp"
 
 namespace palpate::app {
 
@@ -87,7 +88,7 @@ TestPoint test_point_of(const DepthFrame& frame) {
   TestPoint target;
   target.point_in_camera = Vector3d((u - p.cx) * z / p.fx, (v - p.cy) * z / p.fy, z);
   target.point = pose * target.point_in_camera;
-  target.normal = pose.linear() * normal_of(cloud_of(frame), target.point_in_camera);
+  target.normal = pose.linear() * normal_of(session::cloud_of(frame), target.point_in_camera);
   const Vector3d ahead = pose.linear().col(2);
   Vector3d along = ahead - target.normal * target.normal.dot(ahead);
   if (along.norm() < 1e-3) along = pose.linear().col(0);
@@ -123,7 +124,7 @@ class Feelers {
   }
 
   void push(const DepthFrame& frame, const Source::StartTime& start) {
-    const PointCloud cloud = cloud_of(frame);
+    const PointCloud cloud = session::cloud_of(frame);
     for (Scene& scene : clouds_) {
       if (frame.T_world_sensor) scene.source(0).set_pose(*frame.T_world_sensor);
       scene.source(0).push(cloud, frame.stamp, start);

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "apps/palpate/record/options_json.hpp"
+#include "session/options_json.hpp"
 
 namespace palpate::app {
 
@@ -21,7 +21,7 @@ void WaitingFrames::begin(std::size_t sources, bool waits) {
 
 void WaitingFrames::put(std::size_t source, message::FrameUse use, DepthFrame frame,
                         const SourceTrace& trace) {
-  std::deque<RecordedFrame>& frames = waiting_.frames;
+  std::deque<session::RecordedFrame>& frames = waiting_.frames;
   std::unique_lock lock(mutex_);
   if (waits_) room_.wait(lock, [&] { return frames.size() < kMostFrames; });
   if (frames.size() >= kMostFrames && use.kind != "end") {
@@ -31,7 +31,7 @@ void WaitingFrames::put(std::size_t source, message::FrameUse use, DepthFrame fr
   }
   use.gap = std::exchange(gaps_[source], 0) != 0;
   if (trace.changes() != std::exchange(changes_[source], trace.changes())) {
-    use.options = exact_json(trace.options()).dump();
+    use.options = session::exact_json(trace.options()).dump();
   }
   frames.push_back({source, std::move(frame), std::move(use)});
 }

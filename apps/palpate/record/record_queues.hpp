@@ -26,7 +26,7 @@ inline constexpr std::chrono::milliseconds kQueueLook{5};  ///< between two look
 class WaitingFrames {
  public:
   struct Taken {
-    std::deque<RecordedFrame> frames;
+    std::deque<session::RecordedFrame> frames;
     std::deque<RecordedRobot> robots;
   };
 

@@ -11,10 +11,10 @@
 #include <filesystem>
 #include <utility>
 
-#include "apps/palpate/record/options_json.hpp"
-#include "apps/palpate/record/recorded_messages.hpp"
 #include "apps/palpate/record/recording_file.hpp"
 #include "ros/hand_messages.hpp"
+#include "session/options_json.hpp"
+#include "session/recorded_messages.hpp"
 #include "stream/source_trace.hpp"
 
 namespace palpate::app {
@@ -92,7 +92,7 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
     message::FrameUse use;
     use.kind = frame.cloud ? "cloud" : "image";
     use.stamp = frame.stamp;
-    if (frame.T_world_sensor) use.pose = rows_of(*frame.T_world_sensor);
+    if (frame.T_world_sensor) use.pose = session::rows_of(*frame.T_world_sensor);
     Source& its = subject_.source(source);
     const std::uint64_t before = SourceTrace(its).publications();
     const std::uint64_t dropped = its.state().dropped;
@@ -108,7 +108,7 @@ Stream::Sink Recorder::watching(std::size_t source, Stream::Sink sink) {
     if (use.dropped) use.why_not = "all snapshots were held";
     const bool shown = SourceTrace(its).publications() != before;
     if (!shown && use.why_not.empty()) use.why_not = "nothing was within reach";
-    put(source, std::move(use), without_colors(frame));
+    put(source, std::move(use), session::without_colors(frame));
     if (problem) std::rethrow_exception(problem);
   };
 }
@@ -184,7 +184,7 @@ void Recorder::drain() {
   const std::unique_ptr<RecordingFile>& file = present_.file;
   RecordReport& report = present_.report;
   try {
-    for (const RecordedFrame& frame : frames) {
+    for (const session::RecordedFrame& frame : frames) {
       if (file) file->write(frame);
       if (frame.use.kind != "end") ++report.frames;
     }

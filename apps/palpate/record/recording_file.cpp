@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "apps/palpate/cli/version.hpp"
-#include "apps/palpate/record/options_json.hpp"
-#include "apps/palpate/record/recorded_messages.hpp"
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "ros/hand_messages.hpp"
+#include "session/options_json.hpp"
+#include "session/recorded_messages.hpp"
 
 namespace palpate::app {
 
@@ -47,8 +47,8 @@ Json hand_json(const Servo& servo, const std::string& topic) {
   options.proxy.friction = contact.friction;
   options.proxy.texture = contact.texture;
   return {{"topic", topic},
-          {"device", exact_json(servo.device().info())},
-          {"options", exact_json(options)}};
+          {"device", session::exact_json(servo.device().info())},
+          {"options", session::exact_json(options)}};
 }
 
 Json source_json(const LoadedSource& loaded, const Source& source, std::size_t index) {
@@ -58,10 +58,10 @@ Json source_json(const LoadedSource& loaded, const Source& source, std::size_t i
                {"topic", fmt::format("/palpate/{}_{}", plain(source.name()), index)},
                {"lives", loaded.camera != nullptr},
                {"as_cloud", loaded.plan.as_cloud},
-               {"options", exact_json(options)}};
+               {"options", session::exact_json(options)}};
   if (loaded.camera || !loaded.image) return json;
-  json["lens"] = exact_json(loaded.image->camera);
-  json["pose"] = exact_json(loaded.image->T_world_sensor);
+  json["lens"] = session::exact_json(loaded.image->camera);
+  json["pose"] = session::exact_json(loaded.image->T_world_sensor);
   return json;
 }
 
@@ -83,7 +83,7 @@ RecordedSetup setup_of(const LoadedScene& loaded, const std::vector<const Servo*
     const std::string number = servos.size() > 1 ? std::to_string(hands.size() + 1) : "";
     hands.push_back(hand_json(*servo, "/palpate/hand" + number));
   }
-  setup.json = {{"kind", kSetupKind},
+  setup.json = {{"kind", session::kSetupKind},
                 {"palpate", std::string(version())},
                 {"epoch_ns", epoch},
                 {"picture_axes", in_picture_axes(loaded)},
@@ -105,12 +105,12 @@ void RecordingFile::begin(const RecordedSetup& setup) {
     if (setup.images[i]) {
       message::encode(message::image_of(*setup.images[i]), bytes);
     } else {
-      message::encode(recorded(*setup.clouds[i]), bytes);
+      message::encode(session::recorded(*setup.clouds[i]), bytes);
     }
-    attach(surface_name(i), bytes, "application/octet-stream");
+    attach(session::surface_name(i), bytes, "application/octet-stream");
   }
   const std::string text = text_of(setup.json);
-  attach(kSetupName, {text.begin(), text.end()}, "application/json");
+  attach(session::kSetupName, {text.begin(), text.end()}, "application/json");
 }
 
 void RecordingFile::add_hand(const std::string& topic) {
@@ -164,10 +164,10 @@ void RecordingFile::write(std::size_t index, const StepTrace& step) {
   const ServoState& state = step.state;
   const StepInput& input = step.input;
   if (input.reset) change(hand, state, "reset", Json());
-  if (input.contact) change(hand, state, "contact", exact_json(*input.contact));
-  if (input.field) change(hand, state, "field", exact_json(*input.field));
-  if (input.added) change(hand, state, "force", exact_json(*input.added));
-  message::Tick tick = tick_of(step, live_.size());
+  if (input.contact) change(hand, state, "contact", session::exact_json(*input.contact));
+  if (input.field) change(hand, state, "field", session::exact_json(*input.field));
+  if (input.added) change(hand, state, "force", session::exact_json(*input.added));
+  message::Tick tick = session::tick_of(step, live_.size());
   tick.header = header(state.time, kWorld);
   put(hand.tick, state.time, tick);
   if (state.time - hand.shown >= kShown) show(hand, state);
@@ -183,7 +183,7 @@ void RecordingFile::show(HandTopics& hand, const ServoState& state) {
   put(transforms_, state.time, message::TFMessage{{ros::proxy_frame(at, hand.name, state)}});
 }
 
-void RecordingFile::write(const RecordedFrame& recorded_frame) {
+void RecordingFile::write(const session::RecordedFrame& recorded_frame) {
   const DepthFrame& frame = recorded_frame.frame;
   SourceTopics& topics = live_[recorded_frame.source];
   topics.time = std::max(topics.time, recorded_frame.use.stamp);
@@ -198,7 +198,7 @@ void RecordingFile::write(const RecordedFrame& recorded_frame) {
     message::PointCloud2 points = message::message_of(*frame.cloud);
     points.header = at;
     put(topics.points, time, points);
-    put(topics.cloud, time, recorded(*frame.cloud));
+    put(topics.cloud, time, session::recorded(*frame.cloud));
   } else if (!frame.depth.empty()) {
     message::CameraInfo info = message::info_of(frame.camera);
     message::Image image = message::image_of(frame);

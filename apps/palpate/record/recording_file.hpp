@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,22 +14,9 @@
 #include "message/palpate_types.hpp"
 #include "palpate/servo/servo.hpp"
 #include "servo/step_trace.hpp"
+#include "session/recorded_messages.hpp"
 
 namespace palpate::app {
-
-/// Names that a recording's parts go by.
-inline constexpr const char* kSetupName = "setup.json";
-inline constexpr const char* kSetupKind = "palpate recording 3";
-[[nodiscard]] inline std::string surface_name(std::size_t source) {
-  return fmt::format("surface-{}.cdr", source);
-}
-
-/// A frame of a source, and what became of it.
-struct RecordedFrame {
-  std::size_t source = 0;
-  DepthFrame frame;  ///< of kinds "image" and "cloud"
-  message::FrameUse use;
-};
 
 /// State of a robot that follows the tool, from a time on.
 struct RecordedRobot {
@@ -62,7 +47,7 @@ class RecordingFile {
   void begin(const RecordedSetup& setup);
 
   void write(std::size_t hand, const StepTrace& step);
-  void write(const RecordedFrame& recorded);
+  void write(const session::RecordedFrame& recorded);
   void write(const RecordedRobot& recorded);
 
   /// Everything is there.

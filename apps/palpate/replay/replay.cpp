@@ -9,11 +9,11 @@
 #include <limits>
 
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/record/options_json.hpp"
-#include "apps/palpate/record/recorded_messages.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "session/options_json.hpp"
+#include "session/recorded_messages.hpp"
 #include "stream/source_trace.hpp"
 
 namespace palpate::app {
@@ -38,15 +38,15 @@ void apply(const message::Change& change, Servo& servo) {
   if (change.what == "reset") servo.reset();
   if (change.what == "contact") {
     ContactSettings contact;
-    take_exact(value, contact);
+    session::take_exact(value, contact);
     servo.set_contact(contact);
   } else if (change.what == "field") {
     FieldOptions field;
-    take_exact(value, field);
+    session::take_exact(value, field);
     servo.set_field(field);
   } else if (change.what == "force") {
     Eigen::Vector3d force;
-    take_exact(value, force);
+    session::take_exact(value, force);
     servo.add_force(force);
   }
 }
@@ -76,11 +76,11 @@ std::string words_without(std::uint64_t step, std::uint64_t done) {
 // Pushes what came to one source into a source of another scene.
 class SourceReplay {
  public:
-  SourceReplay(const Recording& recording, std::size_t index, Scene& scene)
+  SourceReplay(const session::Recording& recording, std::size_t index, Scene& scene)
       : frames_(recording, index),
         source_(&recording.add_source(index, scene)),
         lives_(recording.sources()[index].lives) {
-    const Recording::Origin& origin = recording.sources()[index];
+    const session::Recording::Origin& origin = recording.sources()[index];
     from_.plan.argument.name = origin.name;
     from_.plan.options = origin.options;
     from_.plan.as_cloud = origin.as_cloud;
@@ -89,7 +89,7 @@ class SourceReplay {
   // Pushes until so many snapshots are published; false: the file does not have what they need.
   [[nodiscard]] bool push_until(std::uint64_t publication) {
     while (done_ < publication) {
-      const std::optional<RecordedFrame> frame = lives_ ? frames_.next() : std::nullopt;
+      const std::optional<session::RecordedFrame> frame = lives_ ? frames_.next() : std::nullopt;
       if (!frame || frame->use.gap) return false;
       push(*frame);
     }
@@ -100,12 +100,12 @@ class SourceReplay {
   void widen(double least_radius) { SourceTrace(*source_).impose_least_radius(least_radius); }
 
  private:
-  void push(const RecordedFrame& recorded) {
+  void push(const session::RecordedFrame& recorded) {
     const message::FrameUse& use = recorded.use;
     done_ = use.publication;
     if (!use.options.empty()) {
       SourceOptions options;
-      take_exact(Json::parse(use.options), options);
+      session::take_exact(Json::parse(use.options), options);
       source_->change(options);
     }
     if (use.dropped) return;
@@ -122,7 +122,7 @@ class SourceReplay {
     }
   }
 
-  Recording::Frames frames_;
+  session::Recording::Frames frames_;
   LoadedSource from_;
   Source* source_;
   bool lives_;
@@ -132,7 +132,7 @@ class SourceReplay {
 // Steps one hand on a scene of its own.
 class HandReplay {
  public:
-  HandReplay(const Recording& recording, std::size_t hand)
+  HandReplay(const session::Recording& recording, std::size_t hand)
       : steps_(recording, hand), device_(recording.hands().at(hand).device) {
     for (std::size_t i = 0; i < recording.sources().size(); ++i) {
       sources_.emplace_back(recording, i, scene_);
@@ -144,7 +144,7 @@ class HandReplay {
   ForceDifference run(const Replay::EachStep& each) {
     std::string& ended = difference_.ended;
     while (ended.empty()) {
-      const std::optional<Recording::Step> step = steps_.next();
+      const std::optional<session::Recording::Step> step = steps_.next();
       if (!step) break;
       for (const message::Change& change : step->changes) apply(change, *servo_);
       take(step->tick, each);
@@ -180,10 +180,10 @@ class HandReplay {
     each(state, device_.info());
   }
 
-  Recording::Steps steps_;
+  session::Recording::Steps steps_;
   Scene scene_;
   std::deque<SourceReplay> sources_;
-  RecordedDevice device_;
+  session::RecordedDevice device_;
   std::optional<Servo> servo_;
   double start_ = 0;  // of the first step, s
   ForceDifference difference_;
@@ -212,11 +212,11 @@ ForceDifference Replay::run(std::size_t hand, const EachStep& each) const {
 
 void Replay::show(std::size_t hand, const EachStep& each) const {
   guarded(recording_.path(), [&] {
-    const Recording::Hand& its = recording_.hands().at(hand);
-    Recording::Steps steps(recording_, hand);
+    const session::Recording::Hand& its = recording_.hands().at(hand);
+    session::Recording::Steps steps(recording_, hand);
     std::optional<double> start;
-    while (const std::optional<Recording::Step> step = steps.next()) {
-      ServoState state = state_of(step->tick, its.options);
+    while (const std::optional<session::Recording::Step> step = steps.next()) {
+      ServoState state = session::state_of(step->tick, its.options);
       if (!start) start = state.time;
       state.time -= *start;
       each(state, its.device);

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "apps/palpate/record/recording.hpp"
 #include "palpate/servo/servo.hpp"
+#include "session/recording.hpp"
 
 namespace palpate::app {
 
@@ -45,7 +45,7 @@ class Replay {
   void show(std::size_t hand, const EachStep& each) const;
 
  private:
-  Recording recording_;
+  session::Recording recording_;
 };
 
 }  // namespace palpate::app

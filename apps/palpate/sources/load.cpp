@@ -216,21 +216,4 @@ DepthFrame first_frame(DepthCamera& camera, std::size_t* failures) {
   throw Error(fmt::format("{} delivered no frame: {}", info.name, problem));
 }
 
-PointCloud cloud_of(const DepthFrame& frame) {
-  const Pinhole& p = frame.camera.pinhole;
-  PointCloud cloud;
-  cloud.viewpoint = Eigen::Vector3d::Zero();
-  cloud.width = static_cast<std::size_t>(frame.camera.width);
-  cloud.height = static_cast<std::size_t>(frame.camera.height);
-  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
-    const double z = static_cast<double>(frame.depth[i]);
-    if (z <= 0) continue;
-    const double x = (static_cast<double>(i % cloud.width) - p.cx) * z / p.fx;
-    const double y = (static_cast<double>(i / cloud.width) - p.cy) * z / p.fy;
-    cloud.positions.push_back(Eigen::Vector3d(x, y, z).cast<float>());
-    cloud.pixels.push_back(static_cast<std::uint32_t>(i));
-  }
-  return cloud;
-}
-
 }  // namespace palpate::app

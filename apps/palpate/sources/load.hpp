@@ -52,8 +52,4 @@ void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options);
 /// Did a read give no frame because something is broken?
 [[nodiscard]] bool is_failure(DepthCamera::Status status);
 
-/// The points of a frame's pixels in the camera's frame, as a driver would hand them to the paper's
-/// program. The lens is taken to be without distortion.
-[[nodiscard]] PointCloud cloud_of(const DepthFrame& frame);
-
 }  // namespace palpate::app

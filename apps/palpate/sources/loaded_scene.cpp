@@ -16,6 +16,7 @@
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/spacing.hpp"
 #include "scene/bounds.hpp"
+#include "session/frames.hpp"
 
 namespace palpate::app {
 
@@ -279,9 +280,7 @@ void begin_run(LoadedScene& loaded, const SourceOptions::SoftMaterial& soft) {
     options.soft = soft;
     Source& source = scene.add(from.plan.argument.name, options);
     if (from.camera || (from.on_demand && show_again(*from.on_demand, source))) continue;
-    auto snapshot = std::make_unique<Snapshot>();
-    snapshot->layers.push_back({loaded.scene.source(i).points(), 1, 1});
-    source.publish(std::move(snapshot));
+    session::publish_surface(loaded.scene.source(i), source);
   }
   loaded.scene = std::move(scene);
 }
@@ -294,7 +293,7 @@ void push_frame(const LoadedSource& from, Source& to, const DepthFrame& frame,
     return;
   }
   if (frame.T_world_sensor) to.set_pose(*frame.T_world_sensor);
-  to.push(frame.cloud ? *frame.cloud : cloud_of(frame), frame.stamp, start);
+  to.push(frame.cloud ? *frame.cloud : session::cloud_of(frame), frame.stamp, start);
 }
 
 }  // namespace palpate::app

@@ -24,6 +24,7 @@
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/viewer/viewer.hpp"
+#include "session/frames.hpp"
 #include "session/view_settings.hpp"
 
 namespace palpate::app {
@@ -66,7 +67,8 @@ std::vector<ViewerOptions::Stream> streams_of(const Run& run, const LiveFeed& fe
       if (run.loaded.scene.source(i).name() != state.source) continue;
       const LoadedSource& source = run.loaded.sources[i];
       const double depth = run.loaded.scene.source(i).state().depth;
-      if (source.camera && source.lens.width > 0) stream.frustum = frustum_of(source.lens, depth);
+      if (source.camera && source.lens.width > 0)
+        stream.frustum = session::frustum_of(source.lens, depth);
     }
     stream.state = std::move(state);
   }

@@ -7,20 +7,11 @@
 
 #include "apps/palpate/options/touch_plan.hpp"
 #include "apps/palpate/run/run.hpp"
-#include "palpate/depth/depth_frame.hpp"
 #include "palpate/ros/bridge.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::app {
-
-/// What a camera sees, as drawn: half as far again as what it looks at, in the median `depth` m
-/// away.
-[[nodiscard]] inline ViewerOptions::Stream::Frustum frustum_of(const CameraModel& camera,
-                                                               double depth) {
-  return {0.5 * camera.width / camera.pinhole.fx, 0.5 * camera.height / camera.pinhole.fy,
-          1.5 * depth};
-}
 
 /// The page on which a run in real time is seen and set, and on which its tools are taken.
 class View {

@@ -1,5 +1,5 @@
 // Options in recordings: exact numbers, and choices that are names.
-#include "apps/palpate/record/options_json.hpp"
+#include "session/options_json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "palpate/base/error.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 namespace {
 
 TEST(OptionsJson, OptionsComeBackAsTheyWere) {
@@ -66,4 +66,4 @@ TEST(OptionsJson, WhatARecordingDoesNotHaveKeepsItsDefault) {
 }
 
 }  // namespace
-}  // namespace palpate::app
+}  // namespace palpate::session

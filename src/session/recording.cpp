@@ -1,5 +1,5 @@
 // Reads the recording of a run.
-#include "apps/palpate/record/recording.hpp"
+#include "session/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,15 @@
 #include <memory>
 #include <utility>
 
-#include "apps/palpate/record/options_json.hpp"
-#include "apps/palpate/record/recorded_messages.hpp"
+#include "message/cdr.hpp"
 #include "message/depth_images.hpp"
+#include "message/schema.hpp"
 #include "palpate/base/error.hpp"
+#include "session/frames.hpp"
+#include "session/options_json.hpp"
+#include "session/recorded_messages.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 namespace {
 
@@ -69,7 +72,7 @@ Recording::Origin origin_of(const Json& json) {
 
 }  // namespace
 
-Recording::Recording(const std::string& path) : path_(path), reader_(path) {
+Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(file_) {
   try {
     const bag::Attachment text = attachment(kSetupName);
     const Json setup = Json::parse(text.data.begin(), text.data.end());
@@ -80,7 +83,7 @@ Recording::Recording(const std::string& path) : path_(path), reader_(path) {
     for (const Json& json : setup.at("sources")) sources_.push_back(origin_of(json));
     if (hands_.empty()) throw Error("no hand is in it");
   } catch (const std::exception& error) {
-    throw Error(fmt::format("{}: no recording of a run: {}", path, error.what()));
+    throw Error(fmt::format("{}: no recording of a run: {}", path(), error.what()));
   }
 }
 
@@ -112,7 +115,7 @@ Recording::Stretch Recording::stretch() const {
     stretch.begin = std::min(stretch.begin, first->tick.time);
     stretch.end = std::max(stretch.end, steps.at(end)->tick.time);
   }
-  if (!(stretch.begin <= stretch.end)) throw Error(path_ + ": there is no step in it");
+  if (!(stretch.begin <= stretch.end)) throw Error(path() + ": there is no step in it");
   return stretch;
 }
 
@@ -139,14 +142,8 @@ Source& Recording::add_source(std::size_t index, Scene& scene) const {
   return source;
 }
 
-void publish_surface(const Source& prepared, Source& source) {
-  auto snapshot = std::make_unique<Snapshot>();
-  snapshot->layers.push_back({prepared.points(), 1, 1});
-  source.publish(std::move(snapshot));
-}
-
 Recording::Steps::Steps(const Recording& recording, std::optional<std::size_t> hand)
-    : recording_(&recording), reader_(recording.path_, recording.reader_.contents()) {
+    : recording_(&recording), reader_(recording.file_, recording.reader_.contents()) {
   for (std::size_t i = 0; i < recording.hands_.size(); ++i) {
     if (hand && *hand != i) continue;
     topics_[recording.hands_[i].topic + "/tick"] = i;
@@ -193,7 +190,7 @@ const std::vector<std::string>& Recording::Steps::losses() const {
 
 Recording::Frames::Frames(const Recording& recording, std::size_t source)
     : recording_(&recording),
-      reader_(recording.path_, recording.reader_.contents()),
+      reader_(recording.file_, recording.reader_.contents()),
       topic_(recording.sources_.at(source).topic + "/") {
   seek(-kEver);
 }
@@ -230,4 +227,4 @@ std::optional<RecordedFrame> Recording::Frames::next() {
   return std::nullopt;
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::session

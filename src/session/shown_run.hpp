@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/record/recording.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "palpate/viewer/viewer.hpp"
+#include "session/recording.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 /// A recorded hand as a servo shows it that nobody steps. One thread; the servo's watchers may be
 /// on others.
@@ -80,7 +80,7 @@ class ShownSource {
 /// Hands and sources of a recorded run, in a scene of their own.
 struct ShownRun {
   /// @throws Error when the file is no recording of a run.
-  explicit ShownRun(const std::string& path);
+  explicit ShownRun(bag::RandomFile file);
 
   [[nodiscard]] double length() const { return stretch.end - stretch.begin; }
   /// When there was a surface first, s from the first step on; 0 where there was none.
@@ -93,4 +93,4 @@ struct ShownRun {
   std::deque<ShownHand> hands;
 };
 
-}  // namespace palpate::app
+}  // namespace palpate::session

@@ -1,18 +1,17 @@
 // Shows hands and sources of a recorded run at any moment.
-#include "apps/palpate/replay/shown_run.hpp"
+#include "session/shown_run.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
-#include "apps/palpate/record/recorded_messages.hpp"
-#include "apps/palpate/sources/load.hpp"
-#include "apps/palpate/view/view.hpp"
 #include "message/transforms.hpp"
 #include "servo/step_trace.hpp"
+#include "session/frames.hpp"
+#include "session/recorded_messages.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 namespace {
 
@@ -150,7 +149,8 @@ double ShownRun::first_surface() const {
   return std::clamp(first->begins() + kRounding - stretch.begin, 0.0, length());
 }
 
-ShownRun::ShownRun(const std::string& path) : recording(path), stretch(recording.stretch()) {
+ShownRun::ShownRun(bag::RandomFile file)
+    : recording(std::move(file)), stretch(recording.stretch()) {
   for (std::size_t i = 0; i < recording.sources().size(); ++i) {
     sources.emplace_back(recording, i, scene);
   }
@@ -159,4 +159,4 @@ ShownRun::ShownRun(const std::string& path) : recording(path), stretch(recording
   }
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::session

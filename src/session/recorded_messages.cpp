@@ -1,11 +1,11 @@
 // Converts steps, frames and clouds to messages of a recording and back.
-#include "apps/palpate/record/recorded_messages.hpp"
+#include "session/recorded_messages.hpp"
 
 #include <cstddef>
 
 #include "message/transforms.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 namespace {
 
@@ -139,4 +139,4 @@ DepthFrame without_colors(const DepthFrame& frame) {
   return kept;
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::session

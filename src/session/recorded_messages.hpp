@@ -1,6 +1,9 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "message/palpate_types.hpp"
@@ -9,7 +12,21 @@
 #include "palpate/servo/servo.hpp"
 #include "servo/step_trace.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
+
+/// Names that a recording's parts go by.
+inline constexpr const char* kSetupName = "setup.json";
+inline constexpr const char* kSetupKind = "palpate recording 3";
+[[nodiscard]] inline std::string surface_name(std::size_t source) {
+  return fmt::format("surface-{}.cdr", source);
+}
+
+/// A frame of a source, and what became of it.
+struct RecordedFrame {
+  std::size_t source = 0;
+  DepthFrame frame;  ///< of kinds "image" and "cloud"
+  message::FrameUse use;
+};
 
 /// A step of a run of `sources` as a recording holds it.
 [[nodiscard]] message::Tick tick_of(const StepTrace& step, std::size_t sources);
@@ -28,4 +45,4 @@ namespace palpate::app {
 [[nodiscard]] message::Cloud recorded(const PointCloud& cloud);
 [[nodiscard]] PointCloud cloud_of(const message::Cloud& message);
 
-}  // namespace palpate::app
+}  // namespace palpate::session

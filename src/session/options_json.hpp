@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
 
-#include "apps/palpate/cli/output.hpp"
 #include "contact/description.hpp"
 #include "depth/description.hpp"
 #include "palpate/base/error.hpp"
@@ -26,7 +26,10 @@
 /// Options as JSON and back, bit for bit, by what describe() lists of them. members() names those
 /// of structs that are no options; a member that is new there does not compile before it is named
 /// here.
-namespace palpate::app {
+namespace palpate::session {
+
+/// Objects keep their keys in the order in which they are written.
+using Json = nlohmann::ordered_json;
 
 // `f` is handed the names and then the members, in one order.
 void members(auto f, Pinhole& o) {
@@ -179,4 +182,4 @@ void take_exact(const Json& json, T& value) {
   }
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::session

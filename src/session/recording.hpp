@@ -7,15 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "apps/palpate/cli/output.hpp"
-#include "apps/palpate/record/recording_file.hpp"
 #include "bag/mcap_reader.hpp"
 #include "message/palpate_types.hpp"
 #include "palpate/device/device.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
+#include "session/recorded_messages.hpp"
 
-namespace palpate::app {
+namespace palpate::session {
 
 /// The recording of a run, to be read (docs/bags.md): what the run was made of, and its steps and
 /// frames from any moment on. Times are s on the run's clock. Damaged data throw Error or
@@ -46,13 +45,17 @@ class Recording {
   class Frames;
 
   /// @throws Error when the file cannot be read, or is no recording of a run.
-  explicit Recording(const std::string& path);
+  explicit Recording(const std::string& path) : Recording(bag::RandomFile(path)) {}
+  explicit Recording(bag::RandomFile file);
 
-  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
   [[nodiscard]] const std::vector<Hand>& hands() const { return hands_; }
   [[nodiscard]] const std::vector<Origin>& sources() const { return sources_; }
   /// Was the run in the axes of a camera's picture, y down?
   [[nodiscard]] bool in_picture_axes() const { return in_picture_axes_; }
+
+  /// What of the file is lost, in words.
+  [[nodiscard]] const std::vector<std::string>& losses() const { return reader_.contents().losses; }
 
   /// When the first and the last step were. @throws Error when there is no step.
   struct Stretch {
@@ -68,7 +71,7 @@ class Recording {
   [[nodiscard]] std::uint64_t logged_at(double time) const;
   [[nodiscard]] bag::Attachment attachment(const std::string& name) const;
 
-  std::string path_;
+  bag::RandomFile file_;
   bag::McapReader reader_;
   std::int64_t epoch_ = 0;  // when the run's clock was 0, ns since 1970
   bool in_picture_axes_ = false;
@@ -130,7 +133,4 @@ class RecordedDevice final : public Device {
   DeviceInfo info_;
 };
 
-/// Makes what `prepared` shows the surface of `source`, for good.
-void publish_surface(const Source& prepared, Source& source);
-
-}  // namespace palpate::app
+}  // namespace palpate::session
