@@ -2,13 +2,15 @@
 #include <emscripten.h>
 
 #include <cstddef>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "palpate/base/clock.hpp"
-#include "tab/tab_program.hpp"
+#include "tab/tab_run.hpp"
 
 // clang-format off
 EM_JS(void, tab_say, (const char* bytes, int size, int text), {
@@ -22,7 +24,7 @@ namespace {
 
 using namespace palpate::tab;
 
-std::unique_ptr<TabProgram> program;
+std::unique_ptr<TabRun> program;
 std::string words;                     // of what went wrong last
 const palpate::SteadyClock stopwatch;  // of computing times
 
@@ -48,14 +50,14 @@ const char* ended_by(const std::function<void()>& act) {
 
 extern "C" {
 
-// The file of that name and bytes; null: a synthetic cloud. null: it is touched; else what is
-// wrong.
+// The file of that name; null: a synthetic cloud. Takes over the bytes, which malloc() got. null:
+// it is touched; else what is wrong.
 EMSCRIPTEN_KEEPALIVE const char* tab_open(const char* name, const std::byte* bytes, int size,
                                           const char* news) {
   try {
-    Touched touched =
-        bytes != nullptr ? of_file({bytes, static_cast<std::size_t>(size)}, name) : synthetic(name);
-    program = std::make_unique<TabProgram>(std::move(touched), worker(), stopwatch, news);
+    const auto forget = [](const std::byte* given) { std::free(const_cast<std::byte*>(given)); };
+    FileBytes file{{bytes, forget}, static_cast<std::size_t>(size)};
+    program = open_run(name, std::move(file), worker(), stopwatch, news);
     return nullptr;
   } catch (const std::exception& error) {
     words = words_of(error, name);

@@ -3,70 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
-#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
+#include "tab/heard_page.hpp"
 #include "tab/tab_hand.hpp"
-#include "viewer/bytes.hpp"
 
 namespace palpate::tab {
 namespace {
 
-using nlohmann::json;
-using test::f32;
+struct Page : HeardPage {
+  explicit Page(Touched touched = synthetic("synthetic:torus"), const std::string& news = {})
+      : HeardPage([&](Outside outside, const Clock& clock) {
+          return std::make_unique<TabProgram>(std::move(touched), std::move(outside), clock, news);
+        }) {}
 
-constexpr const char* kHello = R"({"type":"hello","token":"tab","points":2000})";
-
-// Computing takes no time, on every machine.
-struct Stopped final : Clock {
-  [[nodiscard]] double now() const noexcept override { return 0; }
-};
-
-// A program and the page that it speaks to. Its clock is what a test says.
-struct Page {
-  explicit Page(Touched touched = synthetic("synthetic:torus"), std::string news = {})
-      : program(std::move(touched),
-                {[this](std::string_view bytes, bool text) { take(std::string(bytes), text); },
-                 [this](int code, const std::string&) { closed = code; },
-                 [this](const std::string& name) { opened = name; }},
-                stopwatch, std::move(news)) {
-    program.run(now);
-    connect();
-  }
-  void connect() {
-    program.connect(now);
-    say(json::parse(kHello));
-  }
-  void say(const json& message) { program.receive(message.dump(), now); }
-  // A wake every 4 ms, as a browser does it.
-  int run(double seconds) {
-    int steps = 0;
-    for (const double end = now + seconds; now < end - 1e-9;) steps += program.run(now += 4e-3);
-    return steps;
-  }
-  void take(std::string bytes, bool text) {
-    if (text) {
-      said.push_back(json::parse(bytes));
-    } else if (test::u8(bytes, 0) == 1) {
-      state = std::move(bytes);
-    } else if (test::u8(bytes, 0) == 2) {
-      ++clouds;
-    }
-  }
-  [[nodiscard]] json last(const std::string& type) const {
-    const auto found = std::find_if(said.rbegin(), said.rend(),
-                                    [&](const json& message) { return message["type"] == type; });
-    return found == said.rend() ? json() : *found;
-  }
-  [[nodiscard]] Eigen::Vector3d vector(std::size_t offset) const {
-    return {f32(state, offset), f32(state, offset + 4), f32(state, offset + 8)};
-  }
-  [[nodiscard]] Eigen::Vector3d force() const { return vector(52); }
   [[nodiscard]] double value(const std::string& key) const {
     return last("settings")["values"][key];
   }
@@ -81,15 +34,6 @@ struct Page {
     }
     for (int i = 0; i < 20; ++i) run(0.05);  // its force rises in 0.3 s
   }
-
-  double now = 100;
-  std::vector<json> said;
-  std::string state;
-  int clouds = 0;
-  int closed = 0;
-  std::string opened;
-  Stopped stopwatch;
-  TabProgram program;  // last: it speaks to all of the above
 };
 
 TEST(TabProgram, WelcomesAPageAndShowsItsCloud) {
@@ -100,7 +44,7 @@ TEST(TabProgram, WelcomesAPageAndShowsItsCloud) {
   EXPECT_EQ(welcome["devices"][0]["takeable"], true);
   EXPECT_GT(welcome["opens"], 1e8);
   EXPECT_EQ(page.clouds, 1);
-  ASSERT_FALSE(page.state.empty());
+  ASSERT_FALSE(page.states.empty());
   EXPECT_EQ(page.force(), Eigen::Vector3d::Zero());
 }
 
@@ -114,7 +58,7 @@ TEST(TabProgram, AHandThatPressesOnATorusFeelsTheForceOfTwoSprings) {
   const double expected = 6e-3 * 300 * 500 / (300 + 500);
   EXPECT_NEAR(page.force().z(), expected, 0.06 + 0.05 * expected);
   EXPECT_LT(page.force().head<2>().norm(), 0.1);
-  EXPECT_EQ(test::u32(page.state, 4) & 5U, 5U) << "touching, and taken";
+  EXPECT_EQ(test::u32(page.state(), 4) & 5U, 5U) << "touching, and taken";
   page.say({{"type", "release"}, {"device", 0}});
   page.run(3);
   EXPECT_LT(page.force().norm(), 0.06) << "nobody pulls it";
@@ -132,7 +76,7 @@ TEST(TabProgram, TheSameCallsGiveTheSameForces) {
 TEST(TabProgram, StepsAThousandTimesASecondAndLeavesOutWhatIsTooLate) {
   Page page;
   EXPECT_NEAR(page.run(1), 1000, 1);
-  EXPECT_NEAR(page.program.run(page.now += 10), 1000 * kMostLate, 1);
+  EXPECT_NEAR(page.tab->run(page.now += 10), 1000 * kMostLate, 1);
   EXPECT_NEAR(page.run(1), 1000, 1);
 }
 
@@ -170,7 +114,7 @@ TEST(TabProgram, APageMaySayAnyNumberOfThingsInASecond) {
   }
   page.run(0.1);
   EXPECT_EQ(page.closed, 0);
-  EXPECT_EQ(test::u32(page.state, 4) & 4U, 4U) << "taken";
+  EXPECT_EQ(test::u32(page.state(), 4) & 4U, 4U) << "taken";
 }
 
 TEST(TabProgram, OfASliderThatMovesTheLastValueIsPrepared) {

@@ -1,5 +1,6 @@
 // The module of a tab, as its worker uses it: PALPATE_TAB=.../tab.js node --test module_test.mjs
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { test } from "node:test";
 
@@ -10,6 +11,7 @@ class Program {
   texts = [];
   states = 0;
   force = [0, 0, 0];
+  time = 0; // s, of the newest state
   now = 10; // s
 
   static async make() {
@@ -46,7 +48,10 @@ class Program {
   connect() {
     this.goesOn(this.core._tab_connect(this.now));
     this.say({ type: "hello", token: "tab", points: 1000 });
-    return this.texts.find(({ type }) => type === "welcome");
+    return this.last("welcome");
+  }
+  last(kind) {
+    return this.texts.findLast(({ type }) => type === kind);
   }
   run(seconds) {
     for (const end = this.now + seconds; this.now < end - 1e-9;) this.goesOn(this.core._tab_run((this.now += 0.004)));
@@ -56,6 +61,7 @@ class Program {
     const view = new DataView(bytes.slice().buffer);
     if (view.getUint8(0) !== 1) return;
     this.states += 1;
+    this.time = view.getFloat64(8, true);
     this.force = [52, 56, 60].map((at) => view.getFloat32(at, true));
   }
 }
@@ -94,6 +100,10 @@ const kHostile = {
   "zip.ply.gz": "\u001f\u008b\u0008\u0000",
   "survey.las": "LASF" + "\u007f".repeat(400),
   "house.e57": "ASTM-E57" + "\u007f".repeat(400),
+  "empty.mcap": "",
+  "words.mcap": "this is no recording\n",
+  "magic.mcap": "\u0089MCAP0\r\n",
+  "chunk.mcap": "\u0089MCAP0\r\n\u0006\u00ff\u00ff\u00ff\u00ff\u007f\0\0\0",
   "what.glb": "glTF\u0002\0\0\0\u007f\u007f\u007f\u007f\u007f\u007f\u007f\u007fJSON",
 };
 
@@ -111,6 +121,37 @@ test("files that are no clouds are refused in words, and the program lives on", 
   assert.equal(program.connect().scene, "sphere");
   program.run(0.1);
   assert.ok(program.states > 0);
+});
+
+// A hand that dips 2 mm into a floor for 1.5 s, in steps of 10 ms, as the program felt it: 1 N at most, at 0.75 s. Made by
+// palpate touch floor.xyz --trajectory dip.csv --simulated-time --record dip.mcap, z of the hand 1 - 3 sin(pi t / 1.5) mm.
+const dip = await readFile(new URL("dip.mcap", import.meta.url));
+
+test("a recording is replayed with its forces", async () => {
+  const program = await Program.make();
+  assert.equal(program.open("dip.mcap", dip), "");
+  program.core._tab_run(program.now);
+  const { scene, timeline } = program.connect();
+  assert.equal(scene, "dip.mcap");
+  assert.ok(Math.abs(timeline.length - 1.5) < 1e-9);
+  program.say({ type: "seek", time: 0.75 });
+  program.run(0.1);
+  assert.deepEqual(program.force, [0, 0, 1]);
+  assert.equal(Math.max(...program.last("envelope").forces), 1);
+  program.say({ type: "play", on: true, speed: 2 });
+  program.run(0.5);
+  assert.deepEqual(program.force, [0, 0, 0]);
+  assert.deepEqual(program.last("time"), { type: "time", time: timeline.length, playing: false, speed: 2 });
+});
+
+test("a cut recording shows what is there and says so; one without its head is refused", async () => {
+  const program = await Program.make();
+  assert.match(program.open("head.mcap", dip.subarray(0, 3000)), /head\.mcap/);
+  assert.equal(program.open("cut.mcap", dip.subarray(0, dip.length / 2)), "");
+  program.core._tab_run(program.now);
+  assert.ok(program.connect().timeline.length > 0);
+  program.run(0.1);
+  assert.match(program.last("notice").text, /cut\.mcap/);
 });
 
 test("what does not fit into a tab's memory is refused in words, and another program begins afresh", async () => {

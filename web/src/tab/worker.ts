@@ -83,7 +83,7 @@ async function open({ name, at, bytes, news = "" }: Wanted): Promise<void> {
   const texts = [textIn(next, name), textIn(next, news)] as const;
   const wrong = next._tab_open(texts[0], place, file?.byteLength ?? 0, texts[1]);
   if (wrong !== 0) throw new Error(next.UTF8ToString(wrong));
-  for (const each of [place, ...texts]) next._free(each);
+  for (const each of texts) next._free(each); // the bytes are its own
   core = next;
 }
 

@@ -1,0 +1,131 @@
+// Replays a recording, and speaks the page's protocol.
+#include "tab/tab_replay.hpp"
+
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "session/played_run.hpp"
+#include "session/view_settings.hpp"
+#include "tab/tab_page.hpp"
+
+namespace palpate::tab {
+namespace {
+
+using session::Setting;
+
+constexpr double kNews = 0.5;  // s between two envelopes while the file is read; judgement
+
+// Steps that one run() reads for the envelope: 0.4 ms in WebAssembly, of the four after which a
+// browser calls it again (judgement).
+constexpr std::size_t kAhead = 200;
+
+}  // namespace
+
+struct TabReplay::Parts {
+  Parts(bag::RandomFile file, Outside outside, const Clock& clock, std::string news)
+      : name(std::filesystem::path(file.path()).filename()),
+        stopwatch(clock),
+        played(std::move(file)),
+        page(played.scene(), played.servos(), viewer_options(), controls(), std::move(outside),
+             stopwatch, first_news(std::move(news))) {}
+
+  [[nodiscard]] std::string first_news(std::string news) const {
+    const std::vector<std::string>& losses = played.recording().losses();
+    return news.empty() && !losses.empty() ? name + ": " + losses.front() : news;
+  }
+
+  [[nodiscard]] ViewerOptions viewer_options() {
+    ViewerOptions options;
+    options.scene = name;
+    options.streams = [this] { return played.streams(); };
+    if (!played.recording().in_picture_axes()) return options;
+    options.eye = played.scene().source(0).pose().translation();
+    options.up = -Eigen::Vector3d::UnitY();
+    return options;
+  }
+
+  [[nodiscard]] ViewerControls controls() {
+    ViewerControls controls;
+    controls.time_line = played.time_line();
+    controls.settings = [this] { return std::vector{scene_setting(name)}; };
+    controls.set = [this](const std::string&, const Setting::Value& value) {
+      page.outside().open(name_of_scene(value));
+    };
+    return controls;
+  }
+
+  void complain(const std::exception& error) { page.warn(words_of(error, name)); }
+
+  // Damaged data end what reads them alone.
+  void guard(bool& goes_on, const std::function<void()>& work) {
+    if (!goes_on) return;
+    try {
+      work();
+    } catch (const std::exception& error) {
+      goes_on = false;
+      complain(error);
+    }
+  }
+
+  void show(double elapsed) {
+    if (played.show(elapsed, [] { return false; })) page.sessions().send_time_line();
+  }
+
+  // Frames that take long to prepare come seldom.
+  void show_frames(double now) {
+    if (!played.has_cameras() || now < next_frame || played.moment().time == frame) return;
+    const double begin = stopwatch.now();
+    frame = played.show_frames([this](const std::exception& error) { complain(error); });
+    next_frame = now + viewer::SceneEncoder::pause_after(stopwatch.now() - begin);
+  }
+
+  void read_ahead(double now) {
+    reading = played.read_forces(kAhead);
+    if (reading && now - told < kNews) return;
+    told = now;
+    page.sessions().send_time_line();
+  }
+
+  std::string name;
+  const Clock& stopwatch;
+  session::PlayedRun played;
+  TabPage page;
+  std::optional<double> last = {};   // when run() was called
+  std::optional<double> frame = {};  // the moment whose frames are shown
+  double next_frame = -1e300;
+  double told = -1e300;  // when the envelope was
+  bool showing = true;
+  bool reading = true;
+};
+
+TabReplay::TabReplay(bag::RandomFile file, Outside outside, const Clock& stopwatch,
+                     std::string news)
+    : parts_(std::make_unique<Parts>(std::move(file), std::move(outside), stopwatch,
+                                     std::move(news))) {}
+
+TabReplay::~TabReplay() = default;
+
+void TabReplay::connect(double now) {
+  parts_->page.connect(now);
+}
+
+void TabReplay::receive(std::string_view text, double now) {
+  parts_->page.receive(text, now);
+}
+
+int TabReplay::run(double now) {
+  Parts& parts = *parts_;
+  const double elapsed = now - parts.last.value_or(now);
+  parts.last = now;
+  parts.guard(parts.showing, [&] { parts.show(elapsed); });
+  parts.show_frames(now);
+  parts.guard(parts.reading, [&] { parts.read_ahead(now); });
+  parts.page.tell(now);
+  return 0;
+}
+
+}  // namespace palpate::tab
