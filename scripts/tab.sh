@@ -40,4 +40,4 @@ if [ "${1:-}" = --serve ]; then exec python3 -m http.server 8430 --bind 127.0.0.
 if [ "${1:-}" = --site ]; then exit; fi
 build web
 test_preset web
-PALPATE_SITE=$PWD/build/web/site tests/page/check.sh tab web build/web/pictures build/web/site || [ $? -eq 77 ]
+PALPATE_SITE=$PWD/build/web/site tests/page/check.sh tab web "$PWD/build/web/pictures" build/web/site || [ $? -eq 77 ]

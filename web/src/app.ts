@@ -216,7 +216,7 @@ export class App {
     if (again) this.tour.putBack();
     else this.tour.forget();
     if (first) this.calmUntil = performance.now() + kCalm;
-    if (first && this.session.recorded) this.panels.show(true);
+    if (!again && this.session.recorded) this.panels.show(true);
     if (again || !this.linked) return; // a new connection finds the program as it is
     const set = (key: string, value: SettingValue) => this.connection.send({ type: "set", key, value });
     if (this.link.view !== undefined) this.world.ask(this.link.view);

@@ -1,10 +1,12 @@
 // The page of a tab in a browser: PALPATE_SITE=.../build/web/site npm run tab
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 import { ball } from "./ball.mjs";
 import { connected, openBrowser, openPage, until } from "./browser.mjs";
-import { heard, listen } from "./heard.mjs";
+import { felt, heard, listen } from "./heard.mjs";
+import { picture } from "./picture.mjs";
 import { kHome, serveSite, touch } from "./site.mjs";
 
 const kView = { viewport: { width: 900, height: 600 }, reducedMotion: "reduce" };
@@ -82,6 +84,77 @@ test("a link to elsewhere, or to nothing that can be read, says so and begins wi
   await withTab("?cloud=synthetic:unicorn", (page) => warned(page, "torus"));
   await withTab("?at=clouds/cut.xyz", (page) => warned(page, "cut.xyz"), { "clouds/cut.xyz": "1 2 3\n4 5\n" });
 });
+
+// A hand that dips 2 mm into a floor for 1.5 s, as palpate recorded it: 1 N at most, at 0.75 s.
+const dip = await readFile(new URL("../../../tests/tab/module/dip.mcap", import.meta.url));
+
+/** Lets go of a file over the page. */
+function drop(page, name, bytes) {
+  return page.evaluate(([called, data]) => {
+    const files = new DataTransfer();
+    files.items.add(new File([Uint8Array.from(window.atob(data), (sign) => sign.charCodeAt(0))], called));
+    document.dispatchEvent(new window.DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));
+  }, [name, bytes.toString("base64")]);
+}
+
+const seek = (page, time) => page.locator("#time").evaluate((slider, value) => {
+  slider.value = String(value);
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+}, time);
+const feels = (page, force) => until(`${force} N`, async () => Math.abs((await felt(page)).force - force) < 1e-3);
+
+test("a dropped recording is replayed with its forces and time line; one that is none is refused in words", () =>
+  withTab("?cloud=synthetic:torus", async (page, { asked }) => {
+    const loaded = asked.length;
+    for (const [name, bytes, words] of [["empty.mcap", dip.subarray(0, 0), "empty.mcap: is no MCAP file"],
+      ["head.mcap", dip.subarray(0, 3000), "head.mcap: no recording of a run"]]) {
+      await drop(page, name, bytes);
+      await warned(page, words);
+    }
+    assert.equal(await scene(page), "torus");
+    await touch(page);
+    await drop(page, "dip.mcap", dip);
+    await shows(page, "dip.mcap");
+    await connected(page);
+    await until("the time line", () => page.locator("#time-line").isVisible());
+    await until("a cloud", async () => (await heard(page)).points === 400);
+    for (const [time, force] of [[0.75, 1], [0.3, 0.3815], [0.6, 0.9265], [0, 0]]) {
+      await seek(page, time);
+      await feels(page, force);
+    }
+    await seek(page, 0.75);
+    await until("forces are drawn", () => page.evaluate(() => {
+      const canvas = document.getElementById("time-forces");
+      const { data } = canvas.getContext("2d").getImageData(0, 4, canvas.width, canvas.height - 8);
+      return data.some((value) => value > 0);
+    }));
+    await picture(page, "tab-replay");
+    assert.ok(await page.locator("#take").isHidden() && (await page.locator("#record").isHidden()));
+    await page.selectOption("#time-speed", "2");
+    await page.click("#play");
+    await feels(page, 0);
+    await until("it stops at the end", async () => (await page.locator("#time-words").innerText()) === "0:01.50 / 0:01.50");
+    await until("a button to play again", async () => (await page.getAttribute("#play", "aria-label")) === "Play");
+    await drop(page, "ball.xyz", Buffer.from(ball(0.05)));
+    await shows(page, "ball");
+    await connected(page);
+    assert.ok(await page.locator("#time-line").isHidden(), "a cloud has none");
+    await touch(page);
+    assert.equal(asked.length, loaded);
+  }));
+
+test("a link names a recording", () =>
+  withTab("?at=runs/dip.mcap", async (page) => {
+    await shows(page, "dip.mcap");
+    await seek(page, 0.75);
+    await feels(page, 1);
+    await page.locator("#panels").click(); // the simple page
+    assert.ok(await page.locator("#time-line").isVisible());
+    await page.locator("#examples").getByText("torus").click();
+    await shows(page, "torus");
+    await connected(page);
+    await touch(page);
+  }, { "runs/dip.mcap": dip }));
 
 test("a worker that dies says why, and starts again", () =>
   withTab("", async (page) => {
