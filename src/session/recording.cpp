@@ -82,6 +82,7 @@ Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(fil
     for (const Json& json : setup.at("hands")) hands_.push_back(hand_of(json));
     for (const Json& json : setup.at("sources")) sources_.push_back(origin_of(json));
     if (hands_.empty()) throw Error("no hand is in it");
+    in_picture_axes_ = in_picture_axes_ && !sources_.empty();
   } catch (const std::exception& error) {
     throw Error(fmt::format("{}: no recording of a run: {}", path(), error.what()));
   }
@@ -115,7 +116,8 @@ Recording::Stretch Recording::stretch() const {
     stretch.begin = std::min(stretch.begin, first->tick.time);
     stretch.end = std::max(stretch.end, steps.at(end)->tick.time);
   }
-  if (!(stretch.begin <= stretch.end)) throw Error(path() + ": there is no step in it");
+  const bool is_one = stretch.begin <= stretch.end && std::isfinite(stretch.end - stretch.begin);
+  if (!is_one) throw Error(path() + ": there is no step in it");
   return stretch;
 }
 
@@ -168,6 +170,7 @@ std::optional<Recording::Step> Recording::Steps::next(double until) {
     } else {
       upcoming_ = {hand, {}, std::exchange(changes_[hand], {})};
       message::decode(message.data, upcoming_->tick);
+      if (!std::isfinite(upcoming_->tick.time)) throw Error("a step is damaged: it has no time");
     }
   }
   if (!upcoming_ || upcoming_->tick.time > until) return std::nullopt;
