@@ -29,7 +29,7 @@ TEST(OneView, GivenNormalsThatFaceTheViewpointProveIt) {
   stand.translate(Vector3d(1, 2, 3));
   const auto found = OneView{}.eye_of(cloud, {}, stand);
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->place, Vector3d(1, 2, 3.5));
+  EXPECT_EQ(found->position, Vector3d(1, 2, 3.5));
 }
 
 TEST(OneView, AClosedBodyBesideItsViewpointHasNoEye) {
@@ -44,7 +44,7 @@ TEST(OneView, LoosePointsWithoutNormalsProveNothing) {
   const auto asked =
       OneView{}.eye_of(cloud, {.viewpoint = Vector3d(0, 0, 2)}, Eigen::Isometry3d::Identity());
   ASSERT_TRUE(asked);
-  EXPECT_EQ(asked->place, Vector3d(0, 0, 2));
+  EXPECT_EQ(asked->position, Vector3d(0, 0, 2));
 }
 
 }  // namespace
