@@ -87,7 +87,7 @@ struct TabReplay::Parts {
     reading = played.read_forces(kAhead);
     if (reading && now - told < kNews) return;
     told = now;
-    page.sessions().send_time_line();
+    page.sessions().send_envelope();
   }
 
   std::string name;

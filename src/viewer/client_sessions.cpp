@@ -263,6 +263,11 @@ void ClientSessions::send_time_line() {
   for (const auto& [topic, message] : time_line_messages(options_)) send_to_all(topic, message);
 }
 
+void ClientSessions::send_envelope() {
+  const auto& line = options_.controls.time_line;
+  if (line) send_to_all({Topic::Kind::envelope}, text_message(envelope_text(line->envelope())));
+}
+
 void ClientSessions::send_to_all(Topic topic, const Message& message) {
   for (Session* session : greeted()) session->send(topic, message);
 }

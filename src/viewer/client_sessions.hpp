@@ -221,8 +221,10 @@ class ClientSessions {
   void end_record();
   /// Sends the time line's present moment if it has changed.
   void send_moment();
-  /// Sends the envelope and the past of the time line.
+  /// Sends the envelope and the past of the time line, which takes the place of what pages knew.
   void send_time_line();
+  /// Sends the envelope alone.
+  void send_envelope();
 
   [[nodiscard]] const ClientSessionsOptions& options() const { return options_; }
   /// Is the device's tool held by a page?

@@ -54,6 +54,7 @@ struct HeardPage {
       ++clouds;
     } else if (test::u8(bytes, 0) == 4) {
       past = std::move(bytes);
+      ++pasts;
     }
   }
   [[nodiscard]] json last(const std::string& type) const {
@@ -70,6 +71,7 @@ struct HeardPage {
   std::vector<json> said;
   std::vector<std::string> states;  // of all hands
   std::string past;
+  int pasts = 0;
   int clouds = 0;
   int closed = 0;
   std::string opened;

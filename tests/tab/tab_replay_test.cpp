@@ -65,6 +65,18 @@ TEST_F(TabReplayTest, ASeekShowsItsStepAndWhatWasFeltBefore) {
   }
 }
 
+// It would take the place of what the page heard since.
+TEST_F(TabReplayTest, WhileForcesAreReadThePastIsNotToldAgain) {
+  ReplayPage page(file);
+  page.play(true);
+  page.run(1);
+  EXPECT_EQ(page.pasts, 1) << "that of the welcome";
+  EXPECT_GT(page.last("envelope")["forces"][200], 0) << "all of it is read";
+  page.seek(0.5);
+  page.run(0.5);
+  EXPECT_EQ(page.pasts, 2);
+}
+
 TEST_F(TabReplayTest, TheSameCallsGiveTheSameStates) {
   const auto states = [] {
     ReplayPage page(file);
