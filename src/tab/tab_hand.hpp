@@ -41,8 +41,11 @@ struct TabHand {
     remote.move(target, heard);
   }
 
-  void step(double lateness) {
+  // `before`: is called with the time of each step, s.
+  template <class Before>
+  void step(double lateness, const Before& before) {
     const DeviceState read = device.read();
+    before(read.time);
     servo.step(read, read.time);
     device.write(servo.device_force());
     servo.show({.lateness = lateness, .computing = computing});
@@ -50,14 +53,15 @@ struct TabHand {
   }
 
   // Clocks of browsers are too coarse for one step: the mean of all of a call counts.
-  int step_up_to(double now) {
+  template <class Before>
+  int step_up_to(double now, const Before& before) {
     const double rate = device.info().rate;
     if (!start) start = now;
     const auto behind = [&] { return now - *start - static_cast<double>(steps) / rate; };
     if (behind() > kMostLate) *start += behind() - kMostLate;
     const double begin = clock.now();
     int count = 0;
-    for (; behind() >= 0; ++count) step(behind());
+    for (; behind() >= 0; ++count) step(behind(), before);
     if (count > 0) computing = (clock.now() - begin) / count;
     return count;
   }

@@ -13,7 +13,16 @@ namespace {
 
 using session::Setting;
 
-constexpr std::array<const char*, 3> kExamples = {"rabbit", "torus", "room"};
+struct Example {
+  const char* name;
+  const char* opened;
+};
+
+// One scan, one formula, one camera and one room: each is prepared within a second.
+constexpr std::array<Example, 4> kExamples = {{{"rabbit", "synthetic:rabbit"},
+                                               {"torus", "synthetic:torus"},
+                                               {"desk", "camera:simulated:desk"},
+                                               {"room", "synthetic:room"}}};
 
 // A quarter of the memory that a tab may have, 2 GB: a file's bytes, its cloud and what is made of
 // it are there at once.
@@ -38,7 +47,7 @@ ViewerControls completed(ViewerControls controls) {
 
 Setting scene_setting(const std::string& present) {
   Setting setting{.key = "scene", .label = "Scene", .kind = Setting::Kind::choice};
-  setting.choices.assign(kExamples.begin(), kExamples.end());
+  for (const Example& each : kExamples) setting.choices.emplace_back(each.name);
   if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
   setting.value = present;
   setting.restarts = true;
@@ -46,7 +55,10 @@ Setting scene_setting(const std::string& present) {
 }
 
 std::string name_of_scene(const Setting::Value& value) {
-  return "synthetic:" + std::get<std::string>(value);
+  const auto& name = std::get<std::string>(value);
+  const auto example =
+      std::ranges::find_if(kExamples, [&](const Example& each) { return each.name == name; });
+  return example == kExamples.end() ? name : example->opened;
 }
 
 TabPage::TabPage(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,

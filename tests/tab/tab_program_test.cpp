@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "sim/simulated_scene.hpp"
 #include "tab/heard_page.hpp"
 #include "tab/tab_hand.hpp"
 
@@ -15,7 +16,7 @@ namespace palpate::tab {
 namespace {
 
 struct Page : HeardPage {
-  explicit Page(Touched touched = synthetic("synthetic:torus"), const std::string& news = {})
+  explicit Page(Touched touched = simulated("synthetic:torus"), const std::string& news = {})
       : HeardPage([&](Outside outside, const Clock& clock) {
           return std::make_unique<TabProgram>(std::move(touched), std::move(outside), clock, news);
         }) {}
@@ -24,12 +25,12 @@ struct Page : HeardPage {
     return last("settings")["values"][key];
   }
 
-  // Lowers the hand onto the ring of the torus, `depth` under its top (world, m), and waits.
-  void press(double depth) {
-    const double top = 0.03;
+  // Lowers the hand onto the ring of the torus, or another place that looks up, `depth` under its
+  // top (world, m), and waits.
+  void press(double depth, const Eigen::Vector3d& top = {0.07, 0, 0.03}) {
     for (int i = 0; i <= 100; ++i) {
-      const double z = top + 0.01 - (0.01 + depth) * i / 100;
-      say({{"type", "hand"}, {"device", 0}, {"position", {0.07, 0, z}}, {"buttons", 0}});
+      const double z = top.z() + 0.01 - (0.01 + depth) * i / 100;
+      say({{"type", "hand"}, {"device", 0}, {"position", {top.x(), top.y(), z}}, {"buttons", 0}});
       run(12e-3);
     }
     for (int i = 0; i < 20; ++i) run(0.05);  // its force rises in 0.3 s
@@ -64,6 +65,35 @@ TEST(TabProgram, AHandThatPressesOnATorusFeelsTheForceOfTwoSprings) {
   EXPECT_LT(page.force().norm(), 0.06) << "nobody pulls it";
 }
 
+// The table of the simulated scene, by fifteen frames a second.
+TEST(TabProgram, AHandPressesOnWhatACameraSees) {
+  Page page(simulated("camera:simulated:still"));
+  const json welcome = page.last("welcome");
+  EXPECT_EQ(welcome["scene"], "still");
+  EXPECT_EQ(welcome["sources"][0]["camera"], true);
+  page.run(2);
+  EXPECT_GT(page.clouds, 10);
+  EXPECT_NEAR(page.last("sources")["sources"][0]["rate"], 15, 0.5);
+  EXPECT_EQ(page.last("notice"), json()) << "nothing is late";
+  const double scale = welcome["devices"][0].value("scale", 1.0);
+  page.press(6e-3 * scale, make_simulated_table().free_patch);
+  const double expected = 6e-3 * 300 * 500 / (300 + 500);
+  EXPECT_NEAR(page.force().z(), expected, 0.06 + 0.1 * expected);
+  page.say({{"type", "set"}, {"key", "policy"}, {"value", "replace"}});
+  page.run(1);
+  EXPECT_NEAR(page.force().z(), expected, 0.06 + 0.1 * expected) << "by other means";
+}
+
+TEST(TabProgram, ACameraGivesTheSameForcesAgain) {
+  Page one(simulated("camera:simulated:desk"));
+  Page other(simulated("camera:simulated:desk"));
+  const Eigen::Vector3d patch = make_simulated_table().free_patch;
+  one.press(4e-3, patch);
+  other.press(4e-3, patch);
+  EXPECT_GT(one.force().norm(), 0.1);
+  EXPECT_EQ(one.force(), other.force());
+}
+
 TEST(TabProgram, TheSameCallsGiveTheSameForces) {
   Page one;
   Page other;
@@ -93,6 +123,8 @@ TEST(TabProgram, SettingsAndPresetsActAndAreTold) {
   EXPECT_EQ(page.opened, "");
   page.say({{"type", "set"}, {"key", "scene"}, {"value", "room"}});
   EXPECT_EQ(page.opened, "synthetic:room");
+  page.say({{"type", "set"}, {"key", "scene"}, {"value", "desk"}});
+  EXPECT_EQ(page.opened, "camera:simulated:desk");
 }
 
 TEST(TabProgram, ACloudIsPreparedAnewAndStaysWhereThatFails) {
@@ -148,7 +180,7 @@ TEST(TabProgram, AHandOfAPageThatFallsSilentIsReleased) {
 }
 
 TEST(TabProgram, NewsAreToldOnce) {
-  Page page(synthetic("torus"), "bunny.ply is cut");
+  Page page(simulated("torus"), "bunny.ply is cut");
   page.run(0.1);
   EXPECT_EQ(page.last("notice")["text"], "bunny.ply is cut");
   page.said.clear();
@@ -171,7 +203,10 @@ TEST(TabProgram, FilesAreReadByTheirBytesOrRefusedInWords) {
   EXPECT_EQ(page.last("welcome")["sources"][0]["name"], "floor");
   EXPECT_THROW((void)of_file({}, "nothing.ply"), Error);
   EXPECT_THROW((void)of_file(bytes_of("1 2 3\n4 5\n"), "cut.xyz"), Error);
-  EXPECT_THROW((void)synthetic("synthetic:unicorn"), Error);
+  EXPECT_THROW((void)simulated("synthetic:unicorn"), Error);
+  EXPECT_THROW((void)simulated("camera:simulated:unicorn"), Error);
+  EXPECT_THROW((void)simulated("camera:simulated:desk,rate=-1"), Error);
+  EXPECT_THROW((void)simulated("camera:simulatedly"), Error);
 }
 
 }  // namespace

@@ -1,0 +1,106 @@
+// Makes a surface of a cloud or of a simulated camera's frames.
+#include "tab/tab_source.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "palpate/io/files.hpp"
+#include "palpate/io/synthetic.hpp"
+#include "sensor/stream_statistics.hpp"
+#include "session/frames.hpp"
+#include "sim/simulated_camera.hpp"
+
+namespace palpate::tab {
+namespace {
+
+constexpr std::string_view kSynthetic = "synthetic:";
+constexpr std::string_view kCamera = "camera:simulated";
+
+// A frame of 320 x 240 takes 25 ms of a tab's one thread (measured: desk, Node 20), so fifteen a
+// second leave two thirds of it to steps and pictures.
+constexpr std::string_view kFrames = "width=320,rate=15";
+
+// s; the first frame is there.
+constexpr double kFirstFrame = 0.05;
+
+// `rest`: ":SCENE,KEY=VALUE", of which each part may be missing.
+Touched camera_of(std::string_view rest) {
+  if (!rest.empty()) rest.remove_prefix(1);
+  const std::size_t comma = std::min(rest.find(','), rest.size());
+  const std::string_view scene = rest.substr(0, comma);
+  const std::string wanted = fmt::format("{},{}{}", scene, kFrames, rest.substr(comma));
+  return {.name = std::string(scene.empty() ? "table" : scene),
+          .camera = open_simulated(wanted, nullptr)};
+}
+
+}  // namespace
+
+Touched simulated(const std::string& name) {
+  const std::string_view given = name;
+  if (given.starts_with(kCamera)) {
+    const std::string_view rest = given.substr(kCamera.size());
+    if (rest.empty() || rest.front() == ':') return camera_of(rest);
+  }
+  std::string plain(given.starts_with(kSynthetic) ? given.substr(kSynthetic.size()) : given);
+  PointCloud cloud = synthetic_cloud(plain);
+  return {std::move(plain), std::move(cloud)};
+}
+
+Touched of_file(std::span<const std::byte> bytes, const std::string& name) {
+  return {std::filesystem::path(name).stem().string(), read_cloud_bytes(bytes, name).cloud};
+}
+
+TabSource::TabSource(Touched touched)
+    : touched_(std::move(touched)), source_(added()), first_(source_.options()) {
+  preparation_.policy = first_.policy.policy;
+  preparation_.history = first_.policy.history;
+  preparation_.voxel = first_.prepare.voxel;
+  initial_ = preparation_;
+  if (touched_.camera == nullptr) return;
+  const Stream::Sink push = sensor::sink_of(source_);
+  stream_.emplace(*touched_.camera, name(),
+                  [this, push](const DepthFrame& frame, const Source::StartTime& start) {
+                    lens_ = frame.camera;
+                    push(frame, start);
+                  });
+  stream_->advance(kFirstFrame);
+}
+
+Source& TabSource::added() {
+  if (touched_.camera == nullptr) return scene_.add(touched_.name, touched_.cloud);
+  return scene_.add(touched_.name);
+}
+
+session::ViewScope TabSource::scope(double scale, const std::vector<Servo*>& servos) const {
+  session::ViewScope scope = session::scope_of(scene_, scale, servos);
+  scope.lives = scope.depth = touched_.camera != nullptr;
+  scope.clouds = touched_.camera == nullptr;
+  scope.spacing = source_.report().spacing;
+  return scope;
+}
+
+void TabSource::prepare(const Preparation& wanted) {
+  if (wanted == preparation_) return;
+  source_.change(prepared_by(wanted, initial_, first_));
+  try {
+    if (touched_.camera == nullptr) source_.set(touched_.cloud);
+  } catch (...) {
+    source_.change(prepared_by(preparation_, initial_, first_));
+    throw;
+  }
+  preparation_ = wanted;
+}
+
+void TabSource::advance(double time) {
+  if (stream_) stream_->advance(time);
+}
+
+std::vector<ViewerOptions::Stream> TabSource::streams() const {
+  if (!stream_) return {};
+  return {{stream_->state(), session::frustum_of(lens_, source_.state().depth)}};
+}
+
+}  // namespace palpate::tab
