@@ -5,7 +5,6 @@
 #include <exception>
 #include <utility>
 
-#include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "viewer/messages.hpp"
@@ -29,10 +28,6 @@ double least_support_of(const FieldOptions& options) {
 constexpr double kPeriod = 0.1;         // s between pictures (judgement)
 constexpr double kSourcesPeriod = 0.5;  // s between reports of the sources (judgement)
 constexpr double kRest = 3;  // times the last picture's computing time, as a pause (judgement)
-
-double host_time() {
-  return SteadyClock().now();
-}
 
 }  // namespace
 
@@ -109,10 +104,10 @@ double SceneEncoder::pause_after(double took) noexcept {
   return std::max(kPeriod - took, kRest * took);
 }
 
-EncodedScene SceneEncoder::encode(const std::set<std::size_t>& budgets) {
+EncodedScene SceneEncoder::encode(const std::set<std::size_t>& budgets, double now) {
   EncodedScene encoded;
   try {
-    encode(budgets, encoded);
+    encode(budgets, now, encoded);
   } catch (const std::exception& error) {
     encoded = {};
     encoded.complaint = news(error.what());
@@ -120,12 +115,14 @@ EncodedScene SceneEncoder::encode(const std::set<std::size_t>& budgets) {
   return encoded;
 }
 
-void SceneEncoder::encode(const std::set<std::size_t>& budgets, EncodedScene& encoded) {
+void SceneEncoder::encode(const std::set<std::size_t>& budgets, double now, EncodedScene& encoded) {
   std::set<std::size_t> drawn = budgets;
   drawn.erase(0);
-  encoded.clouds = clouds_.encode(drawn, now());
+  encoded.clouds = clouds_.encode(drawn, surface_time());
   drawn.empty() ? surfaces_.clear() : encode_surfaces(encoded);
-  if (host_time() - reported_ >= kSourcesPeriod) report(encoded);
+  if (now - reported_ < kSourcesPeriod) return;
+  reported_ = now;
+  report(encoded);
 }
 
 // A scene that has no slot for one more field is seen all the same.
@@ -148,12 +145,12 @@ void SceneEncoder::join_scene() {
 }
 
 void SceneEncoder::report(EncodedScene& encoded) {
-  reported_ = host_time();
   const std::vector<ViewedStream> streams =
       options_.streams ? options_.streams() : std::vector<ViewedStream>{};
   const std::string robot = options_.robot ? options_.robot() : "";
-  encoded.sources = std::make_shared<const std::string>(sources_text(
-      source_reports(scene_, streams, options_.origin, now()), robot));  // painting took time
+  encoded.sources = std::make_shared<const std::string>(
+      sources_text(source_reports(scene_, streams, options_.origin, surface_time()),
+                   robot));  // painting took time
 }
 
 std::string SceneEncoder::news(std::string complaint) {
@@ -163,7 +160,7 @@ std::string SceneEncoder::news(std::string complaint) {
 }
 
 // The servos' clock is the snapshots'.
-double SceneEncoder::now() const {
+double SceneEncoder::surface_time() const {
   double time = 0;
   for (const Servo* servo : options_.servos) time = std::max(time, servo->state().time);
   return time;

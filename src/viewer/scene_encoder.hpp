@@ -131,9 +131,9 @@ class SceneEncoder {
   SceneEncoder(const SceneEncoder&) = delete;
   SceneEncoder& operator=(const SceneEncoder&) = delete;
 
-  /// A picture for clients of these point budgets; 0: that one draws nothing now. What went wrong
-  /// is in its complaint.
-  [[nodiscard]] EncodedScene encode(const std::set<std::size_t>& budgets);
+  /// A picture at `now` (s, on a clock that never goes back) for clients of these point budgets; 0:
+  /// that one draws nothing now. What went wrong is in its complaint.
+  [[nodiscard]] EncodedScene encode(const std::set<std::size_t>& budgets, double now);
 
   /// Nobody looks: holds no field until the next picture.
   void rest();
@@ -143,19 +143,19 @@ class SceneEncoder {
   [[nodiscard]] static double pause_after(double took) noexcept;
 
  private:
-  void encode(const std::set<std::size_t>& budgets, EncodedScene& encoded);
+  void encode(const std::set<std::size_t>& budgets, double now, EncodedScene& encoded);
   void encode_surfaces(EncodedScene& encoded);
   void join_scene();
   void report(EncodedScene& encoded);
   [[nodiscard]] std::string news(std::string complaint);
-  [[nodiscard]] double now() const;
+  [[nodiscard]] double surface_time() const;
 
   Scene& scene_;
   SceneEncoderOptions options_;
   CloudEncoder clouds_;
   std::vector<std::unique_ptr<SurfaceEncoder>> surfaces_;
   std::string complaint_;     // the last complaint
-  double reported_ = -1e300;  // s, of the host
+  double reported_ = -1e300;  // when sources were reported last, s
 };
 
 }  // namespace palpate::viewer

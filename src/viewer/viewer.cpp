@@ -91,7 +91,7 @@ void EncoderThread::run(const std::stop_token& stop) {
 void EncoderThread::work(const std::stop_token& stop, const std::set<std::size_t>& budgets) {
   const SteadyClock clock;
   const double begin = clock.now();
-  show_(encoder_.encode(budgets));
+  show_(encoder_.encode(budgets, begin));
   const double pause = SceneEncoder::pause_after(clock.now() - begin);
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, stop, std::chrono::duration<double>(pause),
