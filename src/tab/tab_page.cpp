@@ -102,7 +102,7 @@ void TabPage::tell_news(double now) {
   if (!news_.empty()) warn(std::exchange(news_, {}));
   if (now < done_.next_picture) return;
   const double begin = stopwatch_.now();
-  view_.show(encoder_.encode(budgets));
+  view_.show(encoder_.encode(budgets, now));
   done_.next_picture = now + viewer::SceneEncoder::pause_after(stopwatch_.now() - begin);
 }
 

@@ -64,6 +64,7 @@ TabSource::TabSource(Touched touched)
   stream_.emplace(*touched_.camera, name(),
                   [this, push](const DepthFrame& frame, const Source::StartTime& start) {
                     lens_ = frame.camera;
+                    if (frame.T_world_sensor) source_.set_pose(*frame.T_world_sensor);
                     push(frame, start);
                   });
   stream_->advance(kFirstFrame);

@@ -28,9 +28,11 @@ struct Page : HeardPage {
   // Lowers the hand onto the ring of the torus, or another place that looks up, `depth` under its
   // top (world, m), and waits.
   void press(double depth, const Eigen::Vector3d& top = {0.07, 0, 0.03}) {
+    const json origin = last("welcome")["origin"];
+    const Eigen::Vector3d at = top - Eigen::Vector3d(origin[0], origin[1], origin[2]);
     for (int i = 0; i <= 100; ++i) {
-      const double z = top.z() + 0.01 - (0.01 + depth) * i / 100;
-      say({{"type", "hand"}, {"device", 0}, {"position", {top.x(), top.y(), z}}, {"buttons", 0}});
+      const double z = at.z() + 0.01 - (0.01 + depth) * i / 100;
+      say({{"type", "hand"}, {"device", 0}, {"position", {at.x(), at.y(), z}}, {"buttons", 0}});
       run(12e-3);
     }
     for (int i = 0; i < 20; ++i) run(0.05);  // its force rises in 0.3 s
