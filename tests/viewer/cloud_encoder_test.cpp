@@ -96,7 +96,7 @@ TEST(CloudOf, APointIsDrawnAsLargeAsItsR) {
 }
 
 TEST(CloudOf, WherePointsLieDenselyInRTheyAreDrawnBySpacing) {
-  std::vector<test::TestPoint> dense = test::plane(0, 4e-3, 31);
+  std::vector<test::TestPoint> dense = test::plane(0, 4e-3, 15);
   for (test::TestPoint& point : dense) point.radius = 20e-3;
   EXPECT_NEAR(middle_radius(test::make_points(dense), 5000), 10e-3, 1e-3);
   EXPECT_NEAR(middle_radius(test::make_points(dense, Kernel::wendland), 5000), 10e-3, 1e-3);
