@@ -9,6 +9,7 @@
 #              between processes; and long cases of a quarter of a minute
 #   core       the core alone: builds, and passes its tests
 #   bare       the program without any optional library
+#   tab        the page of a tab: its program in Node, the page in a browser
 #   debug      every test and the benches in a Debug build
 #   threads    every test under TSan
 #   long       every test under ASan + UBSan, the Python module among them; in a release build every test with all
@@ -22,7 +23,7 @@
 #              no step be a fault
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
-all=(sanitized programs core bare debug threads long embedded documents fuzz lint fresh)
+all=(sanitized programs core bare tab debug threads long embedded documents fuzz lint fresh)
 status=0
 
 # bare_says WORDS ARGUMENT...: the program without optional libraries does this, and says these words.
@@ -74,6 +75,9 @@ check_bare() {
   bare_says 'frames  *30' touch camera:simulated --simulated-time --duration 1 || failed=1
   return $failed
 }
+
+# 77: there is no compiler for it here.
+check_tab() { scripts/tab.sh --test || [ $? -eq 77 ]; }
 
 check_debug() {
   need_packages bench
@@ -147,7 +151,7 @@ parts=("$@")
 if [ $# -eq 0 ]; then parts=("${all[@]}"); fi
 for part in "${parts[@]}"; do
   if ! declare -F "check_$part" >/dev/null; then
-    sed -n '2,22s/^# \{0,1\}//p' "$0"
+    sed -n '2,23s/^# \{0,1\}//p' "$0"
     [[ "$part" == -h || "$part" == --help ]] || fail "no part is called '$part'"
     exit
   fi

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds the core and a tab's program as WebAssembly and the page of a tab in build/web/site, and tests them: forces are those
-# of a native build of portable bits, bit for bit. --site: builds the page alone. --serve: that, on http://127.0.0.1:8430/.
+# Builds a tab's program as WebAssembly, the page of a tab in build/web/site, and build/web/palpate-tab, which puts it into
+# other pages; tests them, and that forces are those of a native build of portable bits, bit for bit.
+# --test: all but the forces. --site: builds alone. --serve: builds, and serves the page on http://127.0.0.1:8430/.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 # shellcheck source=scripts/emscripten.sh
@@ -16,12 +17,16 @@ build_site() {
   (cd web && node build.mjs --tab "../$site")
   cp build/web/tab/tab.js build/web/tab/tab.wasm "$site"
   note "$site: $(du -sk "$site" | cut -f1) kB"
+  local package=build/web/palpate-tab
+  rm -rf "$package"
+  (cd web && node build.mjs --tab-package "../$package" "$(sed -n 's/^project(palpate VERSION \([0-9.]*\).*/\1/p' ../CMakeLists.txt)")
+  cp -r "$site" "$package/page"
 }
 
 case "${1:-}" in
-  "" | --site | --serve) ;;
+  "" | --test | --site | --serve) ;;
   *)
-    sed -n '2,3s/^# //p' "$0"
+    sed -n '2,4s/^# //p' "$0"
     exit
     ;;
 esac
@@ -38,6 +43,10 @@ cmake --preset web -DPALPATE_NATIVE_FORCES="$native" >build/web.configure.log 2>
 build_site
 if [ "${1:-}" = --serve ]; then exec python3 -m http.server 8430 --bind 127.0.0.1 --directory build/web/site; fi
 if [ "${1:-}" = --site ]; then exit; fi
-build web
-test_preset web
+if [ $# -eq 0 ]; then
+  build web
+  test_preset web
+else
+  test_preset web -R '^tab/'
+fi
 PALPATE_SITE=$PWD/build/web/site tests/page/check.sh tab web "$PWD/build/web/pictures" build/web/site || [ $? -eq 77 ]

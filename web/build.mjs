@@ -1,8 +1,9 @@
 // Builds dist/, or the folder that PALPATE_PAGE names: index.html, app.js, app.css. --watch builds again at every change; --tests compiles the
 // tests of the pure parts to .test-build/; --tab FOLDER builds the page of a tab there, with worker.js, which wants tab.js and
-// tab.wasm (scripts/tab.sh) beside it.
+// tab.wasm (scripts/tab.sh) beside it. --tab-package FOLDER VERSION builds there what another page includes it with.
 
 import { build, context } from "esbuild";
+import { execFileSync } from "node:child_process";
 import { cp, mkdir, readdir, readFile, rm, stat, writeFile } from "node:fs/promises";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -50,6 +51,17 @@ async function buildTab(folder) {
   await build({ ...page, outdir: folder, entryPoints: { app: "src/main.ts", worker: "src/tab/worker.ts" } });
 }
 
+/** What scripts/tab.sh puts the page of a tab into. */
+async function buildTabPackage(folder, version) {
+  const from = at("tab_package");
+  await build({ ...page, outdir: folder, entryPoints: [join(from, "index.ts")], format: "esm", minify: false });
+  execFileSync(process.execPath, [at("node_modules/typescript/bin/tsc"), "--project", from, "--outDir", folder]);
+  const about = JSON.parse(await readFile(join(from, "package.json"), "utf8"));
+  await writeFile(join(folder, "package.json"), `${JSON.stringify({ ...about, version }, undefined, 2)}\n`);
+  await cp(join(from, "README.md"), join(folder, "README.md"));
+  await cp(at("../LICENSE"), join(folder, "LICENSE"));
+}
+
 async function buildTests() {
   await rm(at(".test-build"), { recursive: true, force: true });
   const tests = (await readdir(at("test"))).filter((name) => name.endsWith(".test.ts"));
@@ -66,7 +78,8 @@ async function buildTests() {
   });
 }
 
-const tab = process.argv.indexOf("--tab");
-if (process.argv.includes("--tests")) await buildTests();
-else if (tab > 0) await buildTab(resolve(process.argv[tab + 1]));
-else await buildPage(process.argv.includes("--watch"));
+const [what, folder, version] = process.argv.slice(2);
+if (what === "--tests") await buildTests();
+else if (what === "--tab") await buildTab(resolve(folder));
+else if (what === "--tab-package") await buildTabPackage(resolve(folder), version);
+else await buildPage(what === "--watch");

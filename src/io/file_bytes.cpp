@@ -181,8 +181,7 @@ Bytes OpenFile::read(std::size_t offset, std::size_t size, std::string_view part
 }
 
 Parts parts_of(const OpenFile& file) {
-  return {file.size(),
-          [&](std::size_t offset, std::size_t size) { return file.read(offset, size); }};
+  return {file.size(), [&](std::size_t at, std::size_t size) { return file.read(at, size); }};
 }
 
 Parts parts_of(std::span<const std::byte> bytes) {

@@ -11,6 +11,19 @@
 #include "sensor/stream_statistics.hpp"
 
 namespace palpate {
+namespace sensor {
+
+Stream::Sink sink_of(Source& source) {
+  return [&source](const DepthFrame& frame, const Source::StartTime& start) {
+    if (source.push(frame, start)) return;
+    throw Error(
+        fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "
+                    "Update or close it",
+                    source.state().slowest));
+  };
+}
+
+}  // namespace sensor
 namespace {
 
 using namespace sensor;

@@ -168,16 +168,6 @@ std::string_view name_of(StreamState::Phase phase) noexcept {
 
 namespace palpate::sensor {
 
-Stream::Sink sink_of(Source& source) {
-  return [&source](const DepthFrame& frame, const Source::StartTime& start) {
-    if (source.push(frame, start)) return;
-    throw Error(
-        fmt::format("all snapshots are held by fields that are not updated, e.g. that of {}. "
-                    "Update or close it",
-                    source.state().slowest));
-  };
-}
-
 DepthCamera::Status try_read(DepthCamera& camera, DepthFrame& frame, double timeout,
                              std::string& reason) {
   try {

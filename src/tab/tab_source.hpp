@@ -42,7 +42,7 @@ class TabSource {
 
   [[nodiscard]] const std::string& name() const { return touched_.name; }
   [[nodiscard]] Scene& scene() { return scene_; }
-  /// By which it is prepared; `initial`: at first.
+  /// The settings that it is prepared by; `initial`: those that it began with.
   [[nodiscard]] const Preparation& preparation() const { return preparation_; }
   [[nodiscard]] const Preparation& initial() const { return initial_; }
 

@@ -39,7 +39,7 @@ FLOORS = CORE | {
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
     "session": {"base", "geometry", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
-    "tab": {"base", "geometry", "io", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer",
+    "tab": {"base", "geometry", "io", "bag", "depth", "field", "contact", "prepare", "scene", "sim", "sensor", "device", "servo", "viewer",
             "session"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},

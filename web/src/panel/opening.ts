@@ -1,4 +1,4 @@
-// Gives the program a file to touch: dropped on the page, or chosen.
+// Gives the program a file to touch: dropped on the page, chosen, or given by a page that holds this one.
 
 import type { End } from "../protocol/end";
 import { byId } from "./dom";
@@ -7,21 +7,35 @@ import type { Notices } from "./notices";
 export class Opening {
   private most = 0; // bytes that the program takes; 0: it takes no file
   private inside = 0; // elements of the page that a dragged file is in
+  private early: File | undefined; // was given before the program was there
 
   constructor(private readonly end: End, private readonly notices: Notices) {
     const field = byId<HTMLInputElement>("open-file");
     byId("open").addEventListener("click", () => field.click());
     field.addEventListener("change", () => {
-      this.take(field.files);
+      this.takeFirst(field.files);
       field.value = ""; // the same one may be chosen again
     });
     this.watchDragging();
+    if (end.here) this.hearHolder();
   }
 
   /** `most`: bytes that a file may have; undefined: this run takes none. */
   begin(most: number | undefined): void {
     this.most = most ?? 0;
     byId("open").hidden = this.most === 0;
+    if (this.early === undefined) return;
+    this.take(this.early);
+    this.early = undefined;
+  }
+
+  /** What holds the page of a tab may give a file as a person may: web/tab_package. */
+  private hearHolder(): void {
+    window.addEventListener("message", ({ data, source }: MessageEvent<{ palpate?: unknown; file?: unknown } | null>) => {
+      if (source !== window.parent || source === window || data?.palpate !== "open" || !(data.file instanceof File)) return;
+      if (this.most > 0) this.take(data.file);
+      else this.early = data.file;
+    });
   }
 
   private watchDragging(): void {
@@ -36,7 +50,7 @@ export class Opening {
     on("dragleave", () => this.show(this.inside - 1));
     on("drop", (event) => {
       this.show(0);
-      this.take(event.dataTransfer?.files ?? null);
+      this.takeFirst(event.dataTransfer?.files ?? null);
     });
   }
 
@@ -45,15 +59,19 @@ export class Opening {
     byId("drop").hidden = this.inside === 0 || this.most === 0;
   }
 
-  private take(files: FileList | null): void {
+  private takeFirst(files: FileList | null): void {
     const file = files?.[0];
     if (file === undefined) return;
+    if (files!.length > 1) this.notices.add("info", `of ${files!.length} files only ${file.name} is opened`);
+    this.take(file);
+  }
+
+  private take(file: File): void {
     if (this.most === 0) {
       this.notices.add("warning", "this run opens no other file: it has a device, writes files or shows a recording");
     } else if (file.size > this.most) {
       this.notices.add("warning", `${file.name} is too large for the page; give it to the program on its command line`);
     } else {
-      if (files!.length > 1) this.notices.add("info", `of ${files!.length} files only ${file.name} is opened`);
       void this.send(file);
     }
   }

@@ -30,14 +30,14 @@ export async function serveSite(site, clouds = {}) {
   return { asked, address: `http://127.0.0.1:${server.address().port}${kHome}`, close: () => server.close() };
 }
 
-/** Presses the mouse on what is in the middle of the view until it is felt; resolves to the force, N. */
-export async function touch(page) {
-  const { x, y, width, height } = await page.locator("#view").boundingBox();
-  await pointAt(page, x + width / 2, y + height / 2);
+/** Presses the mouse on what is in the middle of the view until it is felt; resolves to the force, N. `frame`: of the page that has the view. */
+export async function touch(page, frame = page) {
+  const { x, y, width, height } = await frame.locator("#view").boundingBox();
+  await pointAt(page, x + width / 2, y + height / 2, frame);
   await page.mouse.down();
   let force = 0;
   await until("the mouse presses it", async () => {
-    const state = await felt(page);
+    const state = await felt(frame);
     force = state.force;
     return state.taken && state.touching && force > 0.05;
   });

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { ball } from "./ball.mjs";
 import { connected, openBrowser, openPage, until } from "./browser.mjs";
@@ -155,6 +156,24 @@ test("a link names a recording", () =>
     await connected(page);
     await touch(page);
   }, { "runs/dip.mcap": dip }));
+
+test("another page includes it as the documents show, and gives it a file", async () => {
+  const shown = /```html\n(.*?)```/s.exec(await readFile(new URL("../../../docs/try.md", import.meta.url), "utf8"))[1];
+  const server = await serveSite(join(process.env.PALPATE_SITE, ".."), { "host.html": shown });
+  const page = await openPage(browser, `${server.address}host.html`, kView, listen);
+  const frame = await (await page.waitForSelector("#here iframe")).contentFrame();
+  await connected(frame);
+  await shows(frame, "torus");
+  assert.equal(await frame.getByRole("spinbutton", { name: "Stiffness" }).inputValue(), "300");
+  await touch(page, frame);
+  await page.setInputFiles("#scan", { name: "ball.xyz", mimeType: "text/plain", buffer: Buffer.from(ball(0.05)) });
+  await shows(frame, "ball");
+  await connected(frame);
+  await touch(page, frame);
+  assert.deepEqual(page.troubles, [], "the browser complains");
+  await page.context().close();
+  server.close();
+});
 
 test("a worker that dies says why, and starts again", () =>
   withTab("", async (page) => {

@@ -6,12 +6,12 @@ import { felt, waysInto } from "./heard.mjs";
 
 const kPress = 6000; // ms
 
-/** Moves the mouse there until a surface is under it. */
-export async function pointAt(page, x, y) {
+/** Moves the mouse there until a surface is under it; `frame`: of the page that has the view. */
+export async function pointAt(page, x, y, frame = page) {
   await until("a surface is under the pointer", async () => {
     await page.mouse.move(x + 1, y);
     await page.mouse.move(x, y);
-    return page.evaluate(() => document.getElementById("view").classList.contains("graspable"));
+    return frame.evaluate(() => document.getElementById("view").classList.contains("graspable"));
   });
 }
 
