@@ -26,14 +26,14 @@ constexpr std::size_t kAhead = 200;
 }  // namespace
 
 struct TabReplay::Parts {
-  Parts(bag::RandomFile file, Outside outside, const Clock& clock, std::string news)
+  Parts(bag::RandomFile file, Outside outside, const Clock& clock, const std::string& news)
       : name(std::filesystem::path(file.path()).filename()),
         stopwatch(clock),
         played(std::move(file)),
         page(played.scene(), played.servos(), viewer_options(), controls(), std::move(outside),
-             stopwatch, first_news(std::move(news))) {}
+             stopwatch, first_news(news)) {}
 
-  [[nodiscard]] std::string first_news(std::string news) const {
+  [[nodiscard]] std::string first_news(const std::string& news) const {
     const std::vector<std::string>& losses = played.recording().losses();
     return news.empty() && !losses.empty() ? name + ": " + losses.front() : news;
   }
@@ -103,9 +103,8 @@ struct TabReplay::Parts {
 };
 
 TabReplay::TabReplay(bag::RandomFile file, Outside outside, const Clock& stopwatch,
-                     std::string news)
-    : parts_(std::make_unique<Parts>(std::move(file), std::move(outside), stopwatch,
-                                     std::move(news))) {}
+                     const std::string& news)
+    : parts_(std::make_unique<Parts>(std::move(file), std::move(outside), stopwatch, news)) {}
 
 TabReplay::~TabReplay() = default;
 

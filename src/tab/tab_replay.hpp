@@ -16,7 +16,8 @@ class TabReplay final : public TabRun {
  public:
   /// Shows the first moment that has a surface. @throws Error when the file is no recording of a
   /// run.
-  TabReplay(bag::RandomFile file, Outside outside, const Clock& stopwatch, std::string news = {});
+  TabReplay(bag::RandomFile file, Outside outside, const Clock& stopwatch,
+            const std::string& news = {});
   ~TabReplay() override;
 
   void connect(double now) override;

@@ -32,8 +32,7 @@ std::unique_ptr<TabRun> open_run(const std::string& name, FileBytes file, Outsid
   const std::span bytes(file.bytes.get(), file.size);
   if (file.bytes && is_bag(bytes, name)) {
     bag::RandomFile bag(name, std::move(file.bytes), file.size);
-    return std::make_unique<TabReplay>(std::move(bag), std::move(outside), stopwatch,
-                                       std::move(news));
+    return std::make_unique<TabReplay>(std::move(bag), std::move(outside), stopwatch, news);
   }
   Touched touched = file.bytes ? of_file(bytes, name) : simulated(name);
   file.bytes.reset();  // before the cloud is prepared

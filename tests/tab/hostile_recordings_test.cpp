@@ -56,7 +56,7 @@ TEST_F(TabReplayTest, WhatIsNoRecordingIsRefusedInWords) {
 TEST_F(TabReplayTest, DamagedBytesAreRefusedOrPlayed) {
   std::mt19937 random(1);
   int played = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 30; ++i) {
     std::string damaged = file;
     for (int n = 0; n < 1 + i % 8; ++n) {
       damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
@@ -103,7 +103,7 @@ std::string rewritten(const std::string& bytes, const Change& change) {
 TEST_F(TabReplayTest, WrongValuesAreRefusedOrPlayed) {
   std::mt19937 random(2);
   int played = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const unsigned rate = i % 2 == 0 ? 20 : 2000;
     const std::string changed = rewritten(file, [&](const std::string&, bag::Bytes& data) {
       while (!data.empty() && random() % rate == 0) {
