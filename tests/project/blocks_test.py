@@ -18,7 +18,7 @@ from blocks import ABSENT, FENCE, PROGRAMS, ROOT, Block, Desk, blocks, can_draw,
 PROGRAM = os.environ["PALPATE_PROGRAM"]
 QUOTED = {"cpp": [*ROOT.glob("examples/*.cpp")], "c": [*ROOT.glob("examples/*.c")],
           "cmake": [ROOT / "tests" / "project" / "consumer" / "CMakeLists.txt"]}
-LANGUAGES = {*QUOTED, "python", "sh", "toml", "json", "text", ""}
+LANGUAGES = {*QUOTED, "python", "sh", "toml", "json", "text", "html", ""}  # html: web/test/browser/tab.mjs
 # What the blocks of a page find when they begin.
 BEFORE = {"docs/remote_camera.md": f"""
 import os, sys, types

@@ -157,9 +157,21 @@ test("a link names a recording", () =>
     await touch(page);
   }, { "runs/dip.mcap": dip }));
 
+test("what a simulated camera sees is drawn as it comes, and touched", () =>
+  withTab("", async (page) => {
+    await page.getByLabel("Scene").selectOption("desk");
+    await shows(page, "desk");
+    await connected(page);
+    const { clouds } = await heard(page);
+    await until("frames", async () => (await heard(page)).clouds > clouds + 10);
+    assert.ok((await touch(page)) < 20, "no more than the hand pulls");
+    await picture(page, "tab-desk");
+  }));
+
 test("another page includes it as the documents show, and gives it a file", async () => {
   const shown = /```html\n(.*?)```/s.exec(await readFile(new URL("../../../docs/try.md", import.meta.url), "utf8"))[1];
-  const server = await serveSite(join(process.env.PALPATE_SITE, ".."), { "host.html": shown });
+  const host = shown.replace("<title>", '<link rel="icon" href="data:,"><title>'); // else the browser asks for one
+  const server = await serveSite(join(process.env.PALPATE_SITE, ".."), { "host.html": host });
   const page = await openPage(browser, `${server.address}host.html`, kView, listen);
   const frame = await (await page.waitForSelector("#here iframe")).contentFrame();
   await connected(frame);
