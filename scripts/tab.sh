@@ -7,6 +7,17 @@ source "$(dirname "$0")/lib.sh"
 # shellcheck source=scripts/emscripten.sh
 source scripts/emscripten.sh
 
+# licences FOLDER: what is compiled into the page asks that its notices go with it.
+licences() {
+  local file
+  for file in /usr/share/doc/{libeigen3-dev,libfmt-dev,nlohmann-json3-dev}/copyright "$wasm"/libraries/*/LICENSE* \
+    "$wasm/root/usr/share/doc/emscripten/copyright" web/node_modules/{three,uplot}/LICENSE; do
+    printf '==== %s\n\n' "$(basename "$(dirname "$file")")"
+    cat "$file"
+    printf '\n'
+  done >"$1/THIRD_PARTY.txt"
+}
+
 # What any server of files can serve: no header of its own is wanted.
 build_site() {
   local site=build/web/site
@@ -16,10 +27,13 @@ build_site() {
   mkdir -p "$site"
   (cd web && node build.mjs --tab "../$site")
   cp build/web/tab/tab.js build/web/tab/tab.wasm "$site"
+  licences "$site"
   note "$site: $(du -sk "$site" | cut -f1) kB"
-  local package=build/web/palpate-tab
+  local package=build/web/palpate-tab version
+  version=$(sed -n 's/^project(palpate VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+  [ -n "$version" ] || fail "CMakeLists.txt names no version"
   rm -rf "$package"
-  (cd web && node build.mjs --tab-package "../$package" "$(sed -n 's/^project(palpate VERSION \([0-9.]*\).*/\1/p' ../CMakeLists.txt)")
+  (cd web && node build.mjs --tab-package "../$package" "$version")
   cp -r "$site" "$package/page"
 }
 

@@ -55,7 +55,7 @@ async function buildTab(folder) {
 async function buildTabPackage(folder, version) {
   const from = at("tab_package");
   await build({ ...page, outdir: folder, entryPoints: [join(from, "index.ts")], format: "esm", minify: false });
-  execFileSync(process.execPath, [at("node_modules/typescript/bin/tsc"), "--project", from, "--outDir", folder]);
+  execFileSync(process.execPath, [at("node_modules/typescript/bin/tsc"), "--project", from, "--outDir", folder], { stdio: "inherit" });
   const about = JSON.parse(await readFile(join(from, "package.json"), "utf8"));
   await writeFile(join(folder, "package.json"), `${JSON.stringify({ ...about, version }, undefined, 2)}\n`);
   await cp(join(from, "README.md"), join(folder, "README.md"));

@@ -12,7 +12,7 @@ std::size_t whole_lanes(std::size_t points) noexcept {
   return (points + simd::kLanes - 1) / simd::kLanes * simd::kLanes;
 }
 
-/// Is a layer the k-th that was gathered, with its progress within that of the run?
+/// Is this the k-th layer that was gathered, and its progress still in the range of its run?
 bool follows(const ActiveLayer& now, const GatheredPoints& points, std::size_t k) noexcept {
   const ActiveLayer& before = points.layers[k];
   const Selection::Run& run = points.selection.runs()[k];

@@ -83,7 +83,7 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
   CloudBuilder builder(input, columns.roles.columns(), columns.color_scale,
                        most_rows(input, header, points));
   Mesh mesh{.columns = columns.roles.columns(), .color_scale = columns.color_scale};
-  // In the file's order from the start: the face table's `take` refers to its index.
+  // Tables are in the file's order from the start, since the faces' `take` refers to its own index.
   const bool faces_first = faces && faces < &points;
   std::vector<PlyTable> tables(faces ? 2 : 1);
   PlyTable& vertex_table = tables[faces_first ? 1 : 0];

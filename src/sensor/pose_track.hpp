@@ -28,7 +28,7 @@ struct ListedFrame {
 [[nodiscard]] std::vector<ListedFrame> parse_frame_list(std::string_view text,
                                                         const std::string& name);
 
-/// A pose at a time; nothing where it states that tracking was lost.
+/// A pose at a time; none where the file states that tracking was lost.
 struct StampedPose {
   double stamp = 0;  // s
   std::optional<Eigen::Isometry3d> pose = Eigen::Isometry3d::Identity();

@@ -50,7 +50,8 @@ using namespace sensor;
 
 // A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
 constexpr double kAhead = 1;  // s (judgement)
-// No frame takes so long to arrive: a first one that seems to be was stamped by another clock.
+// No frame takes so long to arrive: a first one that seems to have done so has another
+// clock's stamp.
 constexpr double kOtherClock = 30;  // s (judgement)
 
 // Work left after preparation requested a start is predicted from the longest so far, which decays

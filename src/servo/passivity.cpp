@@ -11,7 +11,7 @@ const Vector3d& Passivity::sent(int steps_ago) const noexcept {
   return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
 }
 
-// Is no force acting or delayed?
+// Is no force acting, and none in the delay line?
 bool Passivity::rests() const noexcept {
   for (int i = 0; i <= options_.delay; ++i) {
     if (!sent(i).isZero(0)) return false;

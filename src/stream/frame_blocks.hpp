@@ -89,7 +89,7 @@ class FrameBlocks {
   /// Does a plane go on behind one of four blocks?
   [[nodiscard]] bool hide(std::size_t index) const { return hide_[index / kLanes] != 0; }
 
-  /// The point of a plane that goes on behind what the block of a index shows; R = 0: none does.
+  /// The point of a plane that goes on behind what the block at an index shows; R = 0: none does.
   [[nodiscard]] SeenPoint behind(std::uint32_t index) const;
 
   /// The share of blocks around one that show the same surface: what flies between two has few.

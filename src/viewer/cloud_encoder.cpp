@@ -64,7 +64,7 @@ std::vector<float> drawn_radii(const SurfacePoints& points) {
   return radii;
 }
 
-/// The same of points without measured ones, by their own spacings.
+/// The same of points without measured radii, by their own spacings.
 std::vector<float> drawn_radii(const PointCloud& cloud, const std::vector<std::uint32_t>& kept) {
   const CellGrid grid(detail::elements_at(cloud.positions, kept));
   const std::vector<float> spacings = local_spacings(grid);

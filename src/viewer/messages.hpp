@@ -197,7 +197,8 @@ struct StateMessage {
 
 [[nodiscard]] std::string encode(const StateMessage& message);
 
-/// Message 2. Positions relative to the origin, m. Optional columns are empty or of equal length.
+/// Message 2. Positions relative to the origin, m. Optional columns are empty or as long
+/// as `positions`.
 struct CloudMessage {
   std::uint8_t source = 0;
   double stamp = 0;  ///< s

@@ -35,7 +35,7 @@ class Server {
   void stop();
   /// Does `act` on the network thread. Any thread.
   void post(std::function<void()> act);
-  /// Clients receive that when they are closed at the end. Network thread.
+  /// Clients receive `why` when they are closed at the end. Network thread.
   void restarts(std::string why);
   /// Network thread.
   [[nodiscard]] Viewer::Counts counts() const;

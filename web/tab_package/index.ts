@@ -1,9 +1,9 @@
 // Puts a cloud that can be touched into a page of somebody else.
 
 export interface Options {
-  /** A cloud that a formula makes: "synthetic:torus". Default: a rabbit. */
+  /** A cloud that a formula makes, or a simulated camera: "synthetic:torus", "camera:simulated:desk". Default: a rabbit. */
   cloud?: string;
-  /** A file below the folder of `page`: "clouds/scan.ply". */
+  /** A file below the folder of `page`, in place of `cloud`: "clouds/scan.ply", "runs/dip.mcap". */
   at?: string;
   /** What a link of the page has as key=value: { stiffness: 800, friction: 0.5 }. */
   settings?: Record<string, string | number | boolean>;
@@ -17,17 +17,18 @@ export interface Options {
 
 export interface Touched {
   readonly frame: HTMLIFrameElement;
-  /** Touches this file in place of what is there: a cloud, a mesh or splats. The page says what is wrong with it. */
+  /** Touches this file in place of what is there: a cloud, a mesh or splats; a recording is replayed. The page says what is wrong with it. */
   open(file: File): Promise<void>;
   /** Takes the frame away, with all memory that it had. */
   close(): void;
 }
 
-const kPage = new URL("page/index.html", import.meta.url).href;
+const kHere: string | undefined = import.meta.url; // undefined in some bundles
 
 /** Fills an element with a page in which mouse, finger, keys or a game controller touch a cloud. */
 export function touch(element: Element, options: Options = {}): Touched {
-  const { cloud, at, settings = {}, view, page = kPage, title = "A cloud to touch" } = options;
+  const { cloud, at, settings = {}, view, title = "A cloud to touch" } = options;
+  const page = options.page ?? new URL("page/index.html", kHere).href;
   const address = new URL(page, document.baseURI);
   if (cloud !== undefined) address.searchParams.set("cloud", cloud);
   if (at !== undefined) address.searchParams.set("at", at);
@@ -37,7 +38,8 @@ export function touch(element: Element, options: Options = {}): Touched {
   const frame = document.createElement("iframe");
   Object.assign(frame, { title, src: address.href, allow: "gamepad; clipboard-write" });
   frame.style.cssText = "display: block; width: 100%; height: 100%; border: 0";
-  const loaded = new Promise((resolve) => frame.addEventListener("load", resolve, { once: true }));
+  let settled: () => void;
+  const loaded = new Promise<void>((resolve) => frame.addEventListener("load", settled = () => resolve(), { once: true }));
   element.append(frame);
   return {
     frame,
@@ -45,6 +47,9 @@ export function touch(element: Element, options: Options = {}): Touched {
       await loaded;
       frame.contentWindow?.postMessage({ palpate: "open", file }, address.origin);
     },
-    close: () => frame.remove(),
+    close() {
+      frame.remove();
+      settled();
+    },
   };
 }

@@ -17,11 +17,11 @@ test("a link gives back what was put into it", () => {
   assert.deepEqual([...link.values], values.map(([key, value]) => [key, String(value)]));
 });
 
-test("a link holds the view, to a millionth; what is none is said to be no setting", () => {
-  const view: View = { eye: [1.23456789, 0, -2e-7], target: [0, 0.5, 0], up: [0, 0, 1] };
+test("a link holds the view, to a billionth; what is none is said to be no setting", () => {
+  const view: View = { eye: [1.23456789012, 0, -2e-7], target: [0, 0.5, 0], up: [0, 0, 1] };
   const link = readLink(writeLink("t", [["k", 4]], view));
-  assert.deepEqual(link, { token: "t", values: new Map([["k", "4"]]), view: { ...view, eye: [1.23457, 0, -2e-7] } });
-  for (const text of ["", "1", "1,2,3,4,5,6,7,8,", "1,2,3,1,2,3,0,0,1", "1,2,3,4,5,6,0,0,0", "1,2,3,4,5,6,7,8,NaN", "1,2,3,4,5,6,7,8,9,10"]) {
+  assert.deepEqual(link, { token: "t", values: new Map([["k", "4"]]), view: { ...view, eye: [1.23456789, 0, -2e-7] } });
+  for (const text of ["", "1", "1,2,3,4,5,6,7,8,", "1,2,3,1,2,3,0,0,1", "1,2,3,4,5,6,0,0,0", "1,2,3,4,5,6,7,8,NaN", "1,2,3,4,5,1e300,0,0,1", "1,2,3,4,5,6,1e200,0,0", "1000,0,0,1000.0001,0,0,0,0,1", "1,2,3,4,5,6,7,8,9,10"]) {
     const { values, view: none } = readLink(`#t&view=${text}`);
     assert.equal(none, undefined);
     assert.deepEqual([...values], [["view", text]]);

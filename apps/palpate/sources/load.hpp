@@ -40,7 +40,7 @@ void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options);
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream(const SourcePlan& source,
                                                        const Clock* clock);
 
-/// The same at its own pace where it has one, else as fast as it is requested.
+/// The same at its own pace where it has one, else as fast as its frames are read.
 [[nodiscard]] std::unique_ptr<DepthCamera> open_stream_at_any_pace(const SourcePlan& source);
 
 /// The next frame of use, waiting for some seconds at most; where who sends them may come at any

@@ -37,7 +37,7 @@ class View {
 /// shows how far it is. The run's own page follows at the same address.
 class WaitingPage {
  public:
-  /// `patience`: how long the reading needs no page.
+  /// `patience`: reading that takes less opens no page.
   explicit WaitingPage(const TouchPlan& plan,
                        std::chrono::milliseconds patience = std::chrono::milliseconds(500));
   ~WaitingPage();

@@ -56,7 +56,7 @@ struct ThreadedDeviceOptions {
 /// impossible for a hand (too far away, too fast, or a jump). None of this makes the device fail:
 /// its status becomes `silent`, no force is applied, and the hardware is reopened as soon as it is
 /// back. The first position after a silence still has status `silent`, so that what computes
-/// forces receives the hand's position before there is one; a force is applied only to the
+/// forces receives the hand's position before any acts; a force is applied only to the
 /// connection whose position it answers. A force that is not finite latches `failed`.
 class ThreadedDevice final : public Device {
  public:

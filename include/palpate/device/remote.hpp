@@ -30,7 +30,7 @@ struct RemoteDeviceOptions {
 ///
 /// Silence is not a failure: the status is `silent`, and the force goes to zero on both sides. When
 /// a client sends again, twice at least, the first position still has status `silent`, so that
-/// what computes forces receives the hand's position before there is one; then the allowed force
+/// what computes forces receives the hand's position before any acts; then the allowed force
 /// grows from zero. A force that is not finite, or a socket that breaks, latches `failed`.
 class RemoteDevice final : public Device {
  public:

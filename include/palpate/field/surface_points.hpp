@@ -90,7 +90,7 @@ struct SurfacePoints {
   Kernel kernel = Kernel::wyvill;  ///< that the density weights were made for
 
   std::vector<float> cell_reach;  ///< for each cell: how far its points reach out of its box
-                                  ///< on their path, m
+                                  ///< while they move from start to end, m
   double radius = 0;              ///< a typical R (median), m
   double smallest_radius = 0;     ///< smallest R_i, m
 

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Position at one time. The caller chooses the frame.
+/// Position at one time. The caller has to know its frame.
 struct TrajectoryRow {
   double time = 0;                                     ///< s
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m

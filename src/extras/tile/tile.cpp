@@ -85,7 +85,7 @@ class Tiler {
     }
   }
 
-  // Leaves the file that names the job, and the one that makes a store of the moved files.
+  // Keeps the file that names the job, and metadata.json, without which what was moved is no store.
   void clear_folder() const {
     for (const auto& each : fs::directory_iterator(work_)) {
       const fs::path name = each.path().filename();

@@ -35,8 +35,8 @@ constexpr double kSurplus = 4;
 constexpr double kMostWork = 5e8;
 constexpr double kWorkPerCorner = 64;
 
-// The vertices of a mesh hold all that its faces do where they lie as those of a scan: in spacings
-// of vertices the diagonal is at least this long (judgement) ...
+// The vertices alone describe the surface where they lie as densely as a scan's: in spacings of
+// vertices the diagonal is at least this long (judgement) ...
 constexpr double kScanned = 64;
 // ... and no edge is longer than this, in those spacings or in those of samples: R grows with the
 // spacing around a point, and bridges such edges (measured on the dragon, whose longest are 8)

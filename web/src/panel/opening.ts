@@ -17,25 +17,22 @@ export class Opening {
       field.value = ""; // the same one may be chosen again
     });
     this.watchDragging();
-    if (end.here) this.hearHolder();
+    end.takeGiven?.((file) => this.takeEarly(file));
   }
 
   /** `most`: bytes that a file may have; undefined: this run takes none. */
   begin(most: number | undefined): void {
     this.most = most ?? 0;
     byId("open").hidden = this.most === 0;
-    if (this.early === undefined) return;
+    if (this.early === undefined || this.most === 0) return;
     this.take(this.early);
     this.early = undefined;
   }
 
-  /** What holds the page of a tab may give a file as a person may: web/tab_package. */
-  private hearHolder(): void {
-    window.addEventListener("message", ({ data, source }: MessageEvent<{ palpate?: unknown; file?: unknown } | null>) => {
-      if (source !== window.parent || source === window || data?.palpate !== "open" || !(data.file instanceof File)) return;
-      if (this.most > 0) this.take(data.file);
-      else this.early = data.file;
-    });
+  /** A file that may come before the program welcomes this page. */
+  private takeEarly(file: File): void {
+    if (this.most > 0) this.take(file);
+    else this.early = file;
   }
 
   private watchDragging(): void {

@@ -16,6 +16,8 @@ export interface End {
   send(text: string): boolean;
   /** Gives it a file to touch; resolves to what is wrong with it, in words. */
   give(file: File): Promise<string | undefined>;
+  /** What a page that frames this one gives: `take` gets each file, one from before this call, too. Absent where nobody may. */
+  takeGiven?(take: (file: File) => void): void;
   /** Nothing is received from it from here on. */
   close(): void;
 }

@@ -17,7 +17,8 @@ export interface Link {
 }
 
 const kView = "view"; // no setting has that key
-const kDigits = 6; // of a millionth of the scene nobody sees anything
+const kDigits = 9; // a heading from above is a thousandth of the distance; of a millionth of that nobody sees anything
+const kFarthest = 1e9; // m; farther than any cloud, and its square is a number
 
 export function readLink(fragment: string): Link {
   const parts = fragment.replace(/^#/, "").split("&");
@@ -48,10 +49,11 @@ export function writeLink(token: string, values: Iterable<[string, SettingValue]
 
 function viewFromText(text: string | undefined): View | undefined {
   const numbers = text?.split(",").map((one) => (one.trim() === "" ? NaN : Number(one)));
-  if (numbers?.length !== 9 || !numbers.every(Number.isFinite)) return undefined;
-  const [a, b, c, d, e, f, ...up] = numbers as [number, number, number, number, number, number, number, number, number];
-  const isSomewhere = Math.hypot(a - d, b - e, c - f) > 0 && Math.hypot(...up) > 0;
-  return isSomewhere ? { eye: [a, b, c], target: [d, e, f], up } : undefined;
+  if (numbers?.length !== 9 || !numbers.every((value) => Math.abs(value) <= kFarthest)) return undefined;
+  const [a, b, c, d, e, f, g, h, i] = numbers as [number, number, number, number, number, number, number, number, number];
+  const [distance, upward] = [Math.hypot(a - d, b - e, c - f), Math.hypot(g, h, i)];
+  const isView = distance > 1e-6 * Math.hypot(a, b, c, d, e, f) && upward > 0; // less is rounding
+  return isView ? { eye: [a, b, c], target: [d, e, f], up: [g / upward, h / upward, i / upward] } : undefined;
 }
 
 /** The value that a link's text means for a setting; undefined where it cannot be one. */

@@ -16,9 +16,28 @@ export class WorkerEnd implements End {
   private giving = false;
   private answer: ((wrong: string | undefined) => void) | undefined; // of the file that was given
 
+  private given: File | undefined; // by a page that frames this one (web/tab_package)
+  private takesGiven: ((file: File) => void) | undefined;
+
   /** Begins at once: what is `first` touched is there the sooner. */
   constructor(private readonly first: Wanted) {
     this.worker = this.start();
+    window.addEventListener("message", ({ data, source }: MessageEvent<{ palpate?: unknown; file?: unknown } | null>) => {
+      if (source !== window.parent || source === window || data?.palpate !== "open" || !(data.file instanceof File)) return;
+      this.given = data.file;
+      this.handOnGiven();
+    });
+  }
+
+  takeGiven(take: (file: File) => void): void {
+    this.takesGiven = take;
+    this.handOnGiven();
+  }
+
+  private handOnGiven(): void {
+    if (this.takesGiven === undefined || this.given === undefined) return;
+    this.takesGiven(this.given);
+    this.given = undefined;
   }
 
   open(hears: Hears): void {

@@ -11,6 +11,7 @@ const kFoot = 90; // pixels at its lower edge, where a hint and a button stand
 const kLoose = 0.8; // of the radius, while no point is known
 const kRounds = 4;
 const kStep = 1.25; // of the distance: noise gives no other view at the next start
+const kPole = 1e-3; // rad from straight above or below: there a place of the eye says nothing of its heading
 const kLag = 0.25; // s
 const kGlide = 0.13; // s, a time constant: 0.12 of the rest in each picture of a screen (judgement)
 
@@ -31,8 +32,10 @@ export class Navigation {
   setUp(up: Vector3): void {
     if (this.camera.up.distanceTo(up) < 1e-6) return;
     this.camera.up.copy(up);
+    const { target, minDistance, maxDistance } = this.controls;
     this.controls.dispose();
-    this.controls = this.makeControls();
+    this.controls = Object.assign(this.makeControls(), { minDistance, maxDistance });
+    this.controls.target.copy(target);
   }
 
   /** Shows all points, from a direction. */
@@ -144,6 +147,7 @@ export class Navigation {
     controls.rotateSpeed = 0.8;
     controls.zoomToCursor = true;
     controls.maxDistance = 12 * this.radius;
+    [controls.minPolarAngle, controls.maxPolarAngle] = [kPole, Math.PI - kPole];
     let held = false;
     controls.addEventListener("start", () => (held = true));
     controls.addEventListener("end", () => (held = false));

@@ -82,7 +82,7 @@ export class World {
     this.changes += 1;
     this.upKey = `up ${welcome.scene} ${welcome.up.join()}`;
     const chosen = recall<unknown>(this.upKey, undefined);
-    this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
+    if (!again) this.up.copy(kAxes.find((axis) => axis.toArray().join() === String(chosen)) ?? new Vector3(...welcome.up).normalize());
     this.framing.begin(welcome, again);
     this.clouds = welcome.sources.map(({ camera }, i) => new Cloud(i, camera, this.ramps, !this.stage.software));
     this.frusta = welcome.sources.map((_, i) => new Frustum(i));

@@ -12,6 +12,7 @@ import { browser, hands, kPhone, kSmall, ready, sent, text, withPage } from "./w
 import "./next_run.mjs";
 import "./finer.mjs";
 import "./first_hour.mjs";
+import "./links.mjs";
 import "./moving.mjs";
 import "./simple.mjs";
 import "./sounds.mjs";
@@ -203,44 +204,6 @@ test("a picture is saved, sharp and at twice the screen's size, that says what i
       return canvas.width <= canvas.clientWidth;
     }));
   }));
-
-test("a link brings its settings, says what it cannot, and a link gives them back", async () => {
-  const server = await serve({ points: 1000 });
-  const page = await openPage(browser, `${server.address}&stiffness=900&grain=true&weather=fine`, kSmall);
-  await ready(page);
-  const value = (key) => server.program.settings.find((one) => one.key === key).value;
-  await until("set", () => value("stiffness") === 900 && value("grain") === true);
-  await until("says so", async () => /weather = fine/.test(await text(page, "#notices")));
-  assert.equal(await page.evaluate(() => location.href), server.address, "not again when it is loaded again");
-  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
-  await page.click("#share");
-  const link = await page.inputValue("#share-link");
-  assert.ok(link.startsWith(`${server.address}&stiffness=900`) && link.includes("grain=true"));
-  assert.match(link, /&view=([^,&]+,){8}[^,&]+$/);
-  await page.context().close();
-  await server.close();
-});
-
-test("a link brings its view, which holds while clouds come, until the scene is framed anew", async () => {
-  const server = await serve({ points: 1000 });
-  const asked = "view=0.4,-0.9,0.5,0.1,0.05,0.02,0,1,0";
-  const page = await openPage(browser, `${server.address}&${asked}`, kSmall);
-  await ready(page);
-  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: { writeText: async (link) => void (window.copied = link) } }));
-  const view = async () => {
-    await page.click("#share");
-    return (await page.evaluate(() => window.copied)).replace(/.*&/, "");
-  };
-  assert.equal(await view(), asked);
-  await page.waitForTimeout(1000); // clouds and cameras come
-  assert.equal(await view(), asked);
-  await page.focus("#view");
-  await page.keyboard.press("f");
-  await until("the scene is framed", async () => (await view()) !== asked);
-  assert.match(await view(), /,0,1,0$/, "up stays");
-  await page.context().close();
-  await server.close();
-});
 
 test("comes back by itself when the program is gone for a while", async () => {
   const server = await serve({ points: 1000 });

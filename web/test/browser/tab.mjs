@@ -168,23 +168,32 @@ test("what a simulated camera sees is drawn as it comes, and touched", () =>
     await picture(page, "tab-desk");
   }));
 
-test("another page includes it as the documents show, and gives it a file", async () => {
+test("another page includes it as the documents show, and gives it a file, at once or later", async () => {
   const shown = /```html\n(.*?)```/s.exec(await readFile(new URL("../../../docs/try.md", import.meta.url), "utf8"))[1];
   const host = shown.replace("<title>", '<link rel="icon" href="data:,"><title>'); // else the browser asks for one
-  const server = await serveSite(join(process.env.PALPATE_SITE, ".."), { "host.html": host });
+  const early = shown.replace("touched =", "touched = window.touched =").replace("</script>", 'touched.open(new File(["0 0 0\\n"], "point.xyz"));</script>');
+  const server = await serveSite(join(process.env.PALPATE_SITE, ".."), { "host.html": host, "early.html": early });
   const page = await openPage(browser, `${server.address}host.html`, kView, listen);
-  const frame = await (await page.waitForSelector("#here iframe")).contentFrame();
-  await connected(frame);
-  await shows(frame, "torus");
-  assert.equal(await frame.getByRole("spinbutton", { name: "Stiffness" }).inputValue(), "300");
-  await touch(page, frame);
-  await page.setInputFiles("#scan", { name: "ball.xyz", mimeType: "text/plain", buffer: Buffer.from(ball(0.05)) });
-  await shows(frame, "ball");
-  await connected(frame);
-  await touch(page, frame);
-  assert.deepEqual(page.troubles, [], "the browser complains");
-  await page.context().close();
-  server.close();
+  try {
+    const framed = async () => (await page.waitForSelector("#here iframe")).contentFrame();
+    const frame = await framed();
+    await connected(frame);
+    await shows(frame, "torus");
+    assert.equal(await frame.getByRole("spinbutton", { name: "Stiffness" }).inputValue(), "300");
+    await touch(page, frame);
+    await page.setInputFiles("#scan", { name: "ball.xyz", mimeType: "text/plain", buffer: Buffer.from(ball(0.05)) });
+    await shows(frame, "ball");
+    await connected(frame);
+    await touch(page, frame);
+    assert.deepEqual(page.troubles, [], "the browser complains");
+    await page.goto(`${server.address}early.html`);
+    await warned(await framed(), "point.xyz");
+    await page.evaluate(() => window.touched.close());
+    assert.equal(await page.locator("iframe").count(), 0);
+  } finally {
+    await page.context().close();
+    server.close();
+  }
 });
 
 test("a worker that dies says why, and starts again", () =>
