@@ -23,7 +23,6 @@ constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do
 constexpr float kSamePosition = 1e-3f;  // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one segment
 constexpr double kSamePlane = 0.3;      // mean sine (17 degrees) off the plane of one segment
-constexpr double kAbove = 0.7;          // mean sine (45 degrees) of the offset to a segment above
 constexpr float kBeyond = 0.2f;         // R, over which an edge is soft: farther out it has ended
 
 // They bound the pairs that are compared (judgement).
@@ -146,10 +145,10 @@ struct Facing::Meeting {
     return std::abs(moved ? off_now : off) <= kSamePlane * (moved ? now : all);
   }
 
-  /// Is there an edge? Two segments that face alike, one rather above the other than beside it,
-  /// make none.
+  /// Is there an edge? Of two segments that face alike both lie below the other's plane at a convex
+  /// edge, and above it at a concave one; of two that are stacked one lies above and one below.
   [[nodiscard]] bool is_edge() const noexcept {
-    return all > kLeastMeeting && (parallel <= kSameNormal * all || std::abs(off) <= kAbove * all);
+    return all > kLeastMeeting && (parallel <= kSameNormal * all || off * (above - off) > 0);
   }
 };
 

@@ -182,6 +182,34 @@ bool is_free_before_the_wall(double end) {
   return evaluate(ImplicitSurface(FieldOptions{}), patch, {2e-3, 0, -1e-3}).value > 0;
 }
 
+/// The field in the middle between two scans of one plane, `gap` apart (m), for a hand above them.
+double between_scans(double gap) {
+  std::vector<test::TestPoint> all;
+  for (int i = -10; i <= 10; ++i) {
+    for (int j = -10; j <= 10; ++j) {
+      all.push_back({{2e-3 * i, 2e-3 * j, 0}, Vector3d::UnitZ(), 5e-3, 1});
+      all.push_back({{2e-3 * i, 2e-3 * j, -gap}, Vector3d::UnitZ(), 5e-3, 1});
+    }
+  }
+  SurfacePoints points = test::make_points(all);
+  put_on_segments(points, {0, 0});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points.segments.segment[i] = points.grid.points()[i].z() < -0.5 * gap ? 1 : 0;
+  }
+  Patch patch(2048);
+  const Stance stance{{0, 0, 3e-3}, Vector3d::Zero()};
+  patch.gather(std::vector<ActiveLayer>{{.points = &points}}, 1, Vector3d::Zero(), 4e-3,
+               {.stance = &stance});
+  return evaluate(ImplicitSurface(FieldOptions{}), patch, {0, 0, -0.5 * gap}).value;
+}
+
+// The nearest of two scans, or the farthest, would be half a gap away there.
+TEST(Facing, TwoScansOfOnePlaneAreFeltInTheirMean) {
+  for (const double gap : {0.5e-3, 0.75e-3, 0.9e-3, 1e-3, 1.25e-3}) {  // R is 5 mm
+    EXPECT_NEAR(between_scans(gap), 0, 0.1 * gap) << gap;
+  }
+}
+
 TEST(Facing, AWallUnderAFaceCutsNothingOffIt) {
   EXPECT_FALSE(is_free_before_the_wall(20e-3));
 }
