@@ -248,8 +248,8 @@ class Snapping {
       if (cost >= best) continue;
       const bool on_plane =
           off <= std::max(kSnapResiduals * own_.residuals[j], kSnapSlope * length);
-      if (!on_plane && off > kChord * kTurnMargin * fitted_curvature(input_, own_, j) * length)
-        continue;
+      const float turn = kTurnMargin * fitted_curvature(input_, own_, j) * length;
+      if (!on_plane && off > kChord * turn * length) continue;
       best = cost;
       owner = j;
     }
