@@ -191,6 +191,7 @@ DepthFrame frame_of(const PointCloud& cloud, const std::vector<Sight>& sights, c
 bool is_organised(const PointCloud& cloud) {
   if (std::min(cloud.width, cloud.height) < depth::kFewestPixels) return false;
   if (cloud.pixels.size() != cloud.size()) return false;
+  if (std::max(cloud.width, cloud.height) > depth::kMostPixels) return false;
   const std::size_t pixels = cloud.width * cloud.height;
   return std::ranges::all_of(cloud.pixels, [&](std::uint32_t pixel) { return pixel < pixels; });
 }

@@ -57,7 +57,7 @@ void check(const DepthFrame& frame) {
                     "at least {} in each direction",
                     camera.width, camera.height, kFewestPixels));
   }
-  const auto pixels = static_cast<std::size_t>(camera.width) * camera.height;
+  const auto pixels = static_cast<std::uint64_t>(camera.width) * camera.height;
   if (frame.depth.size() != pixels) {
     throw Error(fmt::format("depth filter: {} depths for {} x {} pixels; give {}",
                             frame.depth.size(), camera.width, camera.height, pixels));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -15,6 +16,10 @@ void check(const DepthFilterOptions& options);
 
 /// Pixels across and down of three blocks: fewer give no slope (derived).
 inline constexpr int kFewestPixels = 6;
+
+/// Pixels across or down of an organised cloud; what has more does not come from a camera, and a
+/// few points would take gigabytes. Twice as many as any depth camera has (judgement).
+inline constexpr std::size_t kMostPixels = 8192;
 
 /// @throws Error when the frame's size and depths disagree, its intrinsics are not valid, or it is
 /// too small.
