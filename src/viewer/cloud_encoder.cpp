@@ -91,6 +91,11 @@ void add_overview(const PointCloud& overview, const std::vector<std::uint32_t>& 
   }
 }
 
+// count * part / all, rounded down; also where std::size_t has 32 bits, as in WebAssembly.
+std::size_t part_of(std::size_t count, std::uint64_t part, std::uint64_t all) {
+  return static_cast<std::size_t>(count * part / all);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget) {
@@ -100,8 +105,8 @@ std::vector<std::uint32_t> thinned(std::size_t count, std::size_t budget) {
     return kept;
   }
   for (std::size_t i = 0; i < budget; ++i) {
-    const std::size_t begin = i * count / budget;
-    const std::size_t end = (i + 1) * count / budget;
+    const std::size_t begin = part_of(count, i, budget);
+    const std::size_t end = part_of(count, i + 1, budget);
     kept[i] = static_cast<std::uint32_t>(begin + scattered(i) % (end - begin));
   }
   return kept;
@@ -111,7 +116,7 @@ std::vector<std::size_t> shares(const std::vector<std::size_t>& sizes, std::size
   const std::size_t all = std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
   if (all <= budget) return sizes;
   std::vector<std::size_t> parts;
-  for (const std::size_t size : sizes) parts.push_back(size * budget / all);
+  for (const std::size_t size : sizes) parts.push_back(part_of(size, budget, all));
   return parts;
 }
 

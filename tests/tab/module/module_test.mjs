@@ -10,6 +10,7 @@ const Tab = createRequire(import.meta.url)(process.env.PALPATE_TAB);
 class Program {
   texts = [];
   states = 0;
+  points = 0; // of the newest cloud
   force = [0, 0, 0];
   time = 0; // s, of the newest state
   now = 10; // s
@@ -45,9 +46,9 @@ class Program {
     this.goesOn(this.core._tab_receive(at, this.now));
     this.core._free(at);
   }
-  connect() {
+  connect(points = 1000) {
     this.goesOn(this.core._tab_connect(this.now));
-    this.say({ type: "hello", token: "tab", points: 1000 });
+    this.say({ type: "hello", token: "tab", points });
     return this.last("welcome");
   }
   last(kind) {
@@ -59,6 +60,7 @@ class Program {
   take(bytes, text) {
     if (text) return void this.texts.push(JSON.parse(new TextDecoder().decode(bytes)));
     const view = new DataView(bytes.slice().buffer);
+    if (view.getUint8(0) === 2) this.points = view.getUint32(4, true);
     if (view.getUint8(0) !== 1) return;
     this.states += 1;
     this.time = view.getFloat64(8, true);
@@ -106,6 +108,18 @@ const kHostile = {
   "chunk.mcap": "\u0089MCAP0\r\n\u0006\u00ff\u00ff\u00ff\u00ff\u007f\0\0\0",
   "what.glb": "glTF\u0002\0\0\0\u007f\u007f\u007f\u007f\u007f\u007f\u007f\u007fJSON",
 };
+
+test("of a cloud whose points times those that are asked for exceed 32 bits, as many are drawn as the page asks for", async () => {
+  const [width, height, most] = [600, 500, 200_000];
+  const heights = new Float32Array(3 * width * height);
+  for (let i = 0; i < width * height; i += 1) heights.set([0.001 * (i % width), 0.001 * Math.floor(i / width), 0], 3 * i);
+  const head = Buffer.from(ply(`element vertex ${width * height}\n${xyz}`), "latin1");
+  const program = await Program.make();
+  assert.equal(program.open("plane.ply", Buffer.concat([head, Buffer.from(heights.buffer)])), "");
+  program.connect(most);
+  program.run(0.2);
+  assert.ok(program.points > 0.9 * most && program.points <= most, `${program.points} points`);
+});
 
 test("files that are no clouds are refused in words, and the program lives on", async () => {
   const program = await Program.make();
