@@ -41,11 +41,13 @@ struct TabHand {
     remote.move(target, heard);
   }
 
-  // `before`: is called with the time of each step, s.
+  // `before`: is called with the time of each step, s; what it takes is not the step's.
   template <class Before>
   void step(double lateness, const Before& before) {
     const DeviceState read = device.read();
+    const double begin = clock.now();
     before(read.time);
+    elsewhere += clock.now() - begin;
     servo.step(read, read.time);
     device.write(servo.device_force());
     servo.show({.lateness = lateness, .computing = computing});
@@ -61,8 +63,9 @@ struct TabHand {
     if (behind() > kMostLate) *start += behind() - kMostLate;
     const double begin = clock.now();
     int count = 0;
+    elsewhere = 0;
     for (; behind() >= 0; ++count) step(behind(), before);
-    if (count > 0) computing = (clock.now() - begin) / count;
+    if (count > 0) computing = (clock.now() - begin - elsewhere) / count;
     return count;
   }
 
@@ -76,6 +79,7 @@ struct TabHand {
   std::uint64_t steps = 0;
   double heard = 0;      // when the page said something last
   double computing = 0;  // of a step, s, in the call before
+  double elsewhere = 0;  // before steps, s, in this call
 };
 
 }  // namespace palpate::tab

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
+#include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "sensor/stream_statistics.hpp"
@@ -25,6 +27,12 @@ constexpr std::string_view kFrames = "width=320,rate=15";
 
 // s; the first frame is there.
 constexpr double kFirstFrame = 0.05;
+
+// Why there is no surface after the first frame.
+std::string lack_of(const SimulatedStream& stream) {
+  const std::string problem = stream.state().problem;
+  return problem.empty() ? fmt::format("no frame within {:g} s", kFirstFrame) : problem;
+}
 
 // `rest`: ":SCENE,KEY=VALUE", of which each part may be missing.
 Touched camera_of(std::string_view rest) {
@@ -61,13 +69,16 @@ TabSource::TabSource(Touched touched)
   initial_ = preparation_;
   if (touched_.camera == nullptr) return;
   const Stream::Sink push = sensor::sink_of(source_);
-  stream_.emplace(*touched_.camera, name(),
-                  [this, push](const DepthFrame& frame, const Source::StartTime& start) {
-                    lens_ = frame.camera;
-                    if (frame.T_world_sensor) source_.set_pose(*frame.T_world_sensor);
-                    push(frame, start);
-                  });
+  stream_.emplace(
+      *touched_.camera, name(),
+      [this, push](const DepthFrame& frame, const Source::StartTime& start) {
+        lens_ = frame.camera;
+        if (frame.T_world_sensor) source_.set_pose(*frame.T_world_sensor);
+        push(frame, start);
+      },
+      SimulatedStreamOptions{}, [this] { source_.keep(); });
   stream_->advance(kFirstFrame);
+  if (!source_.points()) throw Error(fmt::format("{}: {}", name(), lack_of(*stream_)));
 }
 
 Source& TabSource::added() {
@@ -96,7 +107,7 @@ void TabSource::prepare(const Preparation& wanted) {
 }
 
 void TabSource::advance(double time) {
-  if (stream_) stream_->advance(time);
+  if (stream_) stream_->advance(std::max(time, kFirstFrame));
 }
 
 std::vector<ViewerOptions::Stream> TabSource::streams() const {

@@ -52,7 +52,8 @@ class TabSource {
   /// What could not be prepared leaves the surface as it was. @throws Error as preparing does.
   void prepare(const Preparation& wanted);
 
-  /// Prepares the frames that are due at `time`, s, which never goes back.
+  /// Prepares the frames that are due at `time`, s, which never goes back; those of the first 50 ms
+  /// are prepared at once.
   void advance(double time);
   /// The camera as the page shows it.
   [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;

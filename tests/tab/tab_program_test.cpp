@@ -86,6 +86,22 @@ TEST(TabProgram, AHandPressesOnWhatACameraSees) {
   EXPECT_NEAR(page.force().z(), expected, 0.06 + 0.1 * expected) << "by other means";
 }
 
+TEST(TabProgram, WhatACameraShowedLastStays) {
+  Page page(simulated("camera:simulated:still,frames=3"));
+  page.run(3);
+  page.press(4e-3, make_simulated_table().free_patch);
+  EXPECT_GT(page.force().z(), 0.5);
+}
+
+TEST(TabProgram, ACameraWithoutAFrameIsRefusedInWords) {
+  try {
+    const Page page(simulated("camera:simulated:still,phase=0.5"));
+    ADD_FAILURE() << "there is nothing to touch";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), "still: no frame within 0.05 s");
+  }
+}
+
 TEST(TabProgram, ACameraGivesTheSameForcesAgain) {
   Page one(simulated("camera:simulated:desk"));
   Page other(simulated("camera:simulated:desk"));
