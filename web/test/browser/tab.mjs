@@ -187,7 +187,7 @@ test("another page includes it as the documents show, and gives it a file, at on
     await touch(page, frame);
     assert.deepEqual(page.troubles, [], "the browser complains");
     await page.goto(`${server.address}early.html`);
-    await warned(await framed(), "point.xyz");
+    await shows(await framed(), "point");
     await page.evaluate(() => window.touched.close());
     assert.equal(await page.locator("iframe").count(), 0);
   } finally {
