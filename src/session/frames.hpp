@@ -11,7 +11,8 @@ namespace palpate::session {
 void publish_surface(const Source& prepared, Source& source);
 
 /// The points of a frame's pixels in the camera's frame, as a driver would hand them to the paper's
-/// program. The lens is taken to be without distortion.
+/// program. The lens is taken to be without distortion. @throws Error when there is not one depth a
+/// pixel, or no pixel.
 [[nodiscard]] PointCloud cloud_of(const DepthFrame& frame);
 
 /// What a camera sees, as drawn: half as far again as what it looks at, in the median `depth` m
