@@ -130,6 +130,14 @@ template <class T>
   return json;
 }
 
+/// A value in an error's words: what is deep or long comes from a file that nobody trusts.
+[[nodiscard]] inline std::string brief(const Json& json) {
+  if (!json.is_string() && !json.is_number()) return json.type_name();
+  constexpr std::size_t kMost = 80;  // characters, as many as a line of a terminal has
+  const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
 /// A choice by its name, or, as earlier versions wrote it, by its number.
 /// @throws Error when there is none of it.
 template <class Choice>
@@ -138,7 +146,7 @@ template <class Choice>
   for (const Named<Choice>& each : table) {
     if (json == each.name || json == static_cast<int>(each.choice)) return each.choice;
   }
-  throw Error(fmt::format("{} is none of {}", json.dump(), fmt::join(names_of(table), ", ")));
+  throw Error(fmt::format("{} is none of {}", brief(json), fmt::join(names_of(table), ", ")));
 }
 
 /// Reads what exact_json() wrote. @throws Error when a choice is unknown, nlohmann::json::exception

@@ -59,6 +59,24 @@ TEST(OptionsJson, ChoicesThatThereAreNotAreRefused) {
   }
 }
 
+TEST(OptionsJson, WhatIsRefusedIsNamedInShortHoweverDeepItIs) {
+  const auto words = [](const Json& json) {
+    try {
+      return std::string(name_in(choices(Policy()), choice_in<Policy>(json)));
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      return text.substr(0, text.find(" is none of"));
+    }
+  };
+  constexpr std::size_t kDeep = 1'000'000;  // calls of a function that are more than a stack holds
+  EXPECT_EQ(words(Json::parse(std::string(kDeep, '[') + std::string(kDeep, ']'))), "array");
+  EXPECT_EQ(words("fusion"), "\"fusion\"");
+  EXPECT_EQ(words(-3), "-3");
+  EXPECT_EQ(words(true), "boolean");
+  EXPECT_EQ(words(std::string(1000, 'x')), "\"" + std::string(79, 'x') + "...");
+  EXPECT_EQ(words("\xff"), "\"\\ufffd\"") << "no UTF-8";
+}
+
 TEST(OptionsJson, WhatARecordingDoesNotHaveKeepsItsDefault) {
   FieldOptions options;
   take_exact(Json::parse(R"({"kind": "metaball"})"), options);
