@@ -192,6 +192,11 @@ void Viewer::time_line_changed() {
   parts.server.post([&parts] { parts.run.sessions().send_time_line(); });
 }
 
+void Viewer::envelope_changed() {
+  Parts& parts = *parts_;
+  parts.server.post([&parts] { parts.run.sessions().send_envelope(); });
+}
+
 void Viewer::record_ended() {
   Parts& parts = *parts_;
   parts.server.post([&parts] { parts.run.sessions().end_record(); });

@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <thread>
 
 #include "apps/palpate/record/recorder.hpp"
-#include "apps/palpate/replay/playback.hpp"
+#include "apps/playing.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "bag/mcap_writer.hpp"
@@ -22,7 +20,7 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kBegin = 7;  // s, on the run's clock
+constexpr double kBegin = Playing::kBegin;
 constexpr int kSteps = 6000;
 
 using States = std::vector<ServoState>;
@@ -115,29 +113,6 @@ TEST_F(TimeLineTest, ThePastIsOfTheStepsBefore) {
   EXPECT_TRUE(hand.past(1.5, [] { return true; }).empty());
 }
 
-// A player whose threads run, and what it told.
-struct Playing {
-  explicit Playing(const std::string& path) : player(path) {
-    player.start({[this] { ++changes; }, [this](const std::string& why) { complaint = why; }});
-  }
-  ~Playing() { player.stop(); }
-  Playing(const Playing&) = delete;
-  Playing& operator=(const Playing&) = delete;
-
-  // Hangs until the test's time is over if that never comes.
-  static void wait(const std::function<bool()>& so) {
-    while (!so()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  [[nodiscard]] double shown(std::size_t hand) {
-    return player.servos()[hand]->state().time - kBegin;
-  }
-
-  Playback player;
-  Playback::TimeLine line = player.time_line();
-  std::atomic<int> changes{0};
-  std::string complaint;
-};
-
 TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   Playing playing(path());
   Playback& player = playing.player;
@@ -160,7 +135,7 @@ TEST_F(TimeLineTest, APlayerSeeksPlaysToTheEndAndBeginsAgain) {
   EXPECT_EQ(line.moment().time, line.length) << "it ends there";
   EXPECT_EQ(line.moment().speed, 4);
   expect_same(player.servos()[0]->state(), felt_states[0].back());
-  EXPECT_EQ(playing.complaint, "");
+  EXPECT_TRUE(playing.complained().empty());
 }
 
 TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
@@ -176,6 +151,8 @@ TEST_F(TimeLineTest, TheEnvelopeHasTheLargestForceOfEachPart) {
   }
   Playing::wait([&] { return playing.line.envelope() == largest; });
   EXPECT_GT(*std::ranges::max_element(largest), 0.1F);
+  Playing::wait([&] { return playing.envelopes > 0 && playing.changes > 0; });
+  EXPECT_EQ(playing.changes, 1) << "the past is told where it begins, and not while it is read";
 }
 
 TEST_F(TimeLineTest, TheFieldIsTheOneThatWasFeltThen) {

@@ -139,6 +139,8 @@ TEST(TimeLine, AViewerShowsStatesThatNoServoMade) {
   EXPECT_FALSE(rig.servo->state().paused);
   rig.viewer->time_line_changed();
   EXPECT_EQ(client->receive_json("envelope")["forces"].size(), 2u);
+  rig.viewer->envelope_changed();
+  EXPECT_EQ(client->receive_json("envelope")["forces"].size(), 2u);
 }
 
 TEST(TimeLine, StatesThatGoBackInTimeAreReportedAsTheyAre) {

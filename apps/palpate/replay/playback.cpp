@@ -93,9 +93,9 @@ void Playback::read_forces(const std::stop_token& stop) {
   while (!stop.stop_requested() && run_.read_forces(1)) {
     if (clock.now() - notified < kNews) continue;
     notified = clock.now();
-    listener_.changed();
+    listener_.envelope();
   }
-  if (!stop.stop_requested()) listener_.changed();
+  if (!stop.stop_requested()) listener_.envelope();
 }
 
 }  // namespace palpate::app

@@ -23,7 +23,8 @@ class Playback {
 
   /// Callbacks on the playback's threads.
   struct Listener {
-    std::function<void()> changed;  ///< there is another envelope, or another past
+    std::function<void()> changed;   ///< there is another past, and maybe another envelope
+    std::function<void()> envelope;  ///< there is another envelope
     std::function<void(const std::string&)> complain;  ///< what is damaged
   };
 

@@ -37,7 +37,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
   ViewerControls controls;
   controls.time_line = playback.time_line();
   Viewer viewer(playback.scene(), playback.servos(), options, controls);
-  playback.start({[&] { viewer.time_line_changed(); },
+  playback.start({[&] { viewer.time_line_changed(); }, [&] { viewer.envelope_changed(); },
                   [&](const std::string& why) {
                     viewer.notice(Viewer::NoticeLevel::warning, why);
                     fmt::print(stderr, "{}: {}\n", path, why);

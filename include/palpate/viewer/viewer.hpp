@@ -220,6 +220,9 @@ class Viewer {
   void settings_changed();
   /// There is another envelope or another past: notifies every page. Any thread but a servo's.
   void time_line_changed();
+  /// There is another envelope: notifies every page, whose past stays as it is. Any thread but a
+  /// servo's.
+  void envelope_changed();
   /// Notifies every page that the recording ended by itself. Any thread but a servo's.
   void record_ended();
 
