@@ -28,6 +28,8 @@ constexpr std::array<Example, 4> kExamples = {{{"rabbit", "synthetic:rabbit"},
 // it are there at once.
 constexpr std::size_t kLargestFile = 512 << 20;
 
+constexpr std::size_t kMostNews = 8;  // that wait for a page: more nobody reads (judgement)
+
 // Nobody else can speak to a worker; what a page says while a cloud is prepared comes at once
 // afterwards, so how much it says in a second is no sign of an attack.
 ViewerOptions completed(ViewerOptions options) {
@@ -66,9 +68,10 @@ TabPage::TabPage(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& 
                  std::string news)
     : outside_(std::move(outside)),
       stopwatch_(stopwatch),
-      news_(std::move(news)),
       view_(scene, std::move(servos), completed(options), completed(controls)),
-      encoder_(scene, view_.encoding()) {}
+      encoder_(scene, view_.encoding()) {
+  if (!news.empty()) warn(news);
+}
 
 void TabPage::connect(double now) {
   leave();
@@ -80,6 +83,14 @@ void TabPage::receive(std::string_view text, double now) {
   if (!page_) return;
   sessions().receive(*page_, text, now);
   flush();
+}
+
+void TabPage::warn(const std::string& words) {
+  if (!view_.budgets().empty()) {
+    sessions().send({Viewer::NoticeLevel::warning, words});
+  } else if (news_.size() < kMostNews && !std::ranges::count(news_, words)) {
+    news_.push_back(words);
+  }
 }
 
 void TabPage::tell(double now) {
@@ -99,7 +110,7 @@ void TabPage::tell_news(double now) {
   }
   const std::set<std::size_t> budgets = view_.budgets();
   if (budgets.empty()) return;
-  if (!news_.empty()) warn(std::exchange(news_, {}));
+  for (const std::string& words : std::exchange(news_, {})) warn(words);
   if (now < done_.next_picture) return;
   const double begin = stopwatch_.now();
   view_.show(encoder_.encode(budgets, now));

@@ -24,7 +24,7 @@ namespace palpate::tab {
 class TabPage {
  public:
   /// Scene, servos and stopwatch outlive it. What `options` and `controls` leave open and every tab
-  /// has is filled in. `news`: said to the first page.
+  /// has is filled in. `news`: warned of.
   TabPage(Scene& scene, std::vector<Servo*> servos, const ViewerOptions& options,
           const ViewerControls& controls, Outside outside, const Clock& stopwatch,
           std::string news);
@@ -36,7 +36,8 @@ class TabPage {
   void receive(std::string_view text, double now);
   /// What there is to tell at `now`.
   void tell(double now);
-  void warn(const std::string& words) { sessions().send({Viewer::NoticeLevel::warning, words}); }
+  /// Says what is wrong; while no page is there, to the next one.
+  void warn(const std::string& words);
 
  private:
   // When what was done last.
@@ -52,7 +53,7 @@ class TabPage {
 
   Outside outside_;
   const Clock& stopwatch_;
-  std::string news_;
+  std::vector<std::string> news_;  // not said yet
   viewer::RunView view_;
   viewer::SceneEncoder encoder_;
   std::optional<viewer::Session> page_;

@@ -26,12 +26,14 @@ struct Stopped final : Clock {
 struct HeardPage {
   using Make = std::function<std::unique_ptr<TabRun>(Outside, const Clock& stopwatch)>;
 
-  explicit HeardPage(const Make& make)
+  /// `alone`: s before it comes.
+  explicit HeardPage(const Make& make, double alone = 0)
       : tab(make({[this](std::string_view bytes, bool text) { take(std::string(bytes), text); },
                   [this](int code, const std::string&) { closed = code; },
                   [this](const std::string& name) { opened = name; }},
                  stopwatch)) {
     tab->run(now);
+    run(alone);
     connect();
   }
   void connect() {
@@ -56,6 +58,13 @@ struct HeardPage {
       past = std::move(bytes);
       ++pasts;
     }
+  }
+  /// How many notices hold these words.
+  [[nodiscard]] std::ptrdiff_t notices(const std::string& words) const {
+    return std::ranges::count_if(said, [&](const json& message) {
+      return message["type"] == "notice" &&
+             std::string(message["text"]).find(words) != std::string::npos;
+    });
   }
   [[nodiscard]] json last(const std::string& type) const {
     const auto found = std::find_if(said.rbegin(), said.rend(),

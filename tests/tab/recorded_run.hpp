@@ -31,10 +31,13 @@ inline FileBytes in_memory(const std::string& text) {
 
 /// The page of a recording.
 struct ReplayPage : HeardPage {
-  explicit ReplayPage(const std::string& file, const std::string& name = "run.mcap")
-      : HeardPage([&](Outside outside, const Clock& clock) {
-          return open_run(name, in_memory(file), std::move(outside), clock);
-        }) {}
+  explicit ReplayPage(const std::string& file, const std::string& name = "run.mcap",
+                      double alone = 0)
+      : HeardPage(
+            [&](Outside outside, const Clock& clock) {
+              return open_run(name, in_memory(file), std::move(outside), clock, "news");
+            },
+            alone) {}
 
   void play(bool on, double speed = 1) { say({{"type", "play"}, {"on", on}, {"speed", speed}}); }
   void seek(double time) {
