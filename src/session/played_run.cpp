@@ -94,7 +94,13 @@ bool PlayedRun::show(double elapsed, const std::function<bool()>& cancelled) {
     const std::lock_guard lock(mutex_);
     sought = std::exchange(sought_, std::nullopt);
   }
-  sought ? jump(*sought, cancelled) : advance(elapsed);
+  try {
+    sought ? jump(*sought, cancelled) : advance(elapsed);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    moment_.playing = false;
+    throw;
+  }
   return sought.has_value();
 }
 

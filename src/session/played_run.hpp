@@ -46,12 +46,15 @@ class PlayedRun {
   [[nodiscard]] bool is_sought() const;
 
   /// Shows what was sought and reads the forces before it, unless that is `cancelled`; else what is
-  /// `elapsed` s later, where it plays. True: something was sought.
+  /// `elapsed` s later, where it plays. True: something was sought. @throws Error when a step is
+  /// damaged, nlohmann::json::exception; it is paused then, and plays on behind it.
   bool show(double elapsed, const std::function<bool()>& cancelled);
   /// Shows the cameras' frames of the present moment, which it returns. Who cannot complains.
   double show_frames(const std::function<void(const std::exception&)>& complain);
   /// Reads the forces of the next `steps` for the envelope. False: there are no more.
   bool read_forces(std::size_t steps);
+  /// What read_forces() found damaged so far, in words. For its thread.
+  [[nodiscard]] const std::vector<std::string>& losses() const { return steps_.losses(); }
 
  private:
   struct FieldChange {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "message/cdr.hpp"
@@ -28,9 +29,19 @@ constexpr double kEver = std::numeric_limits<double>::infinity();
 constexpr std::array<double, 4> kBack{0.02, 0.5, 20, kEver};
 
 Eigen::Isometry3d pose_of_rows(const std::vector<double>& rows) {
+  if (rows.size() != 12) throw Error(fmt::format("its pose has {} numbers, not 12", rows.size()));
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (int i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = rows.at(static_cast<std::size_t>(i));
+  for (int i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = rows[static_cast<std::size_t>(i)];
   return pose;
+}
+
+// `what` of the file at `path` is read by `work`, or told to be damaged.
+void read(const std::string& path, const char* what, const auto& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {} is damaged: {}", path, what, error.what()));
+  }
 }
 
 // Bit for bit, unlike message::read_depth().
@@ -70,6 +81,30 @@ Recording::Origin origin_of(const Json& json) {
   return origin;
 }
 
+// Is it the last message of a frame?
+bool take(const std::string& type, bag::View data, RecordedFrame& recorded) {
+  DepthFrame& frame = recorded.frame;
+  if (type == message::ros_name(message::CameraInfo::kName)) {
+    message::CameraInfo info;
+    message::decode(data, info);
+    frame.camera = lens_of(info);
+  } else if (type == message::ros_name(message::Image::kName)) {
+    message::Image image;
+    message::decode(data, image);
+    take_depths(image, frame);
+  } else if (type == message::ros_name(message::Cloud::kName)) {
+    message::Cloud cloud;
+    message::decode(data, cloud);
+    frame.cloud = std::make_shared<PointCloud>(cloud_of(cloud));
+  } else if (type == message::ros_name(message::FrameUse::kName)) {
+    message::decode(data, recorded.use);
+    frame.stamp = recorded.use.stamp;
+    if (!recorded.use.pose.empty()) frame.T_world_sensor = pose_of_rows(recorded.use.pose);
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(file_) {
@@ -83,6 +118,8 @@ Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(fil
     for (const Json& json : setup.at("sources")) sources_.push_back(origin_of(json));
     if (hands_.empty()) throw Error("no hand is in it");
     in_picture_axes_ = in_picture_axes_ && !sources_.empty();
+  } catch (const std::bad_alloc&) {
+    throw;  // it may well be one
   } catch (const std::exception& error) {
     throw Error(fmt::format("{}: no recording of a run: {}", path(), error.what()));
   }
@@ -166,12 +203,17 @@ std::optional<Recording::Step> Recording::Steps::next(double until) {
     const std::string& topic = reader_.channel_of(message).topic;
     const std::size_t hand = topics_.at(topic);
     if (topic.ends_with("/change")) {
-      message::decode(message.data, changes_[hand].emplace_back());
-    } else {
-      upcoming_ = {hand, {}, std::exchange(changes_[hand], {})};
-      message::decode(message.data, upcoming_->tick);
-      if (!std::isfinite(upcoming_->tick.time)) throw Error("a step is damaged: it has no time");
+      message::Change change;
+      read(recording_->path(), "a change", [&] { message::decode(message.data, change); });
+      changes_[hand].push_back(std::move(change));
+      continue;
     }
+    message::Tick tick;
+    read(recording_->path(), "a step", [&] {
+      message::decode(message.data, tick);
+      if (!std::isfinite(tick.time)) throw Error("it has no time");
+    });
+    upcoming_ = {hand, std::move(tick), std::exchange(changes_[hand], {})};
   }
   if (!upcoming_ || upcoming_->tick.time > until) return std::nullopt;
   return std::exchange(upcoming_, std::nullopt);
@@ -205,27 +247,11 @@ void Recording::Frames::seek(double time) {
 
 std::optional<RecordedFrame> Recording::Frames::next() {
   RecordedFrame recorded;
-  DepthFrame& frame = recorded.frame;
   for (bag::Message message; reader_.next(message);) {
     const std::string& type = reader_.channel_of(message).schema.name;
-    if (type == message::ros_name(message::CameraInfo::kName)) {
-      message::CameraInfo info;
-      message::decode(message.data, info);
-      frame.camera = lens_of(info);
-    } else if (type == message::ros_name(message::Image::kName)) {
-      message::Image image;
-      message::decode(message.data, image);
-      take_depths(image, frame);
-    } else if (type == message::ros_name(message::Cloud::kName)) {
-      message::Cloud cloud;
-      message::decode(message.data, cloud);
-      frame.cloud = std::make_shared<PointCloud>(cloud_of(cloud));
-    } else if (type == message::ros_name(message::FrameUse::kName)) {
-      message::decode(message.data, recorded.use);
-      frame.stamp = recorded.use.stamp;
-      if (!recorded.use.pose.empty()) frame.T_world_sensor = pose_of_rows(recorded.use.pose);
-      return recorded;
-    }
+    bool whole = false;
+    read(recording_->path(), "a frame", [&] { whole = take(type, message.data, recorded); });
+    if (whole) return recorded;
   }
   return std::nullopt;
 }

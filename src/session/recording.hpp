@@ -54,9 +54,6 @@ class Recording {
   /// Was the run in the axes of a camera's picture, y down?
   [[nodiscard]] bool in_picture_axes() const { return in_picture_axes_; }
 
-  /// What of the file is lost, in words.
-  [[nodiscard]] const std::vector<std::string>& losses() const { return reader_.contents().losses; }
-
   /// When the first and the last step were. @throws Error when there is no step.
   struct Stretch {
     double begin = 0;
@@ -93,7 +90,7 @@ class Recording::Steps {
   /// Last step at or before `time`, else the first; none if there is no step. next() continues
   /// after it.
   [[nodiscard]] std::optional<Step> at(double time);
-  /// Damage found so far.
+  /// What of the file is lost, as far as it was read, in words.
   [[nodiscard]] const std::vector<std::string>& losses() const;
 
  private:

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <limits>
 #include <utility>
 
 #include "message/transforms.hpp"
+#include "palpate/base/error.hpp"
 #include "servo/step_trace.hpp"
 #include "session/frames.hpp"
 #include "session/recorded_messages.hpp"
@@ -20,6 +22,8 @@ constexpr double kReadOn = 0.5;  // s that are read on to come to a later frame
 // s that are looked through for a frame before a moment. Most often there is one just before it,
 // and a second of them is some 40 MB.
 constexpr std::array<double, 4> kFramesBack{0.2, 1, 10, std::numeric_limits<double>::infinity()};
+
+constexpr int kMostDamaged = 100;  // steps that are passed over; judgement
 
 void count(GuardNote notes, Guard::State::Counts& counts) {
   const auto add = [notes](GuardNote bit, std::uint64_t& count) {
@@ -63,9 +67,15 @@ std::vector<ViewerControls::TimeLine::Force> ShownHand::past(
   std::vector<ViewerControls::TimeLine::Force> forces;
   const double now = servo_.state().time;
   earlier_.seek(now - span);
-  while (const std::optional<Recording::Step> step = earlier_.next(now)) {
+  for (int damaged = 0; damaged < kMostDamaged;) {
     if (cancelled()) return {};
-    forces.push_back({step->tick.time, message::eigen(step->tick.force).cast<float>()});
+    try {
+      const std::optional<Recording::Step> step = earlier_.next(now);
+      if (!step) break;
+      forces.push_back({step->tick.time, message::eigen(step->tick.force).cast<float>()});
+    } catch (const Error&) {
+      ++damaged;
+    }
   }
   return forces;
 }
@@ -92,28 +102,41 @@ std::optional<RecordedFrame> ShownSource::next_felt() {
   return std::nullopt;
 }
 
+// Takes the newest frame that was felt up to `time`. What is damaged is passed over by the next
+// call.
+void ShownSource::read_on(double time, std::optional<RecordedFrame>& newest) {
+  for (;;) {
+    if (!upcoming_) upcoming_ = next_felt();
+    if (!upcoming_ || upcoming_->use.start > time) return;
+    newest = std::exchange(upcoming_, std::nullopt);
+  }
+}
+
 void ShownSource::show(double time) {
   std::optional<RecordedFrame> newest;
-  const auto read_on = [&] {
-    while (upcoming_ && upcoming_->use.start <= time) {
-      newest = std::move(upcoming_);
-      upcoming_ = next_felt();
+  std::exception_ptr damage;
+  const auto look = [&] {
+    try {
+      read_on(time, newest);
+    } catch (const std::exception&) {
+      damage = std::current_exception();
     }
   };
   const bool goes_on = time >= shown_until_ && time - shown_until_ < kReadOn;
+  shown_until_ = time;
   if (goes_on) {
-    read_on();
+    look();
     if (newest) prepare(*newest);
   } else {
     for (const double back : kFramesBack) {
       frames_.seek(time - back);
-      upcoming_ = next_felt();
-      read_on();
+      upcoming_.reset();
+      look();
       if (newest) break;
     }
     newest ? prepare(*newest) : source_->publish(nullptr);
   }
-  shown_until_ = time;
+  if (damage) std::rethrow_exception(damage);
 }
 
 // Prepares the frame alone, without the frames before it and without where tools were.

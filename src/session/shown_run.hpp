@@ -32,6 +32,7 @@ class ShownHand {
   void advance(double time);
 
   /// The forces in the `span` (s) before the step that is shown; none where `cancelled`.
+  /// Damaged ones are left out.
   [[nodiscard]] std::vector<ViewerControls::TimeLine::Force> past(
       double span, const std::function<bool()>& cancelled);
 
@@ -55,6 +56,7 @@ class ShownSource {
   ShownSource(const Recording& recording, std::size_t index, Scene& scene);
 
   /// Shows the newest frame that was felt at `time` (s, on the run's clock), prepared by itself.
+  /// @throws Error when a frame was damaged: the newest that was read before it is shown.
   void show(double time);
 
   [[nodiscard]] bool lives() const { return origin_->lives; }
@@ -65,6 +67,7 @@ class ShownSource {
 
  private:
   [[nodiscard]] std::optional<RecordedFrame> next_felt();
+  void read_on(double time, std::optional<RecordedFrame>& newest);
   void prepare(const RecordedFrame& recorded);
 
   Source* source_;

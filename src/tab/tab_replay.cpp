@@ -31,11 +31,8 @@ struct TabReplay::Parts {
         stopwatch(clock),
         played(std::move(file)),
         page(played.scene(), played.servos(), viewer_options(), controls(), std::move(outside),
-             stopwatch, first_news(news)) {}
-
-  [[nodiscard]] std::string first_news(const std::string& news) const {
-    const std::vector<std::string>& losses = played.recording().losses();
-    return news.empty() && !losses.empty() ? name + ": " + losses.front() : news;
+             stopwatch, news) {
+    tell_losses();
   }
 
   [[nodiscard]] ViewerOptions viewer_options() {
@@ -60,13 +57,18 @@ struct TabReplay::Parts {
 
   void complain(const std::exception& error) { page.warn(words_of(error, name)); }
 
-  // Damaged data end what reads them alone.
-  void guard(bool& goes_on, const std::function<void()>& work) {
-    if (!goes_on) return;
+  // The first of what is damaged and was not told yet.
+  void tell_losses() {
+    const std::vector<std::string>& losses = played.losses();
+    const std::size_t known = std::exchange(told_losses, losses.size());
+    if (known < losses.size()) page.warn(name + ": " + losses[known]);
+  }
+
+  // Damaged data end what is done with them alone.
+  void guard(const std::function<void()>& work) {
     try {
       work();
     } catch (const std::exception& error) {
-      goes_on = false;
       complain(error);
     }
   }
@@ -84,10 +86,13 @@ struct TabReplay::Parts {
   }
 
   void read_ahead(double now) {
-    reading = played.read_forces(kAhead);
+    if (!reading) return;
+    reading = false;
+    guard([this] { reading = played.read_forces(kAhead); });
     if (reading && now - told < kNews) return;
     told = now;
     page.sessions().send_envelope();
+    if (!reading) tell_losses();
   }
 
   std::string name;
@@ -98,7 +103,7 @@ struct TabReplay::Parts {
   std::optional<double> frame = {};  // the moment whose frames are shown
   double next_frame = -1e300;
   double told = -1e300;  // when the envelope was
-  bool showing = true;
+  std::size_t told_losses = 0;
   bool reading = true;
 };
 
@@ -120,9 +125,9 @@ int TabReplay::run(double now) {
   Parts& parts = *parts_;
   const double elapsed = now - parts.last.value_or(now);
   parts.last = now;
-  parts.guard(parts.showing, [&] { parts.show(elapsed); });
+  parts.guard([&] { parts.show(elapsed); });
   parts.show_frames(now);
-  parts.guard(parts.reading, [&] { parts.read_ahead(now); });
+  parts.read_ahead(now);
   parts.page.tell(now);
   return 0;
 }

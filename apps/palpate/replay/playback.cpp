@@ -43,7 +43,7 @@ void Playback::wake() {
   changed_.notify_all();
 }
 
-// Damaged data end their thread alone.
+// Damaged data end what is done with them alone.
 void Playback::guard(const std::function<void()>& work) {
   try {
     work();
@@ -68,7 +68,8 @@ void Playback::show_steps(const std::stop_token& stop) {
       }
     }
     const double now = clock.now();
-    const bool jumped = run_.show(now - looked, stopped);
+    bool jumped = false;
+    guard([&] { jumped = run_.show(now - looked, stopped); });
     looked = jumped ? clock.now() : now;
     if (jumped && !stopped() && !run_.is_sought()) listener_.changed();
   }

@@ -40,7 +40,7 @@ void view_recording(const std::string& path, const PagePlan& page) {
   playback.start({[&] { viewer.time_line_changed(); }, [&] { viewer.envelope_changed(); },
                   [&](const std::string& why) {
                     viewer.notice(Viewer::NoticeLevel::warning, why);
-                    fmt::print(stderr, "{}: {}\n", path, why);
+                    fmt::print(stderr, "{}\n", why);
                   }});
   const Interruption interruption;
   announce_page(viewer.url(), page.address);
