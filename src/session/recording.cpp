@@ -136,25 +136,40 @@ bag::Attachment Recording::attachment(const std::string& name) const {
       losses.empty() ? "give a file that palpate touch --record wrote" : losses.front()));
 }
 
-// ns since 1970; 0 for a time before 1970.
+// ns since 1970; 0 for a time before 1970. Both are what a file says they are.
 std::uint64_t Recording::logged_at(double time) const {
+  constexpr double kMost = 9.2e18;  // ns: below the largest std::int64_t, 292 years
   const double ns = std::floor(1e9 * time);
-  if (!(ns > -static_cast<double>(epoch_))) return 0;
-  return static_cast<std::uint64_t>(epoch_ + static_cast<std::int64_t>(ns));
+  if (!(ns > -kMost)) return 0;
+  const auto after = static_cast<std::int64_t>(std::min(ns, kMost));
+  if (epoch_ < 0 && after < 0) return 0;
+  if (epoch_ < 0 || after < 0) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(epoch_ + after, 0));
+  }
+  return static_cast<std::uint64_t>(epoch_) + static_cast<std::uint64_t>(after);
 }
 
 Recording::Stretch Recording::stretch() const {
   Stretch stretch{kEver, 0};
-  const double end = 1e-9 * static_cast<double>(reader_.contents().end - epoch_) + 1e-3;
+  const auto logged = static_cast<double>(reader_.contents().end);
+  const double end = 1e-9 * (logged - static_cast<double>(epoch_)) + 1e-3;
+  std::vector<std::string> losses;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Steps steps(*this, i);
     const std::optional<Step> first = steps.next();
+    losses = steps.losses();
     if (!first) continue;
+    const Step last = steps.at(end).value_or(*first);
     stretch.begin = std::min(stretch.begin, first->tick.time);
-    stretch.end = std::max(stretch.end, steps.at(end)->tick.time);
+    stretch.end = std::max(stretch.end, last.tick.time);
   }
   const bool is_one = stretch.begin <= stretch.end && std::isfinite(stretch.end - stretch.begin);
-  if (!is_one) throw Error(path() + ": there is no step in it");
+  if (!is_one) {
+    const std::size_t before = reader_.contents().losses.size();  // any of the file was read
+    if (losses.empty()) throw Error(path() + ": there is no step in it");
+    throw Error(fmt::format("{}: there is no step in it; {}", path(),
+                            losses.size() > before ? losses[before] : losses.back()));
+  }
   return stretch;
 }
 
