@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -54,6 +55,16 @@ std::vector<ViewerOptions::Stream> PlayedRun::streams() const {
     if (source.lives()) streams.push_back(source.stream());
   }
   return streams;
+}
+
+ViewerOptions PlayedRun::viewer_options() {
+  ViewerOptions options;
+  options.scene = std::filesystem::path(run_.recording.path()).filename();
+  options.streams = [this] { return streams(); };
+  if (!run_.recording.in_picture_axes()) return options;
+  options.eye = run_.scene.source(0).pose().translation();
+  options.up = -Eigen::Vector3d::UnitY();
+  return options;
 }
 
 bool PlayedRun::has_cameras() const {

@@ -24,6 +24,7 @@ class PlayedRun {
 
   static constexpr double kPast = 5;               ///< s that a hand's past goes back
   static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
+  static constexpr double kNews = 0.5;  ///< s between two envelopes while it is read; judgement
 
   /// Shows the first moment that has a surface, its past with the first show(). `called`: there is
   /// something else to show. @throws Error when the file is no recording of a run.
@@ -34,12 +35,13 @@ class PlayedRun {
 
   [[nodiscard]] Scene& scene() { return run_.scene; }
   [[nodiscard]] std::vector<Servo*> servos();
-  [[nodiscard]] const Recording& recording() const { return run_.recording; }
 
   /// Shows and moves this run, which outlives it. Times from 0 at the run's first step: a seek
   /// beyond the length goes to the end; who plays at the end begins again.
   [[nodiscard]] TimeLine time_line();
-  [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;
+  /// What pages of this run, which outlives them, have in common: its name, its cameras and, where
+  /// it was in the axes of a camera's picture, y down, the view of that camera.
+  [[nodiscard]] ViewerOptions viewer_options();
   [[nodiscard]] bool has_cameras() const;
   [[nodiscard]] TimeLine::Moment moment() const;
   /// Waits a moment that was sought to be shown?
@@ -62,6 +64,7 @@ class PlayedRun {
     FieldOptions field;
   };
 
+  [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const;
   void seek(double time);
   void play(bool on, double speed);
   void jump(double time, const std::function<bool()>& cancelled);

@@ -17,8 +17,6 @@ namespace {
 
 using session::Setting;
 
-constexpr double kNews = 0.5;  // s between two envelopes while the file is read; judgement
-
 // Steps that one run() reads for the envelope: 0.4 ms in WebAssembly, of the four after which a
 // browser calls it again (judgement).
 constexpr std::size_t kAhead = 200;
@@ -30,19 +28,9 @@ struct TabReplay::Parts {
       : name(std::filesystem::path(file.path()).filename()),
         stopwatch(clock),
         played(std::move(file)),
-        page(played.scene(), played.servos(), viewer_options(), controls(), std::move(outside),
-             stopwatch, news) {
+        page(played.scene(), played.servos(), played.viewer_options(), controls(),
+             std::move(outside), stopwatch, news) {
     tell_losses();
-  }
-
-  [[nodiscard]] ViewerOptions viewer_options() {
-    ViewerOptions options;
-    options.scene = name;
-    options.streams = [this] { return played.streams(); };
-    if (!played.recording().in_picture_axes()) return options;
-    options.eye = played.scene().source(0).pose().translation();
-    options.up = -Eigen::Vector3d::UnitY();
-    return options;
   }
 
   [[nodiscard]] ViewerControls controls() {
@@ -89,7 +77,7 @@ struct TabReplay::Parts {
     if (!reading) return;
     reading = false;
     guard([this] { reading = played.read_forces(kAhead); });
-    if (reading && now - told < kNews) return;
+    if (reading && now - told < session::PlayedRun::kNews) return;
     told = now;
     page.sessions().send_envelope();
     if (!reading) tell_losses();

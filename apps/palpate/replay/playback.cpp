@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kPicture{8};  // between shown steps: 125 Hz; judgement
 constexpr std::chrono::milliseconds kFrame{25};   // between looks for frames: 40 Hz; judgement
-constexpr double kNews = 0.5;  // s between two envelopes while the file is read; judgement
 
 }  // namespace
 
@@ -92,7 +91,7 @@ void Playback::read_forces(const std::stop_token& stop) {
   const SteadyClock clock;
   double notified = clock.now();
   while (!stop.stop_requested() && run_.read_forces(1)) {
-    if (clock.now() - notified < kNews) continue;
+    if (clock.now() - notified < session::PlayedRun::kNews) continue;
     notified = clock.now();
     listener_.envelope();
   }

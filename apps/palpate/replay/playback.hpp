@@ -37,8 +37,6 @@ class Playback {
 
   [[nodiscard]] Scene& scene() { return run_.scene(); }
   [[nodiscard]] std::vector<Servo*> servos() { return run_.servos(); }
-  /// Was the run in the axes of a camera's picture, y down?
-  [[nodiscard]] bool in_picture_axes() const { return run_.recording().in_picture_axes(); }
 
   /// Starts the threads. From now on any thread may call the rest; stop() ends the notifications.
   void start(Listener listener);
@@ -46,7 +44,7 @@ class Playback {
 
   /// PlayedRun's, of this playback, which outlives it.
   [[nodiscard]] TimeLine time_line() { return run_.time_line(); }
-  [[nodiscard]] std::vector<ViewerOptions::Stream> streams() const { return run_.streams(); }
+  [[nodiscard]] ViewerOptions viewer_options() { return run_.viewer_options(); }
 
  private:
   void wake();

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -24,16 +23,10 @@ constexpr std::chrono::milliseconds kLook{50};
 
 void view_recording(const std::string& path, const PagePlan& page) {
   Playback playback(path);
-  ViewerOptions options;
+  ViewerOptions options = playback.viewer_options();
   if (!page.address.empty()) options.address = page.address;
   options.port = page.port;
-  options.up = page.up;
-  if (playback.in_picture_axes()) {
-    options.eye = playback.scene().source(0).pose().translation();
-    if (!page.up) options.up = -Eigen::Vector3d::UnitY();
-  }
-  options.scene = std::filesystem::path(path).filename();
-  options.streams = [&] { return playback.streams(); };
+  if (page.up) options.up = page.up;
   ViewerControls controls;
   controls.time_line = playback.time_line();
   Viewer viewer(playback.scene(), playback.servos(), options, controls);
