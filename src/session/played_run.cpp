@@ -13,6 +13,24 @@
 
 namespace palpate::session {
 
+namespace {
+
+// Does this with each hand. A damaged step of one leaves the others where they belong. The first
+// damage; null: none.
+std::exception_ptr damage_of(auto& hands, const std::function<void(ShownHand&)>& act) {
+  std::exception_ptr damage;
+  for (ShownHand& hand : hands) {
+    try {
+      act(hand);
+    } catch (...) {
+      if (!damage) damage = std::current_exception();
+    }
+  }
+  return damage;
+}
+
+}  // namespace
+
 PlayedRun::PlayedRun(bag::RandomFile file, std::function<void()> called)
     : run_(std::move(file)),
       steps_(run_.recording),
@@ -99,24 +117,31 @@ void PlayedRun::play(bool on, double speed) {
   called_();
 }
 
-bool PlayedRun::show(double elapsed, const std::function<bool()>& cancelled) {
+bool PlayedRun::show(double elapsed, const std::function<bool()>& cancelled,
+                     const Complain& complain) {
   std::optional<double> sought;
+  double before = 0;
   {
     const std::lock_guard lock(mutex_);
     sought = std::exchange(sought_, std::nullopt);
+    before = moment_.time;
   }
   try {
     sought ? jump(*sought, cancelled) : advance(elapsed);
-  } catch (...) {
+  } catch (const std::exception& error) {
+    complain(error);
     const std::lock_guard lock(mutex_);
-    moment_.playing = false;
-    throw;
+    if (!sought_) {  // else somebody chose another moment meanwhile
+      moment_.playing = false;
+      moment_.time = before;
+    }
   }
   return sought.has_value();
 }
 
 void PlayedRun::jump(double time, const std::function<bool()>& cancelled) {
-  for (ShownHand& hand : run_.hands) hand.seek(run_.stretch.begin + time);
+  const auto damage =
+      damage_of(run_.hands, [&](ShownHand& hand) { hand.seek(run_.stretch.begin + time); });
   show_fields(run_.stretch.begin + time);
   for (std::size_t i = 0; i < run_.hands.size(); ++i) {
     std::vector<TimeLine::Force> past =
@@ -124,6 +149,7 @@ void PlayedRun::jump(double time, const std::function<bool()>& cancelled) {
     const std::lock_guard lock(mutex_);
     pasts_[i] = std::move(past);
   }
+  if (damage) std::rethrow_exception(damage);
 }
 
 void PlayedRun::advance(double elapsed) {
@@ -134,8 +160,10 @@ void PlayedRun::advance(double elapsed) {
     time = moment_.time = std::min(moment_.time + elapsed * moment_.speed, run_.length());
     moment_.playing = time < run_.length();
   }
-  for (ShownHand& hand : run_.hands) hand.advance(run_.stretch.begin + time);
+  const auto damage =
+      damage_of(run_.hands, [&](ShownHand& hand) { hand.advance(run_.stretch.begin + time); });
   show_fields(run_.stretch.begin + time);
+  if (damage) std::rethrow_exception(damage);
 }
 
 // The surface around a tool is that of the field which its hand felt.
@@ -151,7 +179,7 @@ void PlayedRun::show_fields(double time) {
   }
 }
 
-double PlayedRun::show_frames(const std::function<void(const std::exception&)>& complain) {
+double PlayedRun::show_frames(const Complain& complain) {
   const double time = moment().time;
   for (ShownSource& source : run_.sources) {
     if (!source.lives()) continue;

@@ -21,6 +21,8 @@ namespace palpate::session {
 class PlayedRun {
  public:
   using TimeLine = ViewerControls::TimeLine;
+  /// Gets what is damaged, or cannot be shown.
+  using Complain = std::function<void(const std::exception&)>;
 
   static constexpr double kPast = 5;               ///< s that a hand's past goes back
   static constexpr std::size_t kEnvelope = 1'000;  ///< parts of the envelope
@@ -48,11 +50,11 @@ class PlayedRun {
   [[nodiscard]] bool is_sought() const;
 
   /// Shows what was sought and reads the forces before it, unless that is `cancelled`; else what is
-  /// `elapsed` s later, where it plays. True: something was sought. @throws Error when a step is
-  /// damaged, nlohmann::json::exception; it is paused then, and plays on behind it.
-  bool show(double elapsed, const std::function<bool()>& cancelled);
-  /// Shows the cameras' frames of the present moment, which it returns. Who cannot complains.
-  double show_frames(const std::function<void(const std::exception&)>& complain);
+  /// `elapsed` s later, where it plays. True: something was sought. A damaged step pauses it, and
+  /// it plays on behind that.
+  bool show(double elapsed, const std::function<bool()>& cancelled, const Complain& complain);
+  /// Shows the cameras' frames of the present moment, which it returns.
+  double show_frames(const Complain& complain);
   /// Reads the forces of the next `steps` for the envelope. False: there are no more.
   bool read_forces(std::size_t steps);
   /// What read_forces() found damaged so far, in words. For its thread.

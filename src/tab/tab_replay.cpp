@@ -62,7 +62,9 @@ struct TabReplay::Parts {
   }
 
   void show(double elapsed) {
-    if (played.show(elapsed, [] { return false; })) page.sessions().send_time_line();
+    const bool jumped = played.show(
+        elapsed, [] { return false; }, [this](const std::exception& error) { complain(error); });
+    if (jumped) page.sessions().send_time_line();
   }
 
   // Frames that take long to prepare come seldom.
@@ -113,7 +115,7 @@ int TabReplay::run(double now) {
   Parts& parts = *parts_;
   const double elapsed = now - parts.last.value_or(now);
   parts.last = now;
-  parts.guard([&] { parts.show(elapsed); });
+  parts.show(elapsed);
   parts.show_frames(now);
   parts.read_ahead(now);
   parts.page.tell(now);

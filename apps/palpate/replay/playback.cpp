@@ -67,8 +67,9 @@ void Playback::show_steps(const std::stop_token& stop) {
       }
     }
     const double now = clock.now();
-    bool jumped = false;
-    guard([&] { jumped = run_.show(now - looked, stopped); });
+    const bool jumped = run_.show(now - looked, stopped, [this](const std::exception& error) {
+      listener_.complain(error.what());
+    });
     looked = jumped ? clock.now() : now;
     if (jumped && !stopped() && !run_.is_sought()) listener_.changed();
   }
@@ -90,12 +91,16 @@ void Playback::show_frames(const std::stop_token& stop) {
 void Playback::read_forces(const std::stop_token& stop) {
   const SteadyClock clock;
   double notified = clock.now();
-  while (!stop.stop_requested() && run_.read_forces(1)) {
-    if (clock.now() - notified < session::PlayedRun::kNews) continue;
-    notified = clock.now();
-    listener_.envelope();
-  }
-  if (!stop.stop_requested()) listener_.envelope();
+  guard([&] {
+    while (!stop.stop_requested() && run_.read_forces(1)) {
+      if (clock.now() - notified < session::PlayedRun::kNews) continue;
+      notified = clock.now();
+      listener_.envelope();
+    }
+  });
+  if (stop.stop_requested()) return;
+  listener_.envelope();
+  if (!run_.losses().empty()) listener_.complain(run_.losses().front());
 }
 
 }  // namespace palpate::app
