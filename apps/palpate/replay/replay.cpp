@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/sources/loaded_scene.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/base/error.hpp"
@@ -34,7 +35,7 @@ DeviceState device_state(const message::Tick& tick) {
 }
 
 void apply(const message::Change& change, Servo& servo) {
-  const Json value = Json::parse(change.value);
+  const session::Json value = session::Json::parse(change.value);
   if (change.what == "reset") servo.reset();
   if (change.what == "contact") {
     ContactSettings contact;
@@ -105,7 +106,7 @@ class SourceReplay {
     done_ = use.publication;
     if (!use.options.empty()) {
       SourceOptions options;
-      session::take_exact(Json::parse(use.options), options);
+      session::take_exact(session::Json::parse(use.options), options);
       source_->change(options);
     }
     if (use.dropped) return;
