@@ -13,7 +13,7 @@ constexpr const char* kNoDds =
 
 struct RosBridge::Inside {};
 
-RosBridge::RosBridge(std::vector<Hand> /*hands*/, const Scene& /*scene*/,
+RosBridge::RosBridge(const std::vector<Hand>& /*hands*/, const Scene& /*scene*/,
                      std::function<std::vector<StreamState>()> /*streams*/,
                      const RosBridgeOptions& /*options*/) {
   throw Error(kNoDds);
