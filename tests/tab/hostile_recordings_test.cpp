@@ -19,6 +19,7 @@
 #include "palpate/base/error.hpp"
 #include "session/options_json.hpp"
 #include "session/recorded_messages.hpp"
+#include "support/effort.hpp"
 #include "support/folder.hpp"
 #include "support/rewritten_bag.hpp"
 #include "tab/recorded_run.hpp"
@@ -82,7 +83,7 @@ TEST_F(TabReplayTest, WhatIsNoRecordingIsRefusedInWords) {
 TEST_F(TabReplayTest, DamagedBytesAreRefusedOrPlayed) {
   std::mt19937 random(1);
   int played = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < test::effort(30); ++i) {
     std::string damaged = file;
     for (int n = 0; n < 1 + i % 8; ++n) {
       damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
@@ -94,11 +95,11 @@ TEST_F(TabReplayTest, DamagedBytesAreRefusedOrPlayed) {
   EXPECT_GT(played, 0);
 }
 
-// How many of `rounds` recordings with wrong values play.
+// How many of `rounds` recordings with wrong values play; every second has few of them.
 int played_with_wrong_values(const std::string& file, int rounds, double length) {
   std::mt19937 random(2);
   int played = 0;
-  for (int i = 0; i < rounds; ++i) {
+  for (int i = 0; i < std::max(2, test::effort(rounds)); ++i) {
     const unsigned rate = i % 2 == 0 ? 20 : 2000;
     const std::string changed = test::rewritten(file, [&](const std::string&, bag::Bytes& data) {
       while (!data.empty() && random() % rate == 0) {

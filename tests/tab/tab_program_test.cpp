@@ -9,6 +9,7 @@
 
 #include "palpate/base/error.hpp"
 #include "sim/simulated_scene.hpp"
+#include "support/effort.hpp"
 #include "tab/heard_page.hpp"
 #include "tab/tab_hand.hpp"
 
@@ -103,6 +104,7 @@ TEST(TabProgram, ACameraWithoutAFrameIsRefusedInWords) {
 }
 
 TEST(TabProgram, ACameraGivesTheSameForcesAgain) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Page one(simulated("camera:simulated:desk"));
   Page other(simulated("camera:simulated:desk"));
   const Eigen::Vector3d patch = make_simulated_table().free_patch;
