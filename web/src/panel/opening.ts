@@ -7,7 +7,6 @@ import type { Notices } from "./notices";
 export class Opening {
   private most = 0; // bytes that the program takes; 0: it takes no file
   private inside = 0; // elements of the page that a dragged file is in
-  private early: File | undefined; // was given before the program was there
 
   constructor(private readonly end: End, private readonly notices: Notices) {
     const field = byId<HTMLInputElement>("open-file");
@@ -17,22 +16,13 @@ export class Opening {
       field.value = ""; // the same one may be chosen again
     });
     this.watchDragging();
-    end.takeGiven?.((file) => this.takeEarly(file));
   }
 
   /** `most`: bytes that a file may have; undefined: this run takes none. */
   begin(most: number | undefined): void {
     this.most = most ?? 0;
     byId("open").hidden = this.most === 0;
-    if (this.early === undefined || this.most === 0) return;
-    this.take(this.early);
-    this.early = undefined;
-  }
-
-  /** A file that may come before the program welcomes this page. */
-  private takeEarly(file: File): void {
-    if (this.most > 0) this.take(file);
-    else this.early = file;
+    if (this.most > 0) this.end.takeGiven?.((file) => this.take(file)); // what came before this run, too
   }
 
   private watchDragging(): void {
