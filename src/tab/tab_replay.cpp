@@ -3,7 +3,6 @@
 
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -52,15 +51,6 @@ struct TabReplay::Parts {
     if (known < losses.size()) page.warn(name + ": " + losses[known]);
   }
 
-  // Damaged data end what is done with them alone.
-  void guard(const std::function<void()>& work) {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      complain(error);
-    }
-  }
-
   void show(double elapsed) {
     const bool jumped = played.show(
         elapsed, [] { return false; }, [this](const std::exception& error) { complain(error); });
@@ -78,7 +68,11 @@ struct TabReplay::Parts {
   void read_ahead(double now) {
     if (!reading) return;
     reading = false;
-    guard([this] { reading = played.read_forces(kAhead); });
+    try {
+      reading = played.read_forces(kAhead);
+    } catch (const std::exception& error) {
+      complain(error);
+    }
     if (reading && now - told < session::PlayedRun::kNews) return;
     told = now;
     page.sessions().send_envelope();
