@@ -21,11 +21,7 @@ class DamagedRecordingTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     Shell shell;
-    ASSERT_EQ(shell
-                  .run("touch camera:simulated --simulated-time --duration 2 --no-view --record "
-                       "run.mcap")
-                  .code,
-              0);
+    ASSERT_EQ(record_camera(shell, 2).code, 0);
     file = shell.read("run.mcap");
   }
   void SetUp() override { folder.write("whole.mcap", file); }

@@ -76,6 +76,13 @@ std::string Shell::read(const std::string& name) const {
   return text.str();
 }
 
+Outcome record_camera(Shell& shell, double seconds) {
+  return shell.run(
+      fmt::format("touch camera:simulated --simulated-time --duration {} --no-view --record "
+                  "run.mcap",
+                  seconds));
+}
+
 std::map<std::string, std::vector<std::string>> columns(const std::string& csv) {
   std::istringstream lines(csv);
   std::string line;

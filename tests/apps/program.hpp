@@ -53,6 +53,9 @@ class Shell {
   test::Folder folder_;
 };
 
+/// Records for so many s what a hand feels of a simulated camera: run.mcap.
+[[nodiscard]] Outcome record_camera(Shell& shell, double seconds);
+
 /// A CSV file's columns by name, as text.
 [[nodiscard]] std::map<std::string, std::vector<std::string>> columns(const std::string& csv);
 

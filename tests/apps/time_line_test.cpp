@@ -216,11 +216,7 @@ TEST_F(TimeLineTest, InAGapTheLastStepBeforeItStays) {
 // The camera's surface is that of the newest frame that was felt.
 TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
   Shell shell;
-  ASSERT_EQ(shell
-                .run("touch camera:simulated --simulated-time --duration 1 --no-view --record "
-                     "run.mcap")
-                .code,
-            0);
+  ASSERT_EQ(record_camera(shell, 1).code, 0);
   const session::Recording recording(shell.path("run.mcap"));
   const double begin = recording.stretch().begin;
   Scene scene;
@@ -246,11 +242,7 @@ TEST(TimeLine, ACameraShowsItsFramesOneByOne) {
 // Hangs until the test's time is over if frames stand still.
 TEST(TimeLine, ItBeginsAtTheFirstSurfaceAndFramesGoOnAfterAPause) {
   Shell shell;
-  ASSERT_EQ(shell
-                .run("touch camera:simulated --simulated-time --duration 2 --no-view --record "
-                     "run.mcap")
-                .code,
-            0);
+  ASSERT_EQ(record_camera(shell, 2).code, 0);
   Playing playing(shell.path("run.mcap"));
   const Source& camera = playing.player.scene().source(0);
   Playing::wait([&] { return camera.points() != nullptr; });

@@ -151,11 +151,7 @@ std::string smaller(const std::string& file, bool as_cloud) {
 
 TEST(TabReplay, WrongValuesOfCamerasAreRefusedOrPlayed) {
   app::Shell shell;
-  ASSERT_EQ(shell
-                .run("touch camera:simulated --simulated-time --duration 0.3 --no-view --record "
-                     "run.mcap")
-                .code,
-            0);
+  ASSERT_EQ(app::record_camera(shell, 0.3).code, 0);
   for (const bool as_cloud : {false, true}) {
     constexpr double kLength = 0.1;  // s: three frames
     const std::string file = smaller(shell.read("run.mcap"), as_cloud);
