@@ -1,7 +1,6 @@
 #include "palpate/depth/depth_filter.hpp"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "depth/small_frames.hpp"
 #include "palpate/base/error.hpp"
 #include "support/effort.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate::test {
 namespace {
@@ -177,7 +177,7 @@ void expect_same_on_four_threads(const std::vector<Solid>& solids) {
   const std::vector<Ball> near = {{{0.03, 0, 0.6}, 0.08}};
   for (const bool everywhere : {true, false}) {
     const auto run = [&](std::size_t threads) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const ThreadLimit limit(threads);
       DepthFilter filter;
       const Isometry3d pose = Isometry3d::Identity();
       return everywhere ? filter.filter(frame, pose) : filter.filter(frame, pose, near);

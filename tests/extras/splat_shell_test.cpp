@@ -2,11 +2,11 @@
 #include "extras/splats/splat_shell.hpp"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 
 #include "support/splat_scenes.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate::test {
 namespace {
@@ -47,7 +47,7 @@ TEST(SplatShell, LeavesOutWhatFloatsAndWhatIsHidden) {
 TEST(SplatShell, IsTheSameOnAnyNumberOfThreads) {
   const std::vector<Splat> splats = make_splats(splat_box(), {.count = 20000, .hidden = 0.3}, 5);
   const SplatShell many = shell_of(splats);
-  const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const SplatShell alone = shell_of(splats);
   EXPECT_EQ(many.cloud.positions, alone.cloud.positions);
   EXPECT_EQ(many.cloud.normals, alone.cloud.normals);

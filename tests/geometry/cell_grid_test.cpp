@@ -1,7 +1,6 @@
 #include "palpate/geometry/cell_grid.hpp"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "geometry/clouds.hpp"
 #include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -207,7 +207,7 @@ TEST(CellGrid, DoesNotDependOnTheNumberOfThreads) {
   Points points = clouds.sphere(300000, 0.1);  // enough to be sorted in parts
   points.insert(points.end(), 1000, points.front());
   const CellGrid many(points);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const CellGrid alone(points);
   EXPECT_TRUE(std::equal(many.order().begin(), many.order().end(), alone.order().begin()));
   ASSERT_EQ(many.cells().size(), alone.cells().size());

@@ -1,13 +1,13 @@
 #include "palpate/geometry/spacing.hpp"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -124,7 +124,7 @@ TEST(LocalSpacings, DoNotDependOnTheNumberOfThreads) {
   const CellGrid grid(Clouds(5).sphere(20000, 0.1));
   const auto many = local_spacings(grid);
   const double mean = mean_spacing(grid);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   EXPECT_EQ(many, local_spacings(grid));
   EXPECT_EQ(mean, mean_spacing(grid));
 }

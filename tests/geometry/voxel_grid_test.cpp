@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 #include "geometry/clouds.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/point_cloud.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -116,7 +116,7 @@ TEST(VoxelGrid, SaysWhyALeafIsAbsurd) {
 TEST(VoxelGrid, DoesNotDependOnTheNumberOfThreads) {
   const PointCloud cloud = with_columns(Clouds(4).sphere(300000, 1));
   const PointCloud many = voxel_downsample(cloud, 0.01);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const PointCloud alone = voxel_downsample(cloud, 0.01);
   EXPECT_EQ(many.positions, alone.positions);
   EXPECT_EQ(many.normals, alone.normals);

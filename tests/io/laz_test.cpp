@@ -1,7 +1,6 @@
 // LAZ files give the cloud that their LAS originals give; damaged ones give errors that help.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <limits>
 #include <thread>
@@ -9,6 +8,7 @@
 #include "io/formats.hpp"
 #include "io/laz_encoder.hpp"
 #include "io/laz_survey.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -49,7 +49,7 @@ TEST(Laz, ReadsNothingFromChunksBehindTheLastPoint) {
 TEST(Laz, GivesTheSameOnOneThread) {
   const std::string laz = laz_of(survey_of({.format = 7, .points = 5000}), {.chunk = 100});
   const CloudFile many = read_text(laz);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   expect_same(read_text(laz), many);
 }
 

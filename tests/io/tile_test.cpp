@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 #include <sys/resource.h>
 
 #include <array>
@@ -23,6 +22,7 @@
 #include "palpate/io/files.hpp"
 #include "support/effort.hpp"
 #include "support/folder.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -165,7 +165,7 @@ TEST(Tile, OneAndManyThreadsGiveTheSameBytes) {
   const Folder folder;
   folder.write("a.laz", laz_of(las_bytes(2, 3, ground(20000)), {.chunk = 900}));
   tile({folder / "a.laz"}, folder / "many", small_options());
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   tile({folder / "a.laz"}, folder / "one", small_options());
   EXPECT_EQ(bytes_of(folder / "many"), bytes_of(folder / "one"));
 }

@@ -1,7 +1,6 @@
 // Which side is outside: normals of one component agree, outward where nothing else is known of
 // them.
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "palpate/base/error.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/given_normals.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -215,7 +215,7 @@ TEST(Signs, KeepDegenerateCloudsFinite) {
 TEST(Signs, DoNotDependOnTheNumberOfThreads) {
   const Points points = Clouds(6).sphere(20000, 1);
   const SurfacePoints many = prepared(points);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const SurfacePoints few = prepared(points);
   EXPECT_EQ(many.normals, few.normals);
   EXPECT_EQ(many.segments.segment, few.segments.segment);

@@ -1,6 +1,5 @@
 // Checks that blocks in fours and on several threads give what each gives alone.
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "stream/morph.hpp"
 #include "support/depth_frames.hpp"
 #include "support/rates.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -114,7 +114,7 @@ TEST(MorphPieces, TheSameOnAnyNumberOfThreads) {
   std::vector<Shown> shown;
   ASSERT_FALSE(show(frames)->edges.end.empty());
   for (const std::size_t threads : {1u, 2u, 5u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     shown.push_back(show(frames));
     EXPECT_TRUE(same(shown[0]->end_positions, shown.back()->end_positions)) << threads;
     EXPECT_TRUE(same(shown[0]->density_weights, shown.back()->density_weights)) << threads;
