@@ -20,6 +20,7 @@
 #include "apps/palpate/sources/load.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/source.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 namespace {
@@ -40,7 +41,7 @@ std::size_t shade(std::size_t count, std::size_t largest) {
 }  // namespace
 
 DensityMap map_density(const PointCloud& cloud, int columns) {
-  const Box box = core_of(cloud);
+  const Box box = session::core_of(cloud);
   const Eigen::Vector3d size = box.size();
   Eigen::Index shortest = 0;
   size.minCoeff(&shortest);
@@ -165,9 +166,9 @@ InfoReport measure_cloud(const CloudArgument& argument, const FileReading& optio
   report.loaded = load(argument, options);
   if (!write.empty()) write_cloud(write, report.loaded.file.cloud);
   const PointCloud& cloud = report.loaded.file.cloud;
-  report.bounds = bounds_of(cloud);
-  report.core = core_of(cloud);
-  report.units = units_of(report.loaded.file, report.core, options);
+  report.bounds = session::bounds_of(cloud);
+  report.core = session::core_of(cloud);
+  report.units = session::units_of(report.loaded.file, report.core, options);
   report.organised = depth_frame_of(cloud);
   if (report.organised.frame) {
     Source felt(argument.name, {});

@@ -12,6 +12,7 @@
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/scene/source.hpp"
+#include "session/length_unit.hpp"
 
 namespace CLI {
 class App;
@@ -59,7 +60,7 @@ struct InfoReport {
   LoadedCloud loaded;
   Box bounds;
   Box core;  ///< without outliers
-  UnitsGuess units;
+  session::UnitsGuess units;
   OrganisedFrame organised;  ///< of a cloud with rows and columns
   Source::State image;       ///< felt as that frame; depth 0: it is not
   double image_radius = 0;   ///< R then, median, m

@@ -1,13 +1,8 @@
-// Guesses units, spacing and borders of a cloud.
+// Measures spacing and borders of a cloud.
 #include "apps/palpate/sources/cloud_facts.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include "palpate/contact/proxy.hpp"
 
 namespace palpate::app {
 
@@ -15,9 +10,6 @@ namespace {
 
 constexpr std::size_t kSample = 20'000;
 constexpr std::size_t kNeighbors = 8;
-constexpr std::size_t kLookedAt = 200'000;  // points for the core
-constexpr std::size_t kFewest = 50;         // points of which some can be called outliers
-constexpr std::ptrdiff_t kOutliers = 1000;  // one in so many may be, at either end
 
 double at_share(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -26,98 +18,7 @@ double at_share(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
-double farthest(const Box& bounds) {
-  return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
-}
-
-bool is_survey(const Box& bounds) {
-  return farthest(bounds) > 5e4 &&
-         bounds.size().maxCoeff() < 0.5 * bounds.upper.cwiseAbs().maxCoeff();
-}
-
-UnitsGuess survey_units(const Box& bounds) {
-  const Eigen::Vector3d middle = bounds.center();
-  const bool utm = middle.x() > 1e5 && middle.x() < 9e5 && middle.y() > 1.1e6 && middle.y() < 1e7;
-  const std::string where =
-      fmt::format("the points are around x = {:.0f}, y = {:.0f}", middle.x(), middle.y());
-  if (utm) return {"metres", where + ", typical of UTM coordinates", ""};
-  return {"metres or feet", where + ": survey coordinates, but outside the UTM range",
-          "if they are feet (state-plane data often is), give --scale 0.3048"};
-}
-
-// The unit that a file states, which the description of its format repeats. `rescaled`: the
-// caller gave the scale, and so states the unit.
-std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
-  const bool feet = format.find(", in feet") != std::string::npos;
-  if (!feet && format.find(", in metres") == std::string::npos) return {};
-  if (!feet || rescaled) return UnitsGuess{"metres", "the file says what its unit is", ""};
-  return UnitsGuess{
-      "feet", "the file says so",
-      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large",
-      0.3048};
-}
-
 }  // namespace
-
-UnitsGuess guess_units(const Box& bounds, const std::string& format) {
-  const double extent = bounds.size().maxCoeff();
-  const std::string size = fmt::format("the longest side is {:.4g}", extent);
-  if (const double far = farthest(bounds); far > Proxy::kLargestCoordinate) {
-    return {"unknown",
-            fmt::format("the points are {:.4g} from the origin; beyond {:.0e} m surfaces cannot be "
-                        "resolved",
-                        far, Proxy::kLargestCoordinate),
-            "give --scale with the metres per unit of the file, or move the points"};
-  }
-  if (format.starts_with("glTF")) return {"metres", size + "; glTF is in metres", ""};
-  if (is_survey(bounds)) return survey_units(bounds);
-  if (format.starts_with("LAS") || format.starts_with("LAZ")) {
-    return {"metres or feet", size + "; LAS files use either",
-            "if they are feet, give --scale 0.3048"};
-  }
-  if (extent == 0) return {"unknown", "all points coincide", ""};
-  if (extent > 400) {
-    return {"millimetres",
-            size + ": too long for a scanned room in metres, plausible in millimetres",
-            "give --scale 0.001, unless it really is that large", 0.001};
-  }
-  if (extent > 60) {
-    return {"metres or millimetres",
-            size + ": outdoors in metres, or a small object in millimetres",
-            "if it is an object, give --scale 0.001"};
-  }
-  if (extent < 0.004) {
-    return {"unknown", size + ": very small for metres",
-            "give --scale with the metres per unit of the file"};
-  }
-  return {"metres", size + ", plausible for an object or a room in metres", ""};
-}
-
-double likely_unit(const CloudFile& file) {
-  constexpr double kShortest = 1;
-  constexpr double kLongest = 2000;
-  const bool unitless = file.format.starts_with("STL") || file.format.starts_with("OBJ");
-  if (!unitless || !file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
-  const double extent = core_of(file.cloud).size().maxCoeff();
-  return extent >= kShortest && extent <= kLongest ? 0.001 : 1;
-}
-
-UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
-  if (file.format.ends_with(kTakenAsMillimetres)) {
-    return {"millimetres",
-            fmt::format("the longest side is {:.4g}, and the file says no unit",
-                        1000 * core.size().maxCoeff()),
-            "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 for "
-            "inches, 0.3048 for feet",
-            0.001};
-  }
-  const bool rescaled = reading.length || reading.scale != 1;
-  const bool near = farthest(core) <= Proxy::kLargestCoordinate;
-  if (const auto stated = stated_units(file.format, rescaled); near && stated) return *stated;
-  if (!file.splats || rescaled) return guess_units(core, file.format);
-  return {"unknown", fmt::format("{:.3g} long, and splats have no unit", core.size().maxCoeff()),
-          "give --length with the metres of its longest side"};
-}
 
 bool on_a_line(std::span<const Eigen::Vector3f> points) {
   Eigen::Vector3f along = Eigen::Vector3f::Zero();
@@ -168,30 +69,6 @@ double rim_share(const SurfacePoints& points) {
     if (near.size() < 4 || mean.norm() > 0.25 * static_cast<double>(radius)) ++rim;
   }
   return looked_at == 0 ? 0 : static_cast<double>(rim) / static_cast<double>(looked_at);
-}
-
-Box bounds_of(const PointCloud& cloud) {
-  Box box;
-  for (std::size_t i = 0; i < cloud.size(); ++i) box.extend(cloud.point(i));
-  return box;
-}
-
-Box core_of(const PointCloud& cloud) {
-  const Box all = bounds_of(cloud);
-  if (cloud.size() < kFewest) return all;
-  const std::size_t stride = cloud.size() / kLookedAt + 1;
-  std::vector<double> values((cloud.size() - 1) / stride + 1);
-  const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-  const std::ptrdiff_t outliers = last / kOutliers + 1;
-  Box core = all;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.point(i * stride)[axis];
-    std::nth_element(values.begin(), values.begin() + outliers, values.end());
-    core.lower[axis] = values[static_cast<std::size_t>(outliers)];
-    std::nth_element(values.begin() + outliers, values.begin() + (last - outliers), values.end());
-    core.upper[axis] = values[static_cast<std::size_t>(last - outliers)];
-  }
-  return all.size().maxCoeff() > 2 * core.size().maxCoeff() ? core : all;
 }
 
 }  // namespace palpate::app

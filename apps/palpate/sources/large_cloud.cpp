@@ -10,6 +10,7 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 namespace {
@@ -117,7 +118,7 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.prepared = source.report();
   if (plan.reading.unit == FileReading::Unit::unsaid) {
     const PointCloud seen = in_file(*source.state().overview, plan.options.T_world_sensor);
-    result.units = guess_units(core_of(seen), layout.format);
+    result.units = session::guess_units(session::core_of(seen), layout.format);
   }
   result.prepare_seconds = std::chrono::duration<double>(Clock::now() - opened).count();
   return true;

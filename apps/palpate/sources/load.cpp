@@ -10,13 +10,13 @@
 
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/terminal.hpp"
-#include "apps/palpate/sources/cloud_facts.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/input.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/sensor/depth_camera.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 
@@ -68,19 +68,19 @@ CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options
   const bool twice = spacing > 0 && is_unitless_file(argument.path);
   if (twice) options.mesh_spacing = 0;
   CloudFile file = read(argument, options);
-  options.scale = likely_unit(file);
+  options.scale = session::likely_unit(file);
   if (twice) {
     options.mesh_spacing = spacing;
     file = read(argument, options);
+    if (options.scale != 1) file.format += session::kTakenAsMillimetres;
   } else if (options.scale != 1 && spacing > 0) {
     throw Error(fmt::format(
         "{}: --mesh-spacing is in metres, and the file says no unit; give --scale, too: 0.001 for "
         "millimetres, 1 for metres",
         argument.path));
-  } else if (options.scale != 1) {
-    io::rescale(file, options.scale);
+  } else {
+    session::take_likely_unit(file);
   }
-  if (options.scale != 1) file.format += kTakenAsMillimetres;
   return file;
 }
 

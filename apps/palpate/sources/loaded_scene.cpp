@@ -122,7 +122,8 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.read_seconds = loaded.seconds;
   result.splats = loaded.file.splats;
   if (plan.reading.unit == FileReading::Unit::unsaid && !plan.reading.length) {
-    result.units = units_of(loaded.file, core_of(loaded.file.cloud), plan.reading);
+    result.units =
+        session::units_of(loaded.file, session::core_of(loaded.file.cloud), plan.reading);
   }
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {

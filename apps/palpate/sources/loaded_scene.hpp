@@ -15,6 +15,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/depth_camera.hpp"
 #include "palpate/sensor/stream.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 
@@ -42,7 +43,7 @@ struct LoadedSource {
   std::optional<SplatFacts> splats = {};  ///< of a scene of splats
   std::optional<MeshFacts> mesh = {};     ///< of a file with faces
   double read_seconds = 0;
-  UnitsGuess units;                     ///< of a file that was read without --scale and --length
+  session::UnitsGuess units;            ///< of a file that was read without --scale and --length
   double prepare_seconds = 0;           ///< wall time of everything between reading and touching
   std::unique_ptr<OnDemand> on_demand;  ///< of a large cloud whose blocks become ready in the run
   bool paged = false;                   ///< it is a store on disk, of which memory holds a part

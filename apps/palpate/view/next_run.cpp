@@ -11,18 +11,10 @@
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/run/opening.hpp"
-#include "apps/palpate/sources/cloud_facts.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 namespace {
-
-struct LengthUnit {
-  const char* name;
-  double metres;
-};
-
-constexpr std::array<LengthUnit, 5> kLengthUnits = {
-    {{"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"inch", 0.0254}, {"ft", 0.3048}}};
 
 struct Example {
   const char* name;
@@ -34,16 +26,9 @@ constexpr std::array<Example, 3> kExamples = {{{"rabbit", "rabbit=synthetic:rabb
                                                {"desk", "desk=camera:simulated:desk"},
                                                {"room", "room=synthetic:room"}}};
 
-constexpr std::string_view kUnitKey = "unit.";
-
-std::string name_of_unit(double metres) {
-  const auto unit = std::ranges::find(kLengthUnits, metres, &LengthUnit::metres);
-  return unit == kLengthUnits.end() ? fmt::format("{:g} m", metres) : unit->name;
-}
-
 // Metres a unit of its file.
 double unit_taken(const LoadedSource& source) {
-  return source.format.ends_with(kTakenAsMillimetres) ? 0.001 : source.plan.reading.scale;
+  return source.format.ends_with(session::kTakenAsMillimetres) ? 0.001 : source.plan.reading.scale;
 }
 
 // Is it a camera, which nobody else may open meanwhile, or what can be read once alone?
@@ -59,30 +44,12 @@ bool has_unit(const LoadedSource& source) {
          !source.plan.argument.path.starts_with(kSynthetic);
 }
 
-std::string question(const LoadedSource& source, const Source& felt) {
-  if (source.units.metres == 0) return {};
+Setting unit_setting_of(const LoadedSource& source, const Source& felt) {
+  std::optional<Box> core;
   const std::shared_ptr<const PointCloud> cloud =
       source.cloud ? source.cloud : felt.state().overview;
-  if (!cloud) return {};
-  const Eigen::Vector3d size = core_of(*cloud).size() / unit_taken(source);
-  const auto words = [](double side) {
-    return side < 999.5 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
-  };
-  return fmt::format("{}: {} x {} x {} {}?", source.plan.argument.name, words(size.x()),
-                     words(size.y()), words(size.z()), name_of_unit(source.units.metres));
-}
-
-Setting unit_setting(const LoadedSource& source, const Source& felt) {
-  const std::string& name = source.plan.argument.name;
-  Setting setting{.key = std::string(kUnitKey) + name, .label = "Unit of " + name};
-  setting.kind = Setting::Kind::choice;
-  for (const LengthUnit& unit : kLengthUnits) setting.choices.emplace_back(unit.name);
-  const std::string present = name_of_unit(unit_taken(source));
-  if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
-  setting.value = present;
-  setting.restarts = true;
-  setting.question = question(source, felt);
-  return setting;
+  if (source.units.metres > 0 && cloud) core = session::core_of(*cloud);
+  return session::unit_setting(source.plan.argument.name, unit_taken(source), core);
 }
 
 Setting scene_setting(const LoadedScene& loaded) {
@@ -106,7 +73,7 @@ NextRun::NextRun(const Run& run) : run_(run) {
   if (std::ranges::any_of(run.loaded.sources, opens_once)) return;
   for (std::size_t i = 0; i < run.loaded.sources.size(); ++i) {
     const LoadedSource& source = run.loaded.sources[i];
-    if (has_unit(source)) settings_.push_back(unit_setting(source, run.loaded.scene.source(i)));
+    if (has_unit(source)) settings_.push_back(unit_setting_of(source, run.loaded.scene.source(i)));
   }
 }
 
@@ -120,14 +87,13 @@ bool NextRun::set(const std::string& key, const Setting::Value& value) {
     run_.opening->begin({wanted, Opening::Sources{{example->source}}});
     return true;
   }
-  const std::string name = key.substr(kUnitKey.size());
-  const auto unit = std::ranges::find(kLengthUnits, wanted, &LengthUnit::name);
+  const std::optional<std::string> name = session::source_of_unit(key);
   const auto& sources = run_.loaded.sources;
   const auto source = std::ranges::find_if(
       sources, [&](const LoadedSource& each) { return each.plan.argument.name == name; });
   const auto index = static_cast<std::size_t>(source - sources.begin());
-  run_.opening->begin(
-      {fmt::format("{} in {}", name, wanted), Opening::OtherUnit{index, unit->metres}});
+  const double metres = session::metres_of_unit(wanted).value_or(1);  // the present one was left
+  run_.opening->begin({fmt::format("{} in {}", *name, wanted), Opening::OtherUnit{index, metres}});
   return true;
 }
 

@@ -1,0 +1,189 @@
+#include "session/length_unit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "io/cloud_builder.hpp"
+#include "palpate/contact/proxy.hpp"
+
+namespace palpate::session {
+namespace {
+
+constexpr std::size_t kLookedAt = 200'000;  // points for the core
+constexpr std::size_t kFewest = 50;         // points of which some can be called outliers
+constexpr std::ptrdiff_t kOutliers = 1000;  // one in so many may be, at either end
+
+constexpr std::string_view kUnitKey = "unit.";
+
+struct LengthUnit {
+  const char* name;
+  double metres;
+};
+
+constexpr std::array<LengthUnit, 5> kLengthUnits = {
+    {{"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"inch", 0.0254}, {"ft", 0.3048}}};
+
+std::string name_of_unit(double metres) {
+  const auto unit = std::ranges::find(kLengthUnits, metres, &LengthUnit::metres);
+  return unit == kLengthUnits.end() ? fmt::format("{:g} m", metres) : unit->name;
+}
+
+double farthest(const Box& bounds) {
+  return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+}
+
+bool is_survey(const Box& bounds) {
+  return farthest(bounds) > 5e4 &&
+         bounds.size().maxCoeff() < 0.5 * bounds.upper.cwiseAbs().maxCoeff();
+}
+
+UnitsGuess survey_units(const Box& bounds) {
+  const Eigen::Vector3d middle = bounds.center();
+  const bool utm = middle.x() > 1e5 && middle.x() < 9e5 && middle.y() > 1.1e6 && middle.y() < 1e7;
+  const std::string where =
+      fmt::format("the points are around x = {:.0f}, y = {:.0f}", middle.x(), middle.y());
+  if (utm) return {"metres", where + ", typical of UTM coordinates", ""};
+  return {"metres or feet", where + ": survey coordinates, but outside the UTM range",
+          "if they are feet (state-plane data often is), give --scale 0.3048"};
+}
+
+// The unit that a file states, which the description of its format repeats. `rescaled`: the
+// caller gave the scale, and so states the unit.
+std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
+  const bool feet = format.find(", in feet") != std::string::npos;
+  if (!feet && format.find(", in metres") == std::string::npos) return {};
+  if (!feet || rescaled) return UnitsGuess{"metres", "the file says what its unit is", ""};
+  return UnitsGuess{
+      "feet", "the file says so",
+      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large",
+      0.3048};
+}
+
+}  // namespace
+
+Box bounds_of(const PointCloud& cloud) {
+  Box box;
+  for (std::size_t i = 0; i < cloud.size(); ++i) box.extend(cloud.point(i));
+  return box;
+}
+
+Box core_of(const PointCloud& cloud) {
+  const Box all = bounds_of(cloud);
+  if (cloud.size() < kFewest) return all;
+  const std::size_t stride = cloud.size() / kLookedAt + 1;
+  std::vector<double> values((cloud.size() - 1) / stride + 1);
+  const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+  const std::ptrdiff_t outliers = last / kOutliers + 1;
+  Box core = all;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.point(i * stride)[axis];
+    std::nth_element(values.begin(), values.begin() + outliers, values.end());
+    core.lower[axis] = values[static_cast<std::size_t>(outliers)];
+    std::nth_element(values.begin() + outliers, values.begin() + (last - outliers), values.end());
+    core.upper[axis] = values[static_cast<std::size_t>(last - outliers)];
+  }
+  return all.size().maxCoeff() > 2 * core.size().maxCoeff() ? core : all;
+}
+
+UnitsGuess guess_units(const Box& bounds, const std::string& format) {
+  const double extent = bounds.size().maxCoeff();
+  const std::string size = fmt::format("the longest side is {:.4g}", extent);
+  if (const double far = farthest(bounds); far > Proxy::kLargestCoordinate) {
+    return {"unknown",
+            fmt::format("the points are {:.4g} from the origin; beyond {:.0e} m surfaces cannot be "
+                        "resolved",
+                        far, Proxy::kLargestCoordinate),
+            "give --scale with the metres per unit of the file, or move the points"};
+  }
+  if (format.starts_with("glTF")) return {"metres", size + "; glTF is in metres", ""};
+  if (is_survey(bounds)) return survey_units(bounds);
+  if (format.starts_with("LAS") || format.starts_with("LAZ")) {
+    return {"metres or feet", size + "; LAS files use either",
+            "if they are feet, give --scale 0.3048"};
+  }
+  if (extent == 0) return {"unknown", "all points coincide", ""};
+  if (extent > 400) {
+    return {"millimetres",
+            size + ": too long for a scanned room in metres, plausible in millimetres",
+            "give --scale 0.001, unless it really is that large", 0.001};
+  }
+  if (extent > 60) {
+    return {"metres or millimetres",
+            size + ": outdoors in metres, or a small object in millimetres",
+            "if it is an object, give --scale 0.001"};
+  }
+  if (extent < 0.004) {
+    return {"unknown", size + ": very small for metres",
+            "give --scale with the metres per unit of the file"};
+  }
+  return {"metres", size + ", plausible for an object or a room in metres", ""};
+}
+
+double likely_unit(const CloudFile& file) {
+  constexpr double kShortest = 1;
+  constexpr double kLongest = 2000;
+  const bool unitless = file.format.starts_with("STL") || file.format.starts_with("OBJ");
+  if (!unitless || !file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
+  const double extent = core_of(file.cloud).size().maxCoeff();
+  return extent >= kShortest && extent <= kLongest ? 0.001 : 1;
+}
+
+UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
+  if (file.format.ends_with(kTakenAsMillimetres)) {
+    return {"millimetres",
+            fmt::format("the longest side is {:.4g}, and the file says no unit",
+                        1000 * core.size().maxCoeff()),
+            "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 for "
+            "inches, 0.3048 for feet",
+            0.001};
+  }
+  const bool rescaled = reading.length || reading.scale != 1;
+  const bool near = farthest(core) <= Proxy::kLargestCoordinate;
+  if (const auto stated = stated_units(file.format, rescaled); near && stated) return *stated;
+  if (!file.splats || rescaled) return guess_units(core, file.format);
+  return {"unknown", fmt::format("{:.3g} long, and splats have no unit", core.size().maxCoeff()),
+          "give --length with the metres of its longest side"};
+}
+
+double take_likely_unit(CloudFile& file) {
+  const double metres = likely_unit(file);
+  if (metres == 1) return metres;
+  io::rescale(file, metres);
+  file.format += kTakenAsMillimetres;
+  return metres;
+}
+
+ViewerControls::Setting unit_setting(const std::string& name, double metres,
+                                     const std::optional<Box>& core) {
+  ViewerControls::Setting setting{.key = std::string(kUnitKey) + name, .label = "Unit of " + name};
+  setting.kind = ViewerControls::Setting::Kind::choice;
+  for (const LengthUnit& unit : kLengthUnits) setting.choices.emplace_back(unit.name);
+  const std::string present = name_of_unit(metres);
+  if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
+  setting.value = present;
+  setting.restarts = true;
+  if (!core) return setting;
+  const Eigen::Vector3d size = core->size() / metres;
+  const auto words = [](double side) {
+    return side < 999.5 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
+  };
+  setting.question = fmt::format("{}: {} x {} x {} {}?", name, words(size.x()), words(size.y()),
+                                 words(size.z()), present);
+  return setting;
+}
+
+std::optional<std::string> source_of_unit(std::string_view key) {
+  if (!key.starts_with(kUnitKey)) return {};
+  return std::string(key.substr(kUnitKey.size()));
+}
+
+std::optional<double> metres_of_unit(std::string_view name) {
+  const auto unit = std::ranges::find(kLengthUnits, name, &LengthUnit::name);
+  if (unit == kLengthUnits.end()) return {};
+  return unit->metres;
+}
+
+}  // namespace palpate::session

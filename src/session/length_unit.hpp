@@ -1,0 +1,60 @@
+// The length unit of a file: what it states, what is likely, and the setting by which a person
+// chooses another.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/io/files.hpp"
+#include "palpate/viewer/viewer.hpp"
+
+namespace palpate::session {
+
+/// The tight box of all points, m.
+[[nodiscard]] Box bounds_of(const PointCloud& cloud);
+
+/// The box of all points but the outermost thousandth at either end of each axis where those make
+/// the box more than twice as long, m: a few outliers do not show what a cloud is.
+[[nodiscard]] Box core_of(const PointCloud& cloud);
+
+/// Probable units of a file, and why.
+struct UnitsGuess {
+  std::string units;
+  std::string reason;
+  std::string advice;  ///< empty: nothing to do
+  double metres = 0;   ///< a unit, where it is so likely that a person is asked; 0: it is not
+};
+
+/// What take_likely_unit() adds to the format of a file.
+inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
+
+/// Metres a unit of a file that was read as if it were in metres: 0.001 for STL and OBJ, which
+/// state none, where the longest side is 1 to 2000; else 1. Those who draw meshes for printers and
+/// machines draw in millimetres: shorter is no part, and longer no machine's.
+[[nodiscard]] double likely_unit(const CloudFile& file);
+
+/// Guesses from coordinates as read, in what is taken for metres.
+[[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);
+
+/// The same of a cloud whose core_of() is `core`. Splats have no unit unless `reading` gives one.
+[[nodiscard]] UnitsGuess units_of(const CloudFile& file, const Box& core,
+                                  const ReadOptions& reading);
+
+/// Rescales a file that was read as if it were in metres, where its likely_unit() is another.
+/// @return metres a unit
+double take_likely_unit(CloudFile& file);
+
+/// The setting by which a person chooses the unit of a source of that name, which is of `metres`
+/// now. `core`: of what has been read, m, where a person is to be asked whether that is right.
+[[nodiscard]] ViewerControls::Setting unit_setting(const std::string& name, double metres,
+                                                   const std::optional<Box>& core);
+
+/// Of which source is the unit that a setting of that key chooses? Unset: it is another setting.
+[[nodiscard]] std::optional<std::string> source_of_unit(std::string_view key);
+
+/// Metres of a unit that unit_setting() offers by that name; unset: it is none of them.
+[[nodiscard]] std::optional<double> metres_of_unit(std::string_view name);
+
+}  // namespace palpate::session
