@@ -38,7 +38,7 @@ function tell(what, times) {
 }
 
 const bytes = readFileSync(file);
-console.log(`opened in ${timed(() => core._tab_open(text(file), put(bytes), bytes.length, text(""))).toFixed(0)} ms`);
+console.log(`opened in ${timed(() => core._tab_open(text(file), put(bytes), bytes.length, 0, text(""))).toFixed(0)} ms`);
 core._tab_connect(now);
 wish({ type: "hello", token: "tab", points: 10000 });
 const { length } = heard.find(({ type }) => type === "welcome").timeline;

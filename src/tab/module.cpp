@@ -18,6 +18,7 @@ EM_JS(void, tab_say, (const char* bytes, int size, int text), {
 });
 EM_JS(void, tab_close, (int code, const char* why), { Module.close(code, UTF8ToString(why)); });
 EM_JS(void, tab_another, (const char* name), { Module.open(UTF8ToString(name)); });
+EM_JS(void, tab_again, (double unit), { Module.openAgain(unit); });
 // clang-format on
 
 namespace {
@@ -33,7 +34,8 @@ Outside worker() {
             tab_say(bytes.data(), static_cast<int>(bytes.size()), text ? 1 : 0);
           },
           [](int code, const std::string& why) { tab_close(code, why.c_str()); },
-          [](const std::string& name) { tab_another(name.c_str()); }};
+          [](const std::string& name) { tab_another(name.c_str()); },
+          [](double unit) { tab_again(unit); }};
 }
 
 const char* ended_by(const std::function<void()>& act) {
@@ -50,13 +52,13 @@ const char* ended_by(const std::function<void()>& act) {
 
 extern "C" {
 
-// The file of that name; null: a synthetic cloud. Takes over the bytes, which malloc() got. null:
-// it is touched; else what is wrong.
+// The file of that name, metres a unit of it (0: the likely one); null: a synthetic cloud. Takes
+// over the bytes, which malloc() got. null: it is touched; else what is wrong.
 EMSCRIPTEN_KEEPALIVE const char* tab_open(const char* name, const std::byte* bytes, int size,
-                                          const char* news) {
+                                          double unit, const char* news) {
   try {
     const auto forget = [](const std::byte* given) { std::free(const_cast<std::byte*>(given)); };
-    FileBytes file{{bytes, forget}, static_cast<std::size_t>(size)};
+    FileBytes file{{bytes, forget}, static_cast<std::size_t>(size), unit};
     program = open_run(name, std::move(file), worker(), stopwatch, news);
     return nullptr;
   } catch (const std::exception& error) {

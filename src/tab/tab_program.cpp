@@ -2,11 +2,13 @@
 #include "tab/tab_program.hpp"
 
 #include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "session/length_unit.hpp"
 #include "session/view_settings.hpp"
 #include "tab/tab_hand.hpp"
 #include "tab/tab_page.hpp"
@@ -51,10 +53,12 @@ struct TabProgram::Parts {
     controls.settings = [this] {
       std::vector<Setting> list = list_settings(settings, scope());
       list.push_back(scene_setting(source.name()));
+      if (source.unit()) list.push_back(*source.unit());
       return list;
     };
     controls.set = [this](const std::string& key, const Setting::Value& value) {
       if (key == "scene") return page.outside().open(name_of_scene(value));
+      if (source.unit() && key == source.unit()->key) return take_unit(value);
       ViewSettings wanted = settings;
       set(wanted, scope(), key, value);
       apply(wanted);
@@ -65,6 +69,11 @@ struct TabProgram::Parts {
     controls.hand = [this](std::size_t, const TargetSource::Target& target) { hand.go(target); };
     controls.release = [this](std::size_t) { hand.remote.release(); };
     return controls;
+  }
+
+  void take_unit(const Setting::Value& value) {
+    const std::optional<double> unit = session::metres_of_unit(std::get<std::string>(value));
+    if (unit && value != source.unit()->value) page.outside().open_again(*unit);
   }
 
   // A cloud is prepared in the next run(): of a slider that moves the last value counts.

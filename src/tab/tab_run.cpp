@@ -34,7 +34,7 @@ std::unique_ptr<TabRun> open_run(const std::string& name, FileBytes file, Outsid
     bag::RandomFile bag(name, std::move(file.bytes), file.size);
     return std::make_unique<TabReplay>(std::move(bag), std::move(outside), stopwatch, news);
   }
-  Touched touched = file.bytes ? of_file(bytes, name) : simulated(name);
+  Touched touched = file.bytes ? of_file(bytes, name, file.unit) : simulated(name);
   file.bytes.reset();  // before the cloud is prepared
   return std::make_unique<TabProgram>(std::move(touched), std::move(outside), stopwatch,
                                       std::move(news));

@@ -16,6 +16,7 @@ namespace palpate::tab {
 struct FileBytes {
   std::shared_ptr<const std::byte[]> bytes;
   std::size_t size = 0;
+  double unit = 0;  ///< metres a unit of the file; 0: the likely one
 };
 
 /// Whom a run calls.
@@ -26,6 +27,8 @@ struct Outside {
   std::function<void(int code, const std::string& why)> close;
   /// The person wants another scene: "synthetic:room".
   std::function<void(const std::string& name)> open;
+  /// The person wants the same file again, in another unit, metres.
+  std::function<void(double unit)> open_again;
 };
 
 /// A page's program without sockets, threads and a clock of its own. Times in s, on one clock,

@@ -13,6 +13,7 @@
 #include "palpate/io/synthetic.hpp"
 #include "sensor/stream_statistics.hpp"
 #include "session/frames.hpp"
+#include "session/length_unit.hpp"
 #include "sim/simulated_camera.hpp"
 
 namespace palpate::tab {
@@ -57,8 +58,19 @@ Touched simulated(const std::string& name) {
   return {std::move(plain), std::move(cloud)};
 }
 
-Touched of_file(std::span<const std::byte> bytes, const std::string& name) {
-  return {std::filesystem::path(name).stem().string(), read_cloud_bytes(bytes, name).cloud};
+Touched of_file(std::span<const std::byte> bytes, const std::string& name, double unit) {
+  ReadOptions reading;
+  if (unit > 0) reading.scale = unit;
+  CloudFile file = read_cloud_bytes(bytes, name, reading);
+  std::optional<Box> asked;
+  if (unit == 0) {
+    unit = session::take_likely_unit(file);
+    const Box core = session::core_of(file.cloud);
+    if (session::units_of(file, core, reading).metres > 0) asked = core;
+  }
+  std::string stem = std::filesystem::path(name).stem().string();
+  session::Setting setting = session::unit_setting(stem, unit, asked);
+  return {.name = std::move(stem), .cloud = std::move(file.cloud), .unit = std::move(setting)};
 }
 
 TabSource::TabSource(Touched touched)

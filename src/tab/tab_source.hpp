@@ -22,15 +22,19 @@ namespace palpate::tab {
 struct Touched {
   std::string name;  ///< for people
   PointCloud cloud = {};
-  std::shared_ptr<DepthCamera> camera = {};  ///< null: the cloud
+  std::shared_ptr<DepthCamera> camera = {};   ///< null: the cloud
+  std::optional<session::Setting> unit = {};  ///< of a file, by which another one is chosen
 };
 
 /// A cloud that a formula makes, or a simulated camera, by its name: "synthetic:torus",
 /// "camera:simulated:desk". @throws Error that lists the names.
 [[nodiscard]] Touched simulated(const std::string& name);
 
-/// The cloud in the bytes of a file of that name, by read_cloud_bytes(). @throws Error as it does.
-[[nodiscard]] Touched of_file(std::span<const std::byte> bytes, const std::string& name);
+/// The cloud in the bytes of a file of that name, by read_cloud_bytes(). `unit`: metres a unit; 0:
+/// the likely one, and a person is asked where that is no more than likely. @throws Error as it
+/// does.
+[[nodiscard]] Touched of_file(std::span<const std::byte> bytes, const std::string& name,
+                              double unit);
 
 /// A scene of one source, prepared as the page wants it.
 class TabSource {
@@ -41,6 +45,8 @@ class TabSource {
   explicit TabSource(Touched touched);
 
   [[nodiscard]] const std::string& name() const { return touched_.name; }
+  /// The setting of the file's unit; unset: there is no file.
+  [[nodiscard]] const std::optional<session::Setting>& unit() const { return touched_.unit; }
   [[nodiscard]] Scene& scene() { return scene_; }
   /// The settings that it is prepared by; `initial`: those that it began with.
   [[nodiscard]] const Preparation& preparation() const { return preparation_; }

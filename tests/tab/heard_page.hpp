@@ -30,7 +30,8 @@ struct HeardPage {
   explicit HeardPage(const Make& make, double alone = 0)
       : tab(make({[this](std::string_view bytes, bool text) { take(std::string(bytes), text); },
                   [this](int code, const std::string&) { closed = code; },
-                  [this](const std::string& name) { opened = name; }},
+                  [this](const std::string& name) { opened = name; },
+                  [this](double unit) { opened_in = unit; }},
                  stopwatch)) {
     tab->run(now);
     run(alone);
@@ -84,6 +85,7 @@ struct HeardPage {
   int clouds = 0;
   int closed = 0;
   std::string opened;
+  double opened_in = 0;
   Stopped stopwatch;
   std::unique_ptr<TabRun> tab;  // last: it speaks to all of the above
 };

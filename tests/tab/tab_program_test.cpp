@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "session/length_unit.hpp"
 #include "sim/simulated_scene.hpp"
 #include "support/effort.hpp"
 #include "tab/heard_page.hpp"
@@ -213,16 +214,68 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-TEST(TabProgram, FilesAreReadByTheirBytesOrRefusedInWords) {
+// A square floor of 900 points.
+std::string floor_of(double spacing) {
   std::string rows;
   for (int i = 0; i < 900; ++i) {
-    rows += std::to_string(1e-3 * (i % 30)) + " " + std::to_string(1e-3 * (i / 30)) + " 0\n";
+    rows += std::to_string(spacing * (i % 30)) + " " + std::to_string(spacing * (i / 30)) + " 0\n";
   }
-  Page page(of_file(bytes_of(rows), "floor.xyz"));
+  return rows;
+}
+
+// A square plate as a printer's software writes it, 30 units a side.
+std::string plate() {
+  return "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nf 1 2 3\nf 1 3 4\n";
+}
+
+json unit_of(const Page& page) {
+  const json welcome = page.last("welcome");
+  for (const json& setting : welcome["settings"]) {
+    if (std::string(setting["key"]).starts_with("unit.")) return setting;
+  }
+  return {};
+}
+
+double width_of(const Touched& touched) {
+  return session::core_of(touched.cloud).size().x();
+}
+
+TEST(TabProgram, APersonIsAskedForTheUnitOfAFileThatStatesNone) {
+  Page page(of_file(bytes_of(floor_of(20)), "floor.xyz", 0));
+  EXPECT_EQ(unit_of(page)["key"], "unit.floor");
+  EXPECT_EQ(unit_of(page)["value"], "m");
+  EXPECT_EQ(unit_of(page)["question"], "floor: 580 x 580 x 0 m?");
+  page.say({{"type", "set"}, {"key", "unit.floor"}, {"value", "m"}});
+  EXPECT_EQ(page.opened_in, 0) << "it is";
+  page.say({{"type", "set"}, {"key", "unit.floor"}, {"value", "mm"}});
+  EXPECT_EQ(page.opened_in, 0.001);
+  page.say({{"type", "set"}, {"key", "unit.floor"}, {"value", "furlong"}});
+  EXPECT_EQ(page.last("refused").is_null(), false);
+}
+
+TEST(TabProgram, AFileThatWasOpenedInAUnitIsNotAskedForAgain) {
+  Touched touched = of_file(bytes_of(floor_of(20)), "floor.xyz", 0.001);
+  EXPECT_NEAR(width_of(touched), 0.58, 1e-6);
+  const Page page(std::move(touched));
+  EXPECT_EQ(unit_of(page)["value"], "mm");
+  EXPECT_FALSE(unit_of(page).contains("question"));
+}
+
+TEST(TabProgram, PartsOfMachinesAreTakenAsMillimetres) {
+  Touched touched = of_file(bytes_of(plate()), "plate.obj", 0);
+  EXPECT_NEAR(width_of(touched), 0.03, 1e-4) << "but for the spacing of its points";
+  const Page page(std::move(touched));
+  EXPECT_EQ(unit_of(page)["value"], "mm");
+  EXPECT_EQ(unit_of(page)["question"], "plate: 30 x 30 x 0 mm?");
+  EXPECT_EQ(unit_of(Page()), json()) << "a formula has metres";
+}
+
+TEST(TabProgram, FilesAreReadByTheirBytesOrRefusedInWords) {
+  Page page(of_file(bytes_of(floor_of(1e-3)), "floor.xyz", 0));
   EXPECT_EQ(page.last("welcome")["scene"], "floor");
   EXPECT_EQ(page.last("welcome")["sources"][0]["name"], "floor");
-  EXPECT_THROW((void)of_file({}, "nothing.ply"), Error);
-  EXPECT_THROW((void)of_file(bytes_of("1 2 3\n4 5\n"), "cut.xyz"), Error);
+  EXPECT_THROW((void)of_file({}, "nothing.ply", 0), Error);
+  EXPECT_THROW((void)of_file(bytes_of("1 2 3\n4 5\n"), "cut.xyz", 0), Error);
   EXPECT_THROW((void)simulated("synthetic:unicorn"), Error);
   EXPECT_THROW((void)simulated("camera:simulated:unicorn"), Error);
   EXPECT_THROW((void)simulated("camera:simulated:desk,rate=-1"), Error);

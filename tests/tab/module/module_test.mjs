@@ -21,6 +21,7 @@ class Program {
       say: (bytes, text) => program.take(bytes, text),
       close: () => assert.fail("closed"),
       open: (name) => (program.another = name),
+      openAgain: (unit) => (program.unit = unit),
     });
     return program;
   }
@@ -34,8 +35,8 @@ class Program {
     return this.put(new TextEncoder().encode(words));
   }
   /** What is wrong with it; empty: it is touched. */
-  open(name, bytes) {
-    const wrong = this.core._tab_open(this.text(name), bytes === undefined ? 0 : this.put(bytes), bytes?.length ?? 0, this.text(""));
+  open(name, bytes, unit = 0) {
+    const wrong = this.core._tab_open(this.text(name), bytes === undefined ? 0 : this.put(bytes), bytes?.length ?? 0, unit, this.text(""));
     return wrong === 0 ? "" : this.core.UTF8ToString(wrong);
   }
   goesOn(wrong) {

@@ -1,10 +1,11 @@
 // What a tab touches first: its address says so.
 
-/** A synthetic cloud by its name, the file at an address, or the bytes of one. */
+/** A synthetic cloud by its name, the file at an address, or one that was given. */
 export interface Wanted {
   name: string;
   at?: string;
-  bytes?: ArrayBuffer;
+  file?: File;
+  unit?: number; // metres a unit of the file; absent: the likely one
   news?: string; // to be said where it is touched
 }
 

@@ -10,7 +10,7 @@ interface Core {
   UTF8ToString(at: number): string;
   _malloc(size: number): number;
   _free(at: number): void;
-  _tab_open(name: number, bytes: number, size: number, news: number): number; // null: it is touched
+  _tab_open(name: number, bytes: number, size: number, unit: number, news: number): number; // null: it is touched
   _tab_connect(now: number): number; // null, or what ended the program; as of the next two
   _tab_receive(text: number, now: number): number;
   _tab_run(now: number): number;
@@ -25,6 +25,7 @@ importScripts("tab.js");
 const decoder = new TextDecoder();
 const compiled = compile();
 let core: Core | undefined;
+let touched: Wanted | undefined;
 let opening = false;
 
 /** Compiled while it comes, where the server says what it is. */
@@ -49,6 +50,7 @@ async function instance(): Promise<Core> {
     },
     close: (code: number, why: string) => postMessage({ kind: "closed", code, why }),
     open: (name: string) => void another({ name }),
+    openAgain: (unit: number) => void another({ ...touched!, unit, news: "" }),
     print() {},
     printErr() {}, // what goes wrong is said on the page
   }).then(resolve, reject));
@@ -75,16 +77,26 @@ async function fetched(at: string): Promise<ArrayBuffer> {
   return answer.arrayBuffer();
 }
 
+async function read(file: File): Promise<ArrayBuffer> {
+  try {
+    return await file.arrayBuffer();
+  } catch {
+    throw new Error(`${file.name} cannot be read: is it still there?`);
+  }
+}
+
 /** Makes what is wanted what is touched. Throws in words what is wrong; what was touched then stays. */
-async function open({ name, at, bytes, news = "" }: Wanted): Promise<void> {
-  const file = at === undefined ? bytes : await fetched(at);
+async function open(wanted: Wanted): Promise<void> {
+  const { name, at, file, unit = 0, news = "" } = wanted;
+  const bytes = at !== undefined ? await fetched(at) : file !== undefined ? await read(file) : undefined;
   const next = await instance();
-  const place = file === undefined ? 0 : put(next, new Uint8Array(file));
+  const start = bytes === undefined ? 0 : put(next, new Uint8Array(bytes));
   const texts = [textIn(next, name), textIn(next, news)] as const;
-  const wrong = next._tab_open(texts[0], place, file?.byteLength ?? 0, texts[1]);
+  const wrong = next._tab_open(texts[0], start, bytes?.byteLength ?? 0, unit, texts[1]);
   if (wrong !== 0) throw new Error(next.UTF8ToString(wrong));
   for (const each of texts) next._free(each); // the bytes are its own
   core = next;
+  touched = wanted;
 }
 
 /** Calls the program, which ends where it says why. */

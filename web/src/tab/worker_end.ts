@@ -56,22 +56,16 @@ export class WorkerEnd implements End {
 
   async give(file: File): Promise<string | undefined> {
     if (this.giving) return `${file.name} is not opened: another one is being prepared`;
+    if (!this.ready) return `${file.name} is not opened: nothing computes the touch here now`;
     this.giving = true;
     try {
-      return await this.hand(file.name, await file.arrayBuffer());
-    } catch {
-      return `${file.name} cannot be read: is it still there?`;
+      return await new Promise((resolve) => {
+        this.answer = resolve;
+        this.post({ kind: "open", wanted: { name: file.name, file } });
+      });
     } finally {
       this.giving = false;
     }
-  }
-
-  private async hand(name: string, bytes: ArrayBuffer): Promise<string | undefined> {
-    if (!this.ready) return `${name} is not opened: nothing computes the touch here now`;
-    return new Promise((resolve) => {
-      this.answer = resolve;
-      this.post({ kind: "open", wanted: { name, bytes } }, [bytes]);
-    });
   }
 
   close(): void {
@@ -89,8 +83,8 @@ export class WorkerEnd implements End {
     return worker;
   }
 
-  private post(message: ToWorker, give: Transferable[] = []): void {
-    this.worker?.postMessage(message, give);
+  private post(message: ToWorker): void {
+    this.worker?.postMessage(message);
   }
 
   private connect(): void {

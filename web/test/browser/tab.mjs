@@ -65,6 +65,32 @@ test("a dropped file is touched, one that is no cloud is refused in words, and t
     assert.equal(asked.length, loaded);
   }));
 
+const unit = (page, name) => page.getByLabel(`Unit of ${name}`).inputValue();
+
+test("the unit of a file is asked for, and the file is read again in the one that is chosen", () =>
+  withTab("?cloud=synthetic:torus", async (page, { asked }) => {
+    const loaded = asked.length;
+    await page.setInputFiles("#open-file", { name: "scan.xyz", mimeType: "text/plain", buffer: Buffer.from(ball(250)) });
+    await shows(page, "scan");
+    await page.locator("#panels").click(); // the simple page
+    await page.locator("#ask").getByText(/^scan: 500 x 500 x 500 m\?/).waitFor();
+    await picture(page, "tab-unit");
+    await page.locator("#ask").getByText("mm", { exact: true }).click();
+    await until("millimetres", async () => (await unit(page, "scan")) === "mm");
+    await connected(page);
+    assert.ok(await page.locator("#ask").isHidden(), "it is said");
+    await touch(page);
+    assert.equal(asked.length, loaded);
+  }));
+
+test("a link holds the unit of its file", () =>
+  withTab("?at=clouds/scan.xyz#unit.scan=mm&stiffness=200", async (page) => {
+    await until("millimetres", async () => (await unit(page, "scan")) === "mm");
+    await connected(page);
+    await until("its stiffness", async () => Math.abs((await page.getByRole("spinbutton", { name: "Stiffness" }).inputValue()) - 200) < 1);
+    await touch(page);
+  }, { "clouds/scan.xyz": ball(250) }));
+
 test("a link names a cloud below the site's folder, and settings", () =>
   withTab("?at=clouds/my%20ball.xyz#stiffness=200", async (page) => {
     assert.equal(await scene(page), "my ball");
