@@ -28,9 +28,9 @@ TEST_P(Drag, TangentialForceIsMuTimesNormalForce) {
   const Vector3d along = Vector3d(3, 4, 0) / 5;
   drive(proxy, plane, from, from + 0.02 * along, speed);
   drive(proxy, plane, from + 0.02 * along, from + 0.1 * along, speed,
-        [along, mu = mu](const Vector3d&, const Contact& c) {
+        [along, friction = mu](const Vector3d&, const Contact& c) {
           EXPECT_TRUE(c.sliding);
-          EXPECT_NEAR(-c.force.dot(along) / c.force.z(), mu, 1e-3 * mu);
+          EXPECT_NEAR(-c.force.dot(along) / c.force.z(), friction, 1e-3 * friction);
         });
 }
 
