@@ -15,7 +15,7 @@ namespace palpate::fuzz {
 inline std::vector<std::byte> e57_pages_of(std::span<const std::byte> data) {
   std::vector<std::byte> file;
   while (!data.empty()) {
-    const std::size_t count = std::min(data.size(), io::kE57PageData);
+    const std::size_t count = std::min<std::size_t>(data.size(), io::kE57PageData);
     std::vector<std::byte> page(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(count));
     page.resize(io::kE57PageData);
     const std::uint32_t crc = io::e57_crc(page.data());

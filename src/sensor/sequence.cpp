@@ -10,6 +10,7 @@
 
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
+#include "io/text_scanner.hpp"
 #include "io/time_unit.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/frame_files.hpp"
@@ -102,13 +103,11 @@ void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std
 // with a point, or since 1970 in us or ns, which of a time in this century have 16 and 19 digits.
 std::optional<double> time_in_name(const fs::path& frame) {
   const std::string name = frame.stem().string();
-  double time = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), time);
-  const bool whole = error == std::errc() && end == name.data() + name.size();
-  if (!is_cloud(frame) || !whole || !std::isfinite(time)) return std::nullopt;
+  const std::optional<double> time = io::parse_number(name);
+  if (!is_cloud(frame) || !time || !std::isfinite(*time)) return std::nullopt;
   if (name.find('.') != std::string::npos) return time;
   const bool since_1970 = name.size() == 16 || name.size() == 19;
-  return since_1970 ? std::optional(time / io::unit_of_time(time).per_second) : std::nullopt;
+  return since_1970 ? std::optional(*time / io::unit_of_time(*time).per_second) : std::nullopt;
 }
 
 // False: not all names are times, and nothing has changed.

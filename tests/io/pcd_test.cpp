@@ -3,10 +3,13 @@
 
 #include "io/formats.hpp"
 #include "io/reading.hpp"
+#include "support/counts.hpp"
 
 namespace palpate {
 namespace {
 
+using test::kCountOfHalfTheBits;
+using test::kLargestCount;
 using testing::HasSubstr;
 
 struct Head {
@@ -191,9 +194,9 @@ TEST(PcdRows, BehindTheLastDeclaredOneAreTold) {
 }
 
 TEST(Pcd, RefusesHostileCounts) {
-  const Head most{.width = "18446744073709551615", .points = "18446744073709551615"};
-  EXPECT_THAT(refusal(most.text() + "1 2 3\n"), HasSubstr("after 1 of 18446744073709551615"));
-  const Head overflow{.width = "4294967296", .height = "4294967296", .points = "0"};
+  const Head most{.width = kLargestCount, .points = kLargestCount};
+  EXPECT_THAT(refusal(most.text() + "1 2 3\n"), HasSubstr("after 1 of " + kLargestCount));
+  const Head overflow{.width = kCountOfHalfTheBits, .height = kCountOfHalfTheBits, .points = "0"};
   EXPECT_THAT(refusal(overflow.text() + "1 2 3\n"), HasSubstr("is not POINTS"));
   Head wide;
   wide.counts = "1 1 99999999999";

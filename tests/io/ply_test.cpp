@@ -3,10 +3,12 @@
 
 #include "io/formats.hpp"
 #include "io/reading.hpp"
+#include "support/counts.hpp"
 
 namespace palpate {
 namespace {
 
+using test::kLargestCount;
 using testing::HasSubstr;
 
 constexpr std::string_view kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -161,11 +163,10 @@ TEST(Ply, SaysWhereAFileIsCutAndHowManyPointsAreThere) {
 }
 
 TEST(Ply, RefusesCountsThatTheBytesCannotHoldWithoutAskingForMemory) {
-  const std::string most = "18446744073709551615";
-  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex " + most + "\n" + std::string(kXyz) +
-                      "end_header\n1 2 3\n"),
-              HasSubstr("ends after 1 of " + most));
-  EXPECT_THAT(refusal("ply\nformat binary_little_endian 1.0\nelement empty " + most +
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement vertex " + kLargestCount + "\n" +
+                      std::string(kXyz) + "end_header\n1 2 3\n"),
+              HasSubstr("ends after 1 of " + kLargestCount));
+  EXPECT_THAT(refusal("ply\nformat binary_little_endian 1.0\nelement empty " + kLargestCount +
                       "\nelement vertex 1\n" + std::string(kXyz) + "end_header\n"),
               HasSubstr("ends after 0 of 1 rows"));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\nelement face 1\nproperty list int int v\n"
