@@ -1,7 +1,8 @@
-// forces CLOUD [STEPS]: every force of a hand that goes along a cloud 2 mm below its surface, as
-// the bits of its numbers; "frames" in place of a cloud: what the depth filter makes of some
-// frames. Two builds that print the same compute the same. How long a step took goes to the error
-// output. Nothing but + - * / and square roots makes the way, since C libraries differ in the
+// forces CLOUD: every force of a hand that goes along a cloud 2 mm below its surface, as the bits
+// of its numbers. forces frames: what the depth filter makes of some frames. forces sequence
+// IMAGE...: every force of a hand on the surface of depth images that follow one another, 30 a
+// second. Two builds that print the same compute the same. How long a step took goes to the error
+// output. Nothing but + - * / and square roots makes the path, since C libraries differ in the
 // others.
 #include <fmt/format.h>
 
@@ -59,8 +60,7 @@ class Hash {
   std::uint64_t hash_ = 14695981039346656037u;
 };
 
-PointCloud cloud_of(const std::string& name) {
-  if (name.find('.') == std::string::npos) return synthetic_cloud(name);
+std::vector<std::byte> bytes_of(const std::string& name) {
   std::FILE* const file = std::fopen(name.c_str(), "rb");
   if (file == nullptr) throw Error(name + ": cannot be opened");
   std::vector<std::byte> bytes;
@@ -69,13 +69,18 @@ PointCloud cloud_of(const std::string& name) {
     bytes.insert(bytes.end(), block, block + got);
   }
   std::fclose(file);
-  return read_cloud_bytes(bytes, name).cloud;
+  return bytes;
+}
+
+PointCloud cloud_of(const std::string& name) {
+  if (name.find('.') == std::string::npos) return synthetic_cloud(name);
+  return read_cloud_bytes(bytes_of(name), name).cloud;
 }
 
 // From point to near point of the cloud, 0.1 mm a step, and towards its middle.
-class Way {
+class Path {
  public:
-  explicit Way(const PointCloud& cloud) : cloud_(cloud) {
+  explicit Path(const PointCloud& cloud) : cloud_(cloud) {
     for (const auto& p : cloud.positions) middle_ += p.cast<double>();
     middle_ /= static_cast<double>(cloud.positions.size());
     at_ = to_ = draw();
@@ -115,7 +120,33 @@ class Way {
   Vector3d at_, to_;
 };
 
-void touch(const std::string& name, int steps) {
+constexpr int kSteps = 3000;  // on a cloud
+
+// Steps a proxy, prints its force and keeps how long that took.
+class Felt {
+ public:
+  explicit Felt(Scene& scene) : field_(scene) {}
+
+  void step(double time, const Vector3d& hand) {
+    const double before = now_us();
+    field_.update(time, hand, proxy_.position());
+    const Contact contact = proxy_.step(field_, hand, 1e-3);
+    took_.push_back(now_us() - before);
+    fmt::print("{} {} {}\n", bits(contact.force), contact.touching ? 1 : 0, contact.evaluations);
+  }
+  void report(const std::string& name, double prepared_us) {
+    std::ranges::sort(took_);
+    fmt::print(stderr, "{}: prepared in {:.0f} ms; a step took {:.2f} us, 99 % at most {:.2f} us\n",
+               name, prepared_us / 1e3, took_[took_.size() / 2], took_[took_.size() * 99 / 100]);
+  }
+
+ private:
+  SceneField field_;
+  Proxy proxy_{{.stiffness = 500, .friction = {0.3, 0.2, 0}}};
+  std::vector<double> took_;
+};
+
+void touch(const std::string& name) {
   const PointCloud cloud = cloud_of(name);
   Hash input;
   for (const auto& p : cloud.positions) {
@@ -126,21 +157,47 @@ void touch(const std::string& name, int steps) {
   Scene scene;
   scene.add("it", cloud);
   const double prepared = now_us();
-  SceneField field(scene);
-  Proxy proxy({.stiffness = 500, .friction = {0.3, 0.2, 0}});
-  Way way(cloud);
-  std::vector<double> took;
-  for (int i = 0; i < steps; ++i) {
-    const Vector3d hand = way.next(i);
-    const double before = now_us();
-    field.update(i * 1e-3, hand, proxy.position());
-    const Contact contact = proxy.step(field, hand, 1e-3);
-    took.push_back(now_us() - before);
-    fmt::print("{} {} {}\n", bits(contact.force), contact.touching ? 1 : 0, contact.evaluations);
+  Felt felt(scene);
+  Path path(cloud);
+  for (int i = 0; i < kSteps; ++i) felt.step(i * 1e-3, path.next(i));
+  felt.report(name, prepared - begin);
+}
+
+double nearest_in_the_middle(const DepthFrame& frame) {
+  double nearest = 10;
+  for (int row = 200; row < 280; ++row) {
+    for (int column = 280; column < 360; ++column) {
+      const auto z = static_cast<double>(
+          frame.depth[static_cast<std::size_t>(row * frame.camera.width + column)]);
+      if (z > 0) nearest = std::min(nearest, z);
+    }
   }
-  std::ranges::sort(took);
-  fmt::print(stderr, "{}: prepared in {:.0f} ms; a step took {:.2f} us, 99 % at most {:.2f} us\n",
-             name, (prepared - begin) / 1e3, took[took.size() / 2], took[took.size() * 99 / 100]);
+  return nearest;
+}
+
+// The hand stands in the middle of the picture, 3 mm behind what the first image shows there, and
+// moves 1 mm a frame to the right.
+void touch_sequence(const std::vector<std::string>& images) {
+  ReadDepthOptions options;
+  options.camera = {0, 0, {525, 525, 319.5, 239.5}, {}};
+  Scene scene;
+  Source& source = scene.add("it");
+  Felt felt(scene);
+  Vector3d hand(0, 0, 0);
+  double preparing = 0;
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    DepthFrame frame = read_depth_frame_bytes(bytes_of(images[k]), images[k], options);
+    frame.stamp = static_cast<double>(k) / 30;
+    if (k == 0) hand.z() = nearest_in_the_middle(frame) + 3e-3;
+    const double begin = now_us();
+    source.push(frame, [&] { return frame.stamp; });
+    preparing += now_us() - begin;
+    for (int i = 0; i < 33; ++i) {
+      hand.x() += 1e-3 / 33;
+      felt.step(frame.stamp + i * 1e-3, hand);
+    }
+  }
+  felt.report(fmt::format("{} images", images.size()), preparing);
 }
 
 // A tilted wall and a ball before it, in whole millimetres with a noise of about 1 mm.
@@ -186,14 +243,14 @@ void filter_frames() {
   fmt::print(stderr, "frames: one took {:.1f} ms\n", took[took.size() / 2]);
 }
 
-int run(int count, char** arguments) {
-  if (count < 2) throw Error("forces: name a cloud, as in: forces torus 3000");
-  const std::string what = arguments[1];
-  const int steps = count > 2 ? std::atoi(arguments[2]) : 3000;
-  if (what == "frames") {
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) throw Error("forces: name a cloud, as in: forces torus");
+  if (arguments[0] == "frames") {
     filter_frames();
+  } else if (arguments[0] == "sequence") {
+    touch_sequence({arguments.begin() + 1, arguments.end()});
   } else {
-    touch(what, std::max(1, steps));
+    touch(arguments[0]);
   }
   return 0;
 }
@@ -203,7 +260,7 @@ int run(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   try {
-    return palpate::run(count, arguments);
+    return palpate::run({arguments + 1, arguments + count});
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;
