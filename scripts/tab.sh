@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds a tab's program as WebAssembly, the page of a tab in build/web/site, and build/web/palpate-tab, which puts it into
-# other pages; tests them, and that forces are those of a native build of portable bits, bit for bit.
-# --test: all but the forces. --site: builds alone. --serve: builds, and serves the page on http://127.0.0.1:8430/.
+# other pages; tests them and what they are made of, hostile files under sanitizers, and that forces are those of a native
+# build of portable bits, bit for bit. --test: the page and its module alone. --site: builds alone. --serve: builds, and
+# serves the page on http://127.0.0.1:8430/.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 # shellcheck source=scripts/emscripten.sh
@@ -40,7 +41,7 @@ build_site() {
 case "${1:-}" in
   "" | --test | --site | --serve) ;;
   *)
-    sed -n '2,4s/^# //p' "$0"
+    sed -n '2,5s/^# //p' "$0"
     exit
     ;;
 esac
@@ -60,6 +61,9 @@ if [ "${1:-}" = --site ]; then exit; fi
 if [ $# -eq 0 ]; then
   build web
   test_preset web
+  configure websan
+  build websan io_test tab
+  test_preset websan -R '^(io|tab)'
 else
   test_preset web -R '^tab/'
 fi
