@@ -1,3 +1,4 @@
+// Guesses the units of files, and offers others.
 #include "session/length_unit.hpp"
 
 #include <fmt/format.h>

@@ -51,7 +51,7 @@ double take_likely_unit(CloudFile& file);
 [[nodiscard]] ViewerControls::Setting unit_setting(const std::string& name, double metres,
                                                    const std::optional<Box>& core);
 
-/// Of which source is the unit that a setting of that key chooses? Unset: it is another setting.
+/// The source whose unit a setting of that key chooses; unset: it is another setting.
 [[nodiscard]] std::optional<std::string> source_of_unit(std::string_view key);
 
 /// Metres of a unit that unit_setting() offers by that name; unset: it is none of them.

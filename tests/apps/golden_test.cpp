@@ -81,7 +81,8 @@ struct GoldenRun {
 
 constexpr GoldenRun kRuns[] = {
     {"torus", "touch synthetic:torus --duration 1"},
-    {"room", "touch synthetic:room --duration 1 --friction-static 0.5 --friction-dynamic 0.4", true},
+    {"room", "touch synthetic:room --duration 1 --friction-static 0.5 --friction-dynamic 0.4",
+     true},
     {"table_paper", "touch synthetic:table --preset paper --duration 1"},
     {"rabbit_metaball", "touch synthetic:rabbit --field metaball --duration 1", true},
     {"two_clouds",

@@ -135,7 +135,7 @@ class Felt {
     took_.push_back(now_us() - before);
     fmt::print("{} {} {}\n", bits(contact.force), contact.touching ? 1 : 0, contact.evaluations);
   }
-  // By thirds: what runs WebAssembly compiles it better while it runs.
+  // Three thirds, since what runs WebAssembly compiles it better while it runs.
   void report(const std::string& name, double prepared_us) {
     fmt::print(stderr, "{}: prepared in {:.0f} ms; a step took", name, prepared_us / 1e3);
     const std::size_t third = took_.size() / 3;

@@ -38,7 +38,7 @@ FLOORS = CORE | {
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
-    "session": {"base", "geometry", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
+    "session": {"base", "geometry", "io", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
     "tab": {"base", "geometry", "io", "bag", "depth", "field", "contact", "prepare", "scene", "sim", "sensor", "device", "servo", "viewer",
             "session"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
@@ -64,7 +64,7 @@ ALLOWED = {("contact", "palpate/field/field.hpp"), ("sim", "palpate/sensor/depth
            ("scene", "palpate/depth/depth_filter.hpp")}
 
 # What asks what machine it is compiled for, and whether that has threads.
-PLATFORM_FILES = {"src/base/cpu.hpp", "src/geometry/parallel.hpp"}
+PLATFORM_FILES = {"src/base/cpu.hpp", "src/geometry/parallel.hpp", "tests/support/thread_limit.hpp"}
 
 SOURCE_FOLDERS = ("apps", "bench", "examples", "fuzz", "include", "python", "src", "tests")
 TEXT_SUFFIXES = {".cpp", ".hpp", ".inl", ".in", ".cmake", ".md", ".mjs", ".py", ".sh", ".ts", ".txt"}
