@@ -104,6 +104,7 @@ void check_frame_list(std::string_view text) {
 }
 
 void check_mcap(std::span<const std::byte> bytes) {
+  // In memory, as a tab has it; of a path only what opens it differs.
   const std::shared_ptr<std::byte[]> copy(new std::byte[bytes.size()]);
   std::ranges::copy(bytes, copy.get());
   const bag::RandomFile file("input", copy, bytes.size());

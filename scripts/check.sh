@@ -10,6 +10,7 @@
 #   core       the core alone: builds, and passes its tests
 #   bare       the program without any optional library
 #   tab        the page of a tab: its program in Node, the page in a browser
+#   web        that, and in Node the tests of what it is made of, hostile files under sanitizers, forces bit for bit
 #   debug      every test and the benches in a Debug build
 #   threads    every test under TSan
 #   long       every test under ASan + UBSan, the Python module among them; in a release build every test with all
@@ -23,7 +24,7 @@
 #              no step be a fault
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
-all=(sanitized programs core bare tab debug threads long embedded documents fuzz lint fresh)
+all=(sanitized programs core bare web debug threads long embedded documents fuzz lint fresh)
 status=0
 
 # bare_says WORDS ARGUMENT...: the program without optional libraries does this, and says these words.
@@ -78,6 +79,8 @@ check_bare() {
 
 # 77: there is no compiler for it here.
 check_tab() { scripts/tab.sh --test || [ $? -eq 77 ]; }
+
+check_web() { scripts/tab.sh || [ $? -eq 77 ]; }
 
 check_debug() {
   need_packages bench
@@ -151,7 +154,7 @@ parts=("$@")
 if [ $# -eq 0 ]; then parts=("${all[@]}"); fi
 for part in "${parts[@]}"; do
   if ! declare -F "check_$part" >/dev/null; then
-    sed -n '2,23s/^# \{0,1\}//p' "$0"
+    sed -n '2,24s/^# \{0,1\}//p' "$0"
     [[ "$part" == -h || "$part" == --help ]] || fail "no part is called '$part'"
     exit
   fi

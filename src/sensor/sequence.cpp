@@ -103,8 +103,9 @@ void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std
 // with a point, or since 1970 in us or ns, which of a time in this century have 16 and 19 digits.
 std::optional<double> time_in_name(const fs::path& frame) {
   const std::string name = frame.stem().string();
+  const bool digits = name.find_first_not_of("0123456789.-e") == std::string::npos;
   const std::optional<double> time = io::parse_number(name);
-  if (!is_cloud(frame) || !time || !std::isfinite(*time)) return std::nullopt;
+  if (!is_cloud(frame) || !digits || !time || !std::isfinite(*time)) return std::nullopt;
   if (name.find('.') != std::string::npos) return time;
   const bool since_1970 = name.size() == 16 || name.size() == 19;
   return since_1970 ? std::optional(*time / io::unit_of_time(*time).per_second) : std::nullopt;

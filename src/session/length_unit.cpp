@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "geometry/inner_box.hpp"
 #include "io/cloud_builder.hpp"
 #include "palpate/contact/proxy.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kLookedAt = 200'000;  // points for the core
 constexpr std::size_t kFewest = 50;         // points of which some can be called outliers
-constexpr std::ptrdiff_t kOutliers = 1000;  // one in so many may be, at either end
+constexpr std::size_t kOutliers = 1000;     // one in so many may be, at either end
 
 constexpr std::string_view kUnitKey = "unit.";
 
@@ -75,17 +76,11 @@ Box core_of(const PointCloud& cloud) {
   const Box all = bounds_of(cloud);
   if (cloud.size() < kFewest) return all;
   const std::size_t stride = cloud.size() / kLookedAt + 1;
-  std::vector<double> values((cloud.size() - 1) / stride + 1);
-  const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-  const std::ptrdiff_t outliers = last / kOutliers + 1;
-  Box core = all;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = cloud.point(i * stride)[axis];
-    std::nth_element(values.begin(), values.begin() + outliers, values.end());
-    core.lower[axis] = values[static_cast<std::size_t>(outliers)];
-    std::nth_element(values.begin() + outliers, values.begin() + (last - outliers), values.end());
-    core.upper[axis] = values[static_cast<std::size_t>(last - outliers)];
-  }
+  std::vector<Eigen::Vector3f> sample;
+  for (std::size_t i = 0; i < cloud.size(); i += stride) sample.push_back(cloud.positions[i]);
+  Box core = detail::inner_box(sample, (sample.size() - 1) / kOutliers + 1);
+  core.lower += cloud.origin;
+  core.upper += cloud.origin;
   return all.size().maxCoeff() > 2 * core.size().maxCoeff() ? core : all;
 }
 
@@ -158,7 +153,7 @@ double take_likely_unit(CloudFile& file) {
 }
 
 ViewerControls::Setting unit_setting(const std::string& name, double metres,
-                                     const std::optional<Box>& core) {
+                                     const std::optional<UnitQuestion>& question) {
   ViewerControls::Setting setting{.key = std::string(kUnitKey) + name, .label = "Unit of " + name};
   setting.kind = ViewerControls::Setting::Kind::choice;
   for (const LengthUnit& unit : kLengthUnits) setting.choices.emplace_back(unit.name);
@@ -166,13 +161,13 @@ ViewerControls::Setting unit_setting(const std::string& name, double metres,
   if (!std::ranges::count(setting.choices, present)) setting.choices.push_back(present);
   setting.value = present;
   setting.restarts = true;
-  if (!core) return setting;
-  const Eigen::Vector3d size = core->size() / metres;
+  if (!question) return setting;
+  const Eigen::Vector3d size = question->core.size() / metres;
   const auto words = [](double side) {
     return side < 999.5 ? fmt::format("{:.3g}", side) : fmt::format("{:.0f}", side);
   };
   setting.question = fmt::format("{}: {} x {} x {} {}?", name, words(size.x()), words(size.y()),
-                                 words(size.z()), present);
+                                 words(size.z()), name_of_unit(question->likely));
   return setting;
 }
 

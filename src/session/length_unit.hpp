@@ -46,10 +46,15 @@ inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
 /// @return metres a unit
 double take_likely_unit(CloudFile& file);
 
-/// The setting by which a person chooses the unit of a source of that name, which is of `metres`
-/// now. `core`: of what has been read, m, where a person is to be asked whether that is right.
+/// What a person is asked of a file.
+struct UnitQuestion {
+  Box core;           ///< of what was read, m, in the unit that is taken
+  double likely = 0;  ///< metres of the unit that it probably has
+};
+
+/// The setting by which a person chooses the unit of a source of that name; it is of `metres` now.
 [[nodiscard]] ViewerControls::Setting unit_setting(const std::string& name, double metres,
-                                                   const std::optional<Box>& core);
+                                                   const std::optional<UnitQuestion>& question);
 
 /// The source whose unit a setting of that key chooses; unset: it is another setting.
 [[nodiscard]] std::optional<std::string> source_of_unit(std::string_view key);

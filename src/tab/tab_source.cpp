@@ -35,6 +35,13 @@ std::string lack_of(const SimulatedStream& stream) {
   return problem.empty() ? fmt::format("no frame within {:g} s", kFirstFrame) : problem;
 }
 
+// As the program names it: without what its format adds.
+std::string name_of_file(const std::string& name) {
+  std::filesystem::path path(name);
+  if (path.extension() == ".gz") path = path.stem();
+  return path.stem().string();
+}
+
 // `rest`: ":SCENE,KEY=VALUE", of which each part may be missing.
 Touched camera_of(std::string_view rest) {
   if (!rest.empty()) rest.remove_prefix(1);
@@ -62,15 +69,16 @@ Touched of_file(std::span<const std::byte> bytes, const std::string& name, doubl
   ReadOptions reading;
   if (unit > 0) reading.scale = unit;
   CloudFile file = read_cloud_bytes(bytes, name, reading);
-  std::optional<Box> asked;
+  std::optional<session::UnitQuestion> question;
   if (unit == 0) {
     unit = session::take_likely_unit(file);
     const Box core = session::core_of(file.cloud);
-    if (session::units_of(file, core, reading).metres > 0) asked = core;
+    const double likely = session::units_of(file, core, reading).metres;
+    if (likely > 0) question = {core, likely};
   }
-  std::string stem = std::filesystem::path(name).stem().string();
-  session::Setting setting = session::unit_setting(stem, unit, asked);
-  return {.name = std::move(stem), .cloud = std::move(file.cloud), .unit = std::move(setting)};
+  std::string shown = name_of_file(name);
+  session::Setting setting = session::unit_setting(shown, unit, question);
+  return {.name = std::move(shown), .cloud = std::move(file.cloud), .unit = std::move(setting)};
 }
 
 TabSource::TabSource(Touched touched)

@@ -39,11 +39,11 @@ void expect_golden(const std::string& name, const std::string& text) {
 
 // Without numbers, their units, and what of the machine comes through.
 std::string masked(std::string text) {
-  static const std::regex number(
+  static const std::regex kNumber(
       R"(-?\d[\d ]*(\.\d+)?(e-?\d+)?( ?(ns|us|ms|s|nm|um|mm|m|uN|mN|N|uJ|mJ|J)\b)?)");
-  static const std::regex path(R"(/[^ ,:]*/)");
-  text = std::regex_replace(text, path, "DIR/");
-  return std::regex_replace(text, number, "#");
+  static const std::regex kPath(R"(/[^ ,:]*/)");
+  text = std::regex_replace(text, kPath, "DIR/");
+  return std::regex_replace(text, kNumber, "#");
 }
 
 // The same of a report's values.
@@ -51,7 +51,8 @@ std::string outline(const nlohmann::ordered_json& json, const std::string& inden
   std::string text;
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
-      text += "\n" + indent + key + ":" + outline(value, indent + "  ");
+      text.append("\n").append(indent).append(key).append(":").append(
+          outline(value, indent + "  "));
     }
     return text;
   }

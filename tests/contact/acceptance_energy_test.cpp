@@ -1,7 +1,9 @@
 // docs/method.md 10: closed paths of the hand on static scenes give it no energy.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
+#include <vector>
 
 #include "palpate/contact/proxy.hpp"
 #include "support/effort.hpp"
@@ -87,18 +89,15 @@ Lap second_lap(PointField& points, const Vector3d& start, const Loop& loop, doub
   return lap;
 }
 
-// J that a lap may give. A noisy metaball has dents between which a fast hand falls: 18 of 60 other
-// seeds of this sphere give more than 0.05 mJ, 0.55 mJ at most; of the balanced field none does.
-double allowed(const std::string& scene, FieldOptions::Kind kind) {
-  return scene == "noisy_sphere" && kind == FieldOptions::Kind::metaball ? 1e-3 : 0.05e-3;
-}
-
 using EnergyCase = std::tuple<int, FieldOptions::Kind>;
 class AcceptanceEnergy : public testing::TestWithParam<EnergyCase> {};
 
 TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
   const auto& [index, kind] = GetParam();
   const EnergyScene scene = energy_scenes()[static_cast<std::size_t>(index)];
+  if (kind == FieldOptions::Kind::metaball && scene.name == std::string("noisy_sphere")) {
+    GTEST_SKIP() << "NoisyMetaballs takes several";
+  }
   PointField points(scene.points, {.kind = kind});
   double most = -1;
   double least_touched = 1;
@@ -109,7 +108,7 @@ TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
       if (speed < 0.1 && effort(10) < 10) continue;  // three quarters of all ticks
       const Lap lap = second_lap(points, scene.start, scene.loops[i], speed);
       SCOPED_TRACE(testing::Message() << "loop " << i << " at " << speed << " m/s");
-      EXPECT_LE(lap.given, allowed(scene.name, kind));
+      EXPECT_LE(lap.given, 0.05e-3);
       EXPECT_GE(lap.touched, 0.1);
       EXPECT_GE(lap.most, 0.3);
       most = std::max(most, lap.given);
@@ -120,6 +119,23 @@ TEST_P(AcceptanceEnergy, ClosedLoopsGiveNothing) {
   RecordProperty("least_touched", std::to_string(least_touched));
   RecordProperty("least_force_N", std::to_string(least_force));
   RecordProperty("most_mJ", std::to_string(1e3 * most));
+}
+
+// A noisy metaball has dents between which a fast hand falls. Seeds 201 to 260: 18 of 60 give more
+// than 0.05 mJ, 0.55 mJ at most; of the balanced field none does.
+TEST(NoisyMetaballs, GiveNothingInTheMedianAndLittleAtMost) {
+  const Loop around{{0, 0, 0}, 0.037 * Vector3d::UnitX(), 0.037 * Vector3d::UnitZ()};
+  std::vector<double> given;
+  for (unsigned seed = 1; seed <= 9; ++seed) {
+    const Sampling noisy{.jitter = 0.2, .noise = 0.25, .tilt = 0.1, .seed = seed};
+    PointField points(ball(noisy, 0.04), {.kind = FieldOptions::Kind::metaball});
+    const Lap lap = second_lap(points, {0.08, 0, 0}, around, 1);
+    EXPECT_GE(lap.touched, 0.1);
+    given.push_back(lap.given);
+  }
+  std::ranges::sort(given);
+  EXPECT_LE(given[4], 0.05e-3);
+  EXPECT_LE(given.back(), 1e-3);
 }
 
 std::string energy_name(const testing::TestParamInfo<EnergyCase>& tested) {

@@ -6,15 +6,16 @@
 // others.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "palpate/depth/depth_filter.hpp"
@@ -78,23 +79,29 @@ PointCloud cloud_of(const std::string& name) {
   return read_cloud_bytes(bytes_of(name), name).cloud;
 }
 
-// From point to near point of the cloud, 0.1 mm a step, and towards its middle.
+// From point to near point of the cloud and towards its middle; of a cloud as large as a bunny,
+// 0.15 m, 0.1 mm a step and 2 mm deep.
 class Path {
  public:
   explicit Path(const PointCloud& cloud) : cloud_(cloud) {
-    for (const auto& p : cloud.positions) middle_ += p.cast<double>();
+    Eigen::AlignedBox3f box;
+    for (const auto& p : cloud.positions) {
+      middle_ += p.cast<double>();
+      box.extend(p);
+    }
     middle_ /= static_cast<double>(cloud.positions.size());
+    unit_ = static_cast<double>(box.sizes().maxCoeff()) / 150;
     at_ = to_ = draw();
   }
 
   Vector3d next(int step) {
     double left = (to_ - at_).norm();
-    if (left < 1e-4) {
+    if (left < 0.1 * unit_) {
       choose();
       left = (to_ - at_).norm();
     }
-    if (left > 0) at_ += (to_ - at_) * (std::min(1e-4, left) / left);
-    const double depth = step < 500 ? -0.02 + 0.022 * step / 500 : 0.002;
+    if (left > 0) at_ += (to_ - at_) * (std::min(0.1 * unit_, left) / left);
+    const double depth = unit_ * (step < 500 ? -20 + 22. * step / 500 : 2.);
     const Vector3d inward = middle_ - at_;
     return cloud_.origin + at_ + inward * (depth / inward.norm());
   }
@@ -105,11 +112,11 @@ class Path {
         .cast<double>();
   }
   void choose() {
-    double nearest = 1e9;
+    double nearest = 1e9 * unit_;
     for (int i = 0; i < 400; ++i) {
       const Vector3d other = draw();
       const double distance = (other - at_).norm();
-      if (distance < 5e-3 || distance > nearest) continue;
+      if (distance < 5 * unit_ || distance > nearest) continue;
       nearest = distance;
       to_ = other;
     }
@@ -117,6 +124,7 @@ class Path {
 
   const PointCloud& cloud_;
   Random random_;
+  double unit_ = 0;  // m; 1 mm of a cloud that is 150 mm long
   Vector3d middle_ = Vector3d::Zero();
   Vector3d at_, to_;
 };
@@ -171,20 +179,18 @@ void touch(const std::string& name) {
   felt.report(name, prepared - begin);
 }
 
-double nearest_in_the_middle(const DepthFrame& frame) {
-  double nearest = 10;
-  for (int row = 200; row < 280; ++row) {
-    for (int column = 280; column < 360; ++column) {
-      const auto z = static_cast<double>(
-          frame.depth[static_cast<std::size_t>(row * frame.camera.width + column)]);
-      if (z > 0) nearest = std::min(nearest, z);
-    }
+// What lies in the middle of the image, or beside that, on the optical axis; m.
+double depth_of_middle(const DepthFrame& frame) {
+  const auto [width, height] = std::pair(frame.camera.width, frame.camera.height);
+  for (int column = width / 2; column < width; ++column) {
+    const float z = frame.depth[static_cast<std::size_t>(height / 2 * width + column)];
+    if (z > 0) return static_cast<double>(z);
   }
-  return nearest;
+  throw Error("forces: the middle of the first image shows nothing");
 }
 
-// The hand stands in the middle of the picture, 3 mm behind what the first image shows there, and
-// moves 1 mm a frame to the right.
+// The hand stands 5 mm behind what the first image shows in its middle, and moves 1 mm a frame to
+// the right.
 void touch_sequence(const std::vector<std::string>& images) {
   ReadDepthOptions options;
   options.camera = {0, 0, {525, 525, 319.5, 239.5}, {}};
@@ -196,7 +202,7 @@ void touch_sequence(const std::vector<std::string>& images) {
   for (std::size_t k = 0; k < images.size(); ++k) {
     DepthFrame frame = read_depth_frame_bytes(bytes_of(images[k]), images[k], options);
     frame.stamp = static_cast<double>(k) / 30;
-    if (k == 0) hand.z() = nearest_in_the_middle(frame) + 3e-3;
+    if (k == 0) hand.z() = depth_of_middle(frame) + 5e-3;
     const double begin = now_us();
     source.push(frame, [&] { return frame.stamp; });
     preparing += now_us() - begin;
@@ -218,7 +224,7 @@ std::vector<std::uint16_t> frame_of(Random& random) {
     const double inside = 0.04 - 0.81 * (x * x + y * y);
     if (inside > 0) z = 0.9 - 0.5 * std::sqrt(inside);
     const double noise = random.unit() + random.unit() + random.unit() + random.unit() - 2;
-    depth[pixel] = static_cast<std::uint16_t>(1000 * (z + 1.7e-3 * noise) + 0.5);
+    depth[pixel] = static_cast<std::uint16_t>(std::lround(1000 * (z + 1.7e-3 * noise)));
   }
   return depth;
 }

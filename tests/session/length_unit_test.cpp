@@ -78,11 +78,14 @@ TEST(LengthUnit, APartOfAMachineIsRescaledOnce) {
   EXPECT_EQ(take_likely_unit(file), 1) << "2 cm long is no part in millimetres";
 }
 
-TEST(LengthUnit, TheSettingAsksOfASizeInTheUnitThatIsTaken) {
+TEST(LengthUnit, TheSettingAsksForTheLikelyUnit) {
   const Box core = box({0, 0, 0}, {0.02, 0.0105, 1.5});
-  const auto setting = unit_setting("part", 0.001, core);
+  const auto setting = unit_setting("part", 0.001, UnitQuestion{core, 0.001});
   EXPECT_EQ(setting.key, "unit.part");
   EXPECT_EQ(setting.question, "part: 20 x 10.5 x 1500 mm?");
+  EXPECT_EQ(unit_setting("part", 1, UnitQuestion{core, 0.3048}).question,
+            "part: 0.02 x 0.0105 x 1.5 ft?")
+      << "numbers as in the file, in the unit that they probably have";
   EXPECT_EQ(std::get<std::string>(setting.value), "mm");
   EXPECT_EQ(source_of_unit(setting.key), "part");
   EXPECT_EQ(source_of_unit("stiffness"), std::nullopt);

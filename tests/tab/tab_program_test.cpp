@@ -244,7 +244,7 @@ TEST(TabProgram, APersonIsAskedForTheUnitOfAFileThatStatesNone) {
   Page page(of_file(bytes_of(floor_of(20)), "floor.xyz", 0));
   EXPECT_EQ(unit_of(page)["key"], "unit.floor");
   EXPECT_EQ(unit_of(page)["value"], "m");
-  EXPECT_EQ(unit_of(page)["question"], "floor: 580 x 580 x 0 m?");
+  EXPECT_EQ(unit_of(page)["question"], "floor: 580 x 580 x 0 mm?");
   page.say({{"type", "set"}, {"key", "unit.floor"}, {"value", "m"}});
   EXPECT_EQ(page.opened_in, 0) << "it is";
   page.say({{"type", "set"}, {"key", "unit.floor"}, {"value", "mm"}});
@@ -268,6 +268,11 @@ TEST(TabProgram, PartsOfMachinesAreTakenAsMillimetres) {
   EXPECT_EQ(unit_of(page)["value"], "mm");
   EXPECT_EQ(unit_of(page)["question"], "plate: 30 x 30 x 0 mm?");
   EXPECT_EQ(unit_of(Page()), json()) << "a formula has metres";
+}
+
+TEST(TabProgram, AFileHasTheNameThatTheProgramGivesIt) {
+  EXPECT_EQ(of_file(bytes_of(floor_of(1e-3)), "floor.xyz", 0).name, "floor");
+  EXPECT_EQ(of_file(bytes_of(floor_of(1e-3)), "floor.xyz.gz", 0).name, "floor");
 }
 
 TEST(TabProgram, FilesAreReadByTheirBytesOrRefusedInWords) {

@@ -72,15 +72,15 @@ CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options
   if (twice) {
     options.mesh_spacing = spacing;
     file = read(argument, options);
-    if (options.scale != 1) file.format += session::kTakenAsMillimetres;
   } else if (options.scale != 1 && spacing > 0) {
     throw Error(fmt::format(
         "{}: --mesh-spacing is in metres, and the file says no unit; give --scale, too: 0.001 for "
         "millimetres, 1 for metres",
         argument.path));
-  } else {
-    session::take_likely_unit(file);
+  } else if (options.scale != 1) {
+    io::rescale(file, options.scale);
   }
+  if (options.scale != 1) file.format += session::kTakenAsMillimetres;
   return file;
 }
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/run/opening.hpp"
@@ -45,11 +44,11 @@ bool has_unit(const LoadedSource& source) {
 }
 
 Setting unit_setting_of(const LoadedSource& source, const Source& felt) {
-  std::optional<Box> core;
+  std::optional<session::UnitQuestion> question;
   const std::shared_ptr<const PointCloud> cloud =
       source.cloud ? source.cloud : felt.state().overview;
-  if (source.units.metres > 0 && cloud) core = session::core_of(*cloud);
-  return session::unit_setting(source.plan.argument.name, unit_taken(source), core);
+  if (source.units.metres > 0 && cloud) question = {session::core_of(*cloud), source.units.metres};
+  return session::unit_setting(source.plan.argument.name, unit_taken(source), question);
 }
 
 Setting scene_setting(const LoadedScene& loaded) {
@@ -88,12 +87,13 @@ bool NextRun::set(const std::string& key, const Setting::Value& value) {
     return true;
   }
   const std::optional<std::string> name = session::source_of_unit(key);
+  const std::optional<double> metres = session::metres_of_unit(wanted);
+  if (!name || !metres) return false;
   const auto& sources = run_.loaded.sources;
   const auto source = std::ranges::find_if(
       sources, [&](const LoadedSource& each) { return each.plan.argument.name == name; });
   const auto index = static_cast<std::size_t>(source - sources.begin());
-  const double metres = session::metres_of_unit(wanted).value_or(1);  // the present one was left
-  run_.opening->begin({fmt::format("{} in {}", *name, wanted), Opening::OtherUnit{index, metres}});
+  run_.opening->begin({fmt::format("{} in {}", *name, wanted), Opening::OtherUnit{index, *metres}});
   return true;
 }
 

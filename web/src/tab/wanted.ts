@@ -11,6 +11,9 @@ export interface Wanted {
 
 export const kFirst = "synthetic:rabbit";
 
+/** What a person reads meanwhile. */
+export const preparing = ({ name }: Wanted) => `preparing ${name.replace(/^synthetic:/, "")}`;
+
 /** `?cloud=synthetic:torus`, or `?at=clouds/x.ply`: a file below the page's own folder, and nowhere else. */
 export function wantedAt(address: string): Wanted {
   const query = new URL(address).searchParams;

@@ -2,7 +2,7 @@
 // the module of its own, so what fails takes nothing along, and all of its memory goes with it.
 
 import type { FromWorker, ToWorker } from "./messages";
-import { kFirst, type Wanted } from "./wanted";
+import { kFirst, preparing, type Wanted } from "./wanted";
 
 /** The module of src/tab. */
 interface Core {
@@ -19,6 +19,7 @@ declare const Tab: (options: object) => Promise<Core>;
 declare function importScripts(path: string): void;
 declare function postMessage(message: FromWorker, give?: Transferable[]): void;
 
+const kByProgram = 0; // a request: a person chose something in its settings
 const kMost = 512 * 2 ** 20; // bytes of a file, as of src/tab
 
 importScripts("tab.js");
@@ -49,8 +50,8 @@ async function instance(): Promise<Core> {
       postMessage(buffer, [buffer]);
     },
     close: (code: number, why: string) => postMessage({ kind: "closed", code, why }),
-    open: (name: string) => void another({ name }),
-    openAgain: (unit: number) => void another({ ...touched!, unit, news: "" }),
+    open: (name: string) => void another({ name }, kByProgram),
+    openAgain: (unit: number) => void another({ ...touched!, unit, news: "" }, kByProgram),
     print() {},
     printErr() {}, // what goes wrong is said on the page
   }).then(resolve, reject));
@@ -81,7 +82,7 @@ async function read(file: File): Promise<ArrayBuffer> {
   try {
     return await file.arrayBuffer();
   } catch {
-    throw new Error(`${file.name} cannot be read: is it still there?`);
+    throw new Error(`${file.name} cannot be read: it was moved or has changed since; drop it again`);
   }
 }
 
@@ -122,14 +123,17 @@ async function first(wanted: Wanted): Promise<void> {
   }
 }
 
-async function another(wanted: Wanted): Promise<void> {
+async function another(wanted: Wanted, request: number): Promise<void> {
+  if (opening) return postMessage({ kind: "refused", request, words: `${wanted.name} is not opened: another one is being prepared` });
+  opening = true;
+  const work = (over: boolean) => postMessage(JSON.stringify({ type: "notice", level: "info", text: preparing(wanted), share: 0, over }));
+  if (request === kByProgram) work(false);
   try {
-    if (opening) throw new Error("another one is being prepared");
-    opening = true;
     await open(wanted);
-    postMessage({ kind: "another" });
+    postMessage({ kind: "another", request });
   } catch (error) {
-    postMessage({ kind: "refused", words: told(wanted.name, error) });
+    if (request === kByProgram) work(true);
+    postMessage({ kind: "refused", request, words: told(wanted.name, error) });
   } finally {
     opening = false;
   }
@@ -164,7 +168,7 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
     if (typeof data === "string") receive(data);
     else if (data.kind === "connect") call((of) => of._tab_connect(seconds()));
     else if (core === undefined) void first(data.wanted);
-    else void another(data.wanted);
+    else void another(data.wanted, data.request);
   } catch (error) {
     die(error);
   }

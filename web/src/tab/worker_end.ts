@@ -3,7 +3,7 @@
 import { kAbnormal, kServiceRestart, type End, type Hears } from "../protocol/end";
 import type { FromProgram } from "../protocol/messages";
 import type { FromWorker, ToWorker } from "./messages";
-import type { Wanted } from "./wanted";
+import { preparing, type Wanted } from "./wanted";
 
 const kUnreachable = "its scripts could not be loaded: is this machine online?";
 
@@ -13,8 +13,9 @@ export class WorkerEnd implements End {
   private worker: Worker | undefined;
   private hears: Hears | undefined;
   private ready = false;
-  private giving = false;
-  private answer: ((wrong: string | undefined) => void) | undefined; // of the file that was given
+  private request = 0; // the last one
+  private answer: ((wrong: string | undefined) => void) | undefined; // of the file that was given: the last request
+  private unsaid: string | undefined; // what was refused while no page listened
 
   private given: File | undefined; // by a page that frames this one (web/tab_package)
   private takesGiven: ((file: File) => void) | undefined;
@@ -44,7 +45,7 @@ export class WorkerEnd implements End {
     this.hears = hears;
     this.worker ??= this.start();
     if (this.ready) return this.connect();
-    const text = `preparing ${this.first.name.replace(/^synthetic:/, "")}`;
+    const text = preparing(this.first);
     hears.data(JSON.stringify({ type: "notice", level: "info", text, share: 0 } satisfies FromProgram)); // until it welcomes
   }
 
@@ -55,17 +56,13 @@ export class WorkerEnd implements End {
   }
 
   async give(file: File): Promise<string | undefined> {
-    if (this.giving) return `${file.name} is not opened: another one is being prepared`;
+    if (this.answer !== undefined) return `${file.name} is not opened: another one is being prepared`;
     if (!this.ready) return `${file.name} is not opened: nothing computes the touch here now`;
-    this.giving = true;
-    try {
-      return await new Promise((resolve) => {
-        this.answer = resolve;
-        this.post({ kind: "open", wanted: { name: file.name, file } });
-      });
-    } finally {
-      this.giving = false;
-    }
+    this.request += 1;
+    return new Promise((resolve) => {
+      this.answer = resolve;
+      this.post({ kind: "open", wanted: { name: file.name, file }, request: this.request });
+    });
   }
 
   close(): void {
@@ -79,7 +76,7 @@ export class WorkerEnd implements End {
       event.preventDefault(); // it is said on the page
       this.died(event.message ?? kUnreachable);
     };
-    worker.postMessage({ kind: "open", wanted: this.first } satisfies ToWorker);
+    worker.postMessage({ kind: "open", wanted: this.first, request: 0 } satisfies ToWorker);
     return worker;
   }
 
@@ -90,6 +87,12 @@ export class WorkerEnd implements End {
   private connect(): void {
     this.post({ kind: "connect" });
     this.hears?.opened();
+    if (this.unsaid !== undefined) this.refuse(this.unsaid);
+  }
+
+  private refuse(words: string): void {
+    this.hears?.data(JSON.stringify({ type: "refused", text: words } satisfies FromProgram));
+    this.unsaid = this.hears === undefined ? words : undefined;
   }
 
   private take(data: FromWorker): void {
@@ -100,11 +103,10 @@ export class WorkerEnd implements End {
         if (this.hears !== undefined) this.connect();
         return;
       case "another":
-        this.answered(undefined);
+        if (data.request > 0) this.answered(undefined);
         return this.hears?.closed(kServiceRestart, "");
       case "refused":
-        if (this.answer !== undefined) return this.answered(data.words);
-        return this.hears?.data(JSON.stringify({ type: "refused", text: data.words }));
+        return data.request > 0 ? this.answered(data.words) : this.refuse(data.words);
       case "closed":
         return this.hears?.closed(data.code, data.why);
       case "died":

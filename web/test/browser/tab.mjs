@@ -73,7 +73,7 @@ test("the unit of a file is asked for, and the file is read again in the one tha
     await page.setInputFiles("#open-file", { name: "scan.xyz", mimeType: "text/plain", buffer: Buffer.from(ball(250)) });
     await shows(page, "scan");
     await page.locator("#panels").click(); // the simple page
-    await page.locator("#ask").getByText(/^scan: 500 x 500 x 500 m\?/).waitFor();
+    await page.locator("#ask").getByText(/^scan: 500 x 500 x 500 mm\?/).waitFor();
     await picture(page, "tab-unit");
     await page.locator("#ask").getByText("mm", { exact: true }).click();
     await until("millimetres", async () => (await unit(page, "scan")) === "mm");
