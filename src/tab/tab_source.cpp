@@ -35,7 +35,7 @@ std::string lack_of(const SimulatedStream& stream) {
   return problem.empty() ? fmt::format("no frame within {:g} s", kFirstFrame) : problem;
 }
 
-// As the program names it: without what its format adds.
+// The name that the program gives it: without what its format adds.
 std::string name_of_file(const std::string& name) {
   std::filesystem::path path(name);
   if (path.extension() == ".gz") path = path.stem();
