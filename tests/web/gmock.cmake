@@ -9,10 +9,6 @@ target_include_directories(web_gmock PRIVATE ${sources}/googletest ${sources}/go
 target_include_directories(web_gmock SYSTEM PUBLIC ${sources}/googletest/include ${sources}/googlemock/include)
 target_compile_features(web_gmock PUBLIC cxx_std_20)
 target_compile_options(web_gmock PRIVATE -w -O1)
-set(most_memory 4GB)
-if(PALPATE_SANITIZED)
-  set(most_memory 2GB)  # Emscripten's limit with the sanitizer of addresses
-endif()
 target_link_options(web_gmock INTERFACE -O1 -sNODERAWFS -sENVIRONMENT=node -sEXIT_RUNTIME -sALLOW_MEMORY_GROWTH
-  -sMAXIMUM_MEMORY=${most_memory} -sSTACK_SIZE=1MB -sINITIAL_MEMORY=64MB --pre-js ${CMAKE_CURRENT_LIST_DIR}/environment.js)
+  -sMAXIMUM_MEMORY=4GB -sSTACK_SIZE=1MB -sINITIAL_MEMORY=64MB --pre-js ${CMAKE_CURRENT_LIST_DIR}/environment.js)
 add_library(GTest::gmock ALIAS web_gmock)
