@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/neighborhoods.hpp"
+#include "geometry/neighborhood_graph.hpp"
 #include "geometry/parallel.hpp"
 #include "palpate/base/error.hpp"
 
@@ -46,6 +46,14 @@ void check_radius(float radius) {
   }
 }
 
+void check(const CellGrid& grid, std::span<const float> radii, float times) {
+  if (radii.size() != grid.size()) {
+    throw Error(fmt::format("normals: {} radii for {} points; give one for each", radii.size(),
+                            grid.size()));
+  }
+  for (const float radius : radii) check_radius(times * radius);
+}
+
 }  // namespace
 
 Normals estimate_normals(const CellGrid& grid, float radius) {
@@ -53,34 +61,36 @@ Normals estimate_normals(const CellGrid& grid, float radius) {
   return estimate_normals(grid, std::vector<float>(grid.size(), radius));
 }
 
-Normals estimate_normals(const CellGrid& grid, std::span<const float> radii, float times) {
-  if (radii.size() != grid.size()) {
-    throw Error(fmt::format("normals: {} radii for {} points; give one for each", radii.size(),
-                            grid.size()));
-  }
-  for (const float radius : radii) check_radius(times * radius);
+Normals estimate_normals(const CellGrid& grid, const std::vector<float>& radii) {
+  check(grid, radii, 1);
+  return estimate_normals(detail::NeighborhoodGraph(grid, radii), radii);
+}
+
+Normals estimate_normals(const detail::NeighborhoodGraph& graph, std::span<const float> radii,
+                         float times) {
+  const CellGrid& grid = graph.grid();
+  check(grid, radii, times);
   Normals result;
   result.normals.resize(grid.size(), Eigen::Vector3f::Zero());
   result.confidences.resize(grid.size(), 0);
   result.residuals.resize(grid.size(), 0);
   result.asides.resize(grid.size(), 0);
   const simd::JoinFunctions& joins = simd::best_joins();
-  detail::for_each_neighborhood(
-      grid, {.of_points = radii, .times = times, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        simd::Row moments[simd::kMoments];
-        simd::Planes planes;
-        simd::Row squared_radii = {};
-        std::transform(radii.begin() + first, radii.begin() + first + count, squared_radii,
-                       [times](float r) { return times * r * (times * r); });
-        joins.moments(detail::make_join(grid, first, count, runs), squared_radii, moments);
-        joins.planes(moments, &planes);
-        for (std::uint32_t q = 0; q < count; ++q) {
-          write(moments[0][q], planes, q, first + q, result);
-          const Eigen::Vector3f sum(moments[1][q], moments[2][q], moments[3][q]);
-          result.asides[first + q] = sum.norm() / (moments[0][q] * times * radii[first + q]);
-        }
-      });
+  graph.for_each_row([&](const detail::NeighborRow& row) {
+    simd::Row moments[simd::kMoments];
+    simd::Planes planes;
+    simd::Row squared_radii = {};
+    std::transform(radii.begin() + row.first, radii.begin() + row.first + row.count, squared_radii,
+                   [times](float r) { return times * r * (times * r); });
+    joins.moments(row.join(grid), squared_radii, moments);
+    joins.planes(moments, &planes);
+    for (std::uint32_t q = 0; q < row.count; ++q) {
+      const std::uint32_t i = row.first + q;
+      write(moments[0][q], planes, q, i, result);
+      const Eigen::Vector3f sum(moments[1][q], moments[2][q], moments[3][q]);
+      result.asides[i] = sum.norm() / (moments[0][q] * times * radii[i]);
+    }
+  });
   return result;
 }
 

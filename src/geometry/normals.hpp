@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 
 namespace palpate {
@@ -33,9 +34,13 @@ struct Normals {
 /// @throws Error when the radius is not positive and finite.
 [[nodiscard]] Normals estimate_normals(const CellGrid& grid, float radius);
 
-/// The same within `times` times a radius for each point, in sorted order.
+/// The same within a radius for each point, in sorted order.
 /// @throws Error as above, or when there are not as many radii as points.
-[[nodiscard]] Normals estimate_normals(const CellGrid& grid, std::span<const float> radii,
-                                       float times = 1);
+[[nodiscard]] Normals estimate_normals(const CellGrid& grid, const std::vector<float>& radii);
+
+/// The same within `times` times the radii, which the graph holds.
+/// @throws Error as above.
+[[nodiscard]] Normals estimate_normals(const detail::NeighborhoodGraph& graph,
+                                       std::span<const float> radii, float times = 1);
 
 }  // namespace palpate

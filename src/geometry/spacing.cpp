@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/neighborhoods.hpp"
+#include "geometry/neighborhood_graph.hpp"
 
 namespace palpate {
 namespace {
@@ -95,26 +95,29 @@ float guess_spacing(const Block& block) {
 template <std::size_t kSlots, class Result>
 void find_nearest(const CellGrid& grid, Nearest nearest, const Result& result) {
   const float extent = (grid.cells()[0].upper - grid.cells()[0].lower).maxCoeff();
-  detail::for_each_block(grid, [&](const Block& block, Surroundings& surroundings) {
-    const float start = std::sqrt(static_cast<float>(kSlots)) * guess_spacing(block);
-    float around = start;
-    surroundings.find(grid, block, around);
-    for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {
-      const Block part = detail::make_block(
-          grid, first, std::min<std::uint32_t>(first + simd::kQueries, block.end));
-      simd::Row rows[kSlots];
-      for (float radius = start;; radius = std::max(1.6f * radius, 1e-6f * extent)) {
-        if (radius > around) surroundings.find(grid, block, around = radius);
-        const auto runs = surroundings.near(part, radius);
-        nearest(detail::make_join(grid, first, part.size(), runs), rows);
-        // All closer than any point that was not looked at?
-        const float* last = rows[kSlots - 1];
-        if (*std::max_element(last, last + part.size()) <= radius * radius) break;
-        if (runs.size() == 1 && runs[0].end - runs[0].begin == grid.size()) break;
-      }
-      for (std::uint32_t q = 0; q < part.size(); ++q) result(first + q, q, rows);
-    }
-  });
+  const std::vector<Block> blocks = detail::make_blocks(grid, detail::kBlockPoints);
+  detail::parallel_each_with<Surroundings>(
+      blocks.size(), 8, [&](std::size_t b, auto& surroundings) {
+        const Block& block = blocks[b];
+        const float start = std::sqrt(static_cast<float>(kSlots)) * guess_spacing(block);
+        float around = start;
+        surroundings.find(grid, block, around);
+        for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {
+          const Block part = detail::make_block(
+              grid, first, std::min<std::uint32_t>(first + simd::kQueries, block.end));
+          simd::Row rows[kSlots];
+          for (float radius = start;; radius = std::max(1.6f * radius, 1e-6f * extent)) {
+            if (radius > around) surroundings.find(grid, block, around = radius);
+            const detail::NeighborRow row = surroundings.row(part, radius);
+            nearest(row.join(grid), rows);
+            // All closer than any point that was not looked at?
+            const float* last = rows[kSlots - 1];
+            if (*std::max_element(last, last + part.size()) <= radius * radius) break;
+            if (row.neighbors.size() == grid.size()) break;
+          }
+          for (std::uint32_t q = 0; q < part.size(); ++q) result(first + q, q, rows);
+        }
+      });
 }
 
 // The mean distance of each point to its three nearest others.
@@ -182,7 +185,9 @@ float smoothed_alone(const CellGrid& grid, std::span<const float> spacings, std:
 // at their scale may hold a whole surface.
 std::vector<float> smoothing_radii(const CellGrid& grid, std::span<const float> spacings) {
   std::vector<float> radii(grid.size());
-  detail::for_each_block(grid, [&](const Block& block, Surroundings&) {
+  const std::vector<Block> blocks = detail::make_blocks(grid, detail::kBlockPoints);
+  detail::parallel_each(blocks.size(), 8, [&](std::size_t b) {
+    const Block& block = blocks[b];
     const auto own = spacings.subspan(block.begin, block.size());
     const auto outlier = kOutlier * static_cast<float>(median(own));
     for (std::uint32_t i = block.begin; i < block.end; ++i) {
@@ -196,23 +201,20 @@ std::vector<float> smooth(const CellGrid& grid, std::vector<float> spacings) {
   const std::vector<float> radii = smoothing_radii(grid, spacings);
   for (float& s : spacings) s = std::min(s, kLargestSpacing);
   std::vector<float> result(grid.size());
-  detail::for_each_neighborhood(
-      grid, {.of_points = radii, .times = 1, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        simd::Row inverse = {};
-        for (std::uint32_t q = 0; q < count; ++q) {
-          const float radius = radii[first + q];
-          inverse[q] = radius > 0 ? std::min(1 / (radius * radius), kLargestFloat) : kLargestFloat;
-        }
-        simd::Row sums[2];
-        simd::best_joins().wyvill_means(detail::make_join(grid, first, count, runs), inverse,
-                                        spacings.data(), sums);
-        for (std::uint32_t q = 0; q < count; ++q) {
-          const std::uint32_t i = first + q;
-          result[i] = radii[i] > 0 ? smoothed(spacings[i], sums[0][q], sums[1][q])
-                                   : smoothed_alone(grid, spacings, i);
-        }
-      });
+  detail::NeighborhoodGraph(grid, radii).for_each_row([&](const detail::NeighborRow& row) {
+    simd::Row inverse = {};
+    for (std::uint32_t q = 0; q < row.count; ++q) {
+      const float radius = radii[row.first + q];
+      inverse[q] = radius > 0 ? std::min(1 / (radius * radius), kLargestFloat) : kLargestFloat;
+    }
+    simd::Row sums[2];
+    simd::best_joins().wyvill_means(row.join(grid), inverse, spacings.data(), sums);
+    for (std::uint32_t q = 0; q < row.count; ++q) {
+      const std::uint32_t i = row.first + q;
+      result[i] = radii[i] > 0 ? smoothed(spacings[i], sums[0][q], sums[1][q])
+                               : smoothed_alone(grid, spacings, i);
+    }
+  });
   return result;
 }
 

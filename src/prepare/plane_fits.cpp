@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
 #include "prepare/given_normals.hpp"
 #include "prepare/segment_fit.hpp"
@@ -29,9 +28,30 @@ SegmentFit fit_of(const PointFits& own, std::size_t i) {
   return fit;
 }
 
-PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
+namespace {
+
+std::vector<float> reaches_of(std::span<const float> radii) {
+  std::vector<float> reaches(radii.begin(), radii.end());
+  for (float& reach : reaches) reach *= kNeighborsReach;
+  return reaches;
+}
+
+}  // namespace
+
+detail::NeighborhoodGraph neighborhood_graph(const CellGrid& grid, std::span<const float> radii) {
+  detail::NeighborhoodGraph graph(grid, reaches_of(radii), radii);
+  graph.keep();
+  return graph;
+}
+
+void widen(detail::NeighborhoodGraph& graph, std::span<const float> radii) {
+  graph.widen(reaches_of(radii), radii);
+}
+
+PointFits fit_points(const detail::NeighborhoodGraph& graph, std::span<const float> spacings,
                      std::span<const float> radii, std::span<const float> noise) {
-  Normals planes = estimate_normals(grid, radii, kNormalsReach);
+  const CellGrid& grid = graph.grid();
+  Normals planes = estimate_normals(graph, radii, kNormalsReach);
   PointFits segments{std::move(planes.normals),
                      std::move(planes.confidences),
                      std::move(planes.residuals),
@@ -48,21 +68,21 @@ PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
     if (residual > flat_at(i)) reaches[i] = kNormalsReach * radii[i];
   }
   const auto refit = [&](SegmentFitter& fitter, std::uint32_t i,
-                         std::span<const std::uint32_t> near) {
+                         std::span<const std::uint32_t> near, auto /*around*/) {
     const SegmentFit fit = fitter.fit(grid, grid.points()[i], near, static_cast<double>(reaches[i]),
                                       static_cast<double>(spacings[i]), flat_at(i));
     take_fit(fit, i, segments);
     segments.others[i] = fit.others ? 1 : 0;
   };
   detail::for_each_near(
-      grid, reaches, [] { return SegmentFitter(); }, refit);
+      graph, reaches, [] { return SegmentFitter(); }, refit);
   return segments;
 }
 
-PointFits fit_planes(const Sampling& sampling, const Radii& radii, const PrepareOptions& options) {
+PointFits fit_planes(const detail::NeighborhoodGraph& graph, const Sampling& sampling,
+                     const Radii& radii, const PrepareOptions& options) {
   if (!options.estimate_normals) return {};
-  PointFits fits =
-      fit_points(sampling.grid, sampling.spacings, radii.values, sampling.local.sigmas);
+  PointFits fits = fit_points(graph, sampling.spacings, radii.values, sampling.local.sigmas);
   if (!sampling.normals.empty()) {
     take_given_normals(sampling.grid, sampling.normals, fits.normals);
   }

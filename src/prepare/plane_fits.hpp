@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/point_fits.hpp"
 #include "prepare/radii.hpp"
@@ -25,13 +26,26 @@ void take_fit(const SegmentFit& fit, std::size_t i, PointFits& own);
 // judgement (docs/method.md 5.5).
 inline constexpr float kNormalsReach = 1.15f;
 
-/// Fitted within kNormalsReach of each point's `radii`; `noise`: sigma at each, m. On every core.
-[[nodiscard]] PointFits fit_points(const CellGrid& grid, std::span<const float> spacings,
-                                   std::span<const float> radii, std::span<const float> noise);
+// R: a point's neighbours are within this; derived: no step looks farther without a viewpoint
+// (docs/preparation.md, Neighbours).
+inline constexpr float kNeighborsReach = 1.3f;
+
+/// Each point's neighbours within kNeighborsReach of its R, and those in whose support it is;
+/// `radii`: R, m.
+[[nodiscard]] detail::NeighborhoodGraph neighborhood_graph(const CellGrid& grid,
+                                                           std::span<const float> radii);
+/// Lets the graph hold those of these radii, too.
+void widen(detail::NeighborhoodGraph& graph, std::span<const float> radii);
+
+/// Fitted within kNormalsReach of each point's `radii`, which the graph holds; `noise`: sigma at
+/// each, m. On every core.
+[[nodiscard]] PointFits fit_points(const detail::NeighborhoodGraph& graph,
+                                   std::span<const float> spacings, std::span<const float> radii,
+                                   std::span<const float> noise);
 
 /// Fits the points' planes and lets given normals take part; outliers get no confidence. Empty
 /// where no normals are requested.
-[[nodiscard]] PointFits fit_planes(const Sampling& sampling, const Radii& radii,
-                                   const PrepareOptions& options);
+[[nodiscard]] PointFits fit_planes(const detail::NeighborhoodGraph& graph, const Sampling& sampling,
+                                   const Radii& radii, const PrepareOptions& options);
 
 }  // namespace palpate

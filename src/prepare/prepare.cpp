@@ -58,9 +58,10 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   s.radii = choose_radii(s.sampling, options);
   refine(refinements, Stage::radii, s, stop);
   watch.lap(report.seconds_spacing);
-  s.fits = fit_planes(s.sampling, s.radii, options);
+  s.graph = neighborhood_graph(s.sampling.grid, s.radii.values);
+  s.fits = fit_planes(s.graph, s.sampling, s.radii, options);
   watch.lap(report.seconds_normals);
-  s.sums = WeightSums(s.sampling.grid, s.radii.values, options.kernel);
+  s.sums = WeightSums(s.graph, s.radii.values, options.kernel);
   refine(refinements, Stage::fits, s, stop);
   s.weights = weigh(s.sampling, s.radii, s.sums, options);
   watch.lap(report.seconds_weights);

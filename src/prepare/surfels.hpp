@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/prepare/prepare.hpp"
 #include "prepare/place.hpp"
@@ -29,6 +30,7 @@ struct Surfels {
   const PrepareOptions& options;
   Sampling sampling = {};
   Radii radii = {};
+  detail::NeighborhoodGraph graph = {};  ///< of the sampling's points, from the first fits on
   PointFits fits = {};
   WeightSums sums = {};
   Weights weights = {};

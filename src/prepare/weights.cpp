@@ -5,11 +5,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "geometry/neighborhoods.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -33,74 +31,37 @@ void check(const CellGrid& grid, std::span<const float> radii) {
   }
 }
 
+/// The kernel, and what its supports are.
 struct Input {
-  const CellGrid& grid;
-  std::vector<float> inverse;     // 1 / R_i^2
-  std::vector<float> cell_reach;  // m
-  WeightSum sum;                  // of the kernel
+  const detail::NeighborhoodGraph& graph;
+  std::vector<float> inverse;  // 1 / R_i^2
+  WeightSum sum;               // of the kernel
 };
 
-Input make_input(const CellGrid& grid, std::span<const float> radii, Kernel kernel) {
+Input make_input(const detail::NeighborhoodGraph& graph, std::span<const float> radii,
+                 Kernel kernel) {
   const simd::JoinFunctions& joins = simd::best_joins();
-  Input input{grid, std::vector<float>(grid.size()), detail::largest_in_cells(grid, radii),
+  Input input{graph, std::vector<float>(radii.size()),
               kernel == Kernel::wyvill ? joins.wyvill_sums : joins.wendland_sums};
   std::transform(radii.begin(), radii.end(), input.inverse.begin(),
                  [](float radius) { return std::min(1 / (radius * radius), kLargest); });
   return input;
 }
 
-// For each point i that is `wanted` (empty: for all) the sum of w_ij values_j over all points j;
-// no values: all 1.
+// For each point i with a `changed` neighbour (empty: for all) the sum of w_ij values_j over all
+// points j (no values: all 1), divided by its own value.
 void sums_of(const Input& input, std::span<const float> values,
-             std::span<const std::uint8_t> wanted, std::vector<float>& sums) {
-  const auto is_wanted = [&](std::uint32_t begin, std::uint32_t count) {
-    return wanted.empty() || std::ranges::count(wanted.subspan(begin, count), 1) > 0;
-  };
-  detail::for_each_block(input.grid, [&](const detail::Block& block, detail::Surroundings& around) {
-    if (!is_wanted(block.begin, block.size())) return;
-    detail::for_each_part(
-        input.grid, {.of_points = {}, .times = 1, .of_cells = input.cell_reach}, block, around,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          if (!is_wanted(first, count)) return;
-          simd::Row row;
-          input.sum(detail::make_join(input.grid, first, count, runs), input.inverse.data(),
-                    values.data(), &row);
-          for (std::uint32_t q = 0; q < count; ++q) {
-            if (is_wanted(first + q, 1)) sums[first + q] = row[q];
-          }
-        });
-  });
-}
-
-// For each point i that is `wanted` the mean of its surroundings: sum of w_ij own_j over own_i.
-void means_of(const Input& input, std::span<const float> own, std::span<const std::uint8_t> wanted,
-              std::vector<float>& means) {
-  sums_of(input, own, wanted, means);
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    if (wanted.empty() || wanted[i] != 0) means[i] /= own[i];
-  }
-}
-
-// 1 for each point of leaves into which any point reaches. `reaches`: of the points, m; 0: not at
-// all.
-std::vector<std::uint8_t> reached(const CellGrid& grid, const std::vector<float>& reaches) {
-  std::vector<std::uint8_t> result(grid.size());
-  const std::vector<float> of_cells = detail::largest_in_cells(grid, reaches);
-  std::array<std::uint32_t, CellGrid::kMaxStack> stack;
-  for (std::size_t c = 0; c < of_cells.size(); ++c) {
-    const CellGrid::Cell& from = grid.cells()[c];
-    if (of_cells[c] <= 0 || from.children > 0) continue;
-    std::size_t open = 0;
-    stack[open++] = 0;
-    while (open > 0) {
-      const CellGrid::Cell& cell = grid.cells()[stack[--open]];
-      const float squared = detail::squared_distance(cell, from.lower, from.upper);
-      if (squared > of_cells[c] * of_cells[c]) continue;
-      for (std::uint32_t k = 0; k < cell.children; ++k) stack[open++] = cell.first_child + k;
-      if (cell.children == 0) std::fill_n(result.begin() + cell.begin, cell.size(), 1);
+             std::span<const std::uint8_t> changed, std::vector<float>& sums) {
+  input.graph.for_each_row([&](const detail::NeighborRow& row) {
+    const auto is_changed = [&](std::uint32_t j) { return changed[j] != 0; };
+    if (!changed.empty() && std::ranges::none_of(row.neighbors, is_changed)) return;
+    simd::Row found;
+    input.sum(row.join(input.graph.grid()), input.inverse.data(), values.data(), &found);
+    for (std::uint32_t q = 0; q < row.count; ++q) {
+      const std::uint32_t i = row.first + q;
+      sums[i] = values.empty() ? found[q] : found[q] / values[i];
     }
-  }
-  return result;
+  });
 }
 
 // Are there enough others within the smaller of both points' diameters? A point that weighs as much
@@ -119,29 +80,30 @@ bool has_company(const CellGrid& grid, std::span<const float> radii, float own_s
 
 }  // namespace
 
-WeightSums::WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel)
-    : own(grid.size()), around(grid.size()) {
-  check(grid, radii);
-  const Input input = make_input(grid, radii, kernel);
+WeightSums::WeightSums(const detail::NeighborhoodGraph& graph, std::span<const float> radii,
+                       Kernel kernel)
+    : own(radii.size()), around(radii.size()) {
+  check(graph.grid(), radii);
+  const Input input = make_input(graph, radii, kernel);
   sums_of(input, {}, {}, own);
-  means_of(input, own, {}, around);
+  sums_of(input, own, {}, around);
 }
 
-void WeightSums::update(const CellGrid& grid, std::span<const float> before,
+void WeightSums::update(const detail::NeighborhoodGraph& graph, std::span<const float> before,
                         std::span<const float> radii, Kernel kernel) {
-  check(grid, radii);
-  const Input input = make_input(grid, radii, kernel);
-  std::vector<float> reaches(grid.size());  // of points that are not as before, m
-  const auto look = [&](std::span<const float> old, std::span<const float> now) {
-    for (std::size_t i = 0; i < reaches.size(); ++i) {
-      if (old[i] != now[i]) reaches[i] = std::max(before[i], radii[i]);
+  check(graph.grid(), radii);
+  const Input input = make_input(graph, radii, kernel);
+  std::vector<std::uint8_t> changed(radii.size());
+  const auto compare = [&](std::span<const float> old, std::span<const float> now) {
+    for (std::size_t i = 0; i < changed.size(); ++i) {
+      if (old[i] != now[i]) changed[i] = 1;
     }
   };
-  look(before, radii);
+  compare(before, radii);
   const std::vector<float> own_before = own;
-  sums_of(input, {}, reached(grid, reaches), own);
-  look(own_before, own);
-  means_of(input, own, reached(grid, reaches), around);
+  sums_of(input, {}, changed, own);
+  compare(own_before, own);
+  sums_of(input, own, changed, around);
 }
 
 std::vector<float> density_weights(const WeightSums& sums) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "palpate/prepare/prepare.hpp"
@@ -21,14 +22,16 @@ namespace palpate {
 ///   Sbar_i = sum_j w_ij S_j / sum_j w_ij
 struct WeightSums {
   WeightSums() = default;  ///< of no point
+  /// Sums over the neighbours in whose support a point is: the graph holds these radii.
   /// @throws Error when there are not as many radii as points, or one is not positive and finite.
-  WeightSums(const CellGrid& grid, std::span<const float> radii, Kernel kernel = Kernel::wyvill);
+  WeightSums(const detail::NeighborhoodGraph& graph, std::span<const float> radii,
+             Kernel kernel = Kernel::wyvill);
 
   /// Sums as of these `radii`, where they were those of the radii `before`: looks again at what
-  /// those that changed reach.
+  /// those that changed reach. The graph holds both.
   /// @throws Error as above.
-  void update(const CellGrid& grid, std::span<const float> before, std::span<const float> radii,
-              Kernel kernel = Kernel::wyvill);
+  void update(const detail::NeighborhoodGraph& graph, std::span<const float> before,
+              std::span<const float> radii, Kernel kernel = Kernel::wyvill);
 
   std::vector<float> own;     ///< S_i, at least 1
   std::vector<float> around;  ///< Sbar_i

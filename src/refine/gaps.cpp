@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <numbers>
 
-#include "geometry/neighborhoods.hpp"
 #include "prepare/limit_radii.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/segment_fit.hpp"
@@ -55,13 +54,14 @@ class Closer {
  public:
   Closer(const CellGrid& grid, float largest) : grid_(grid), largest_(largest) {}
 
-  /// `near`: the points that HoleFinder::radius_beside() wants.
-  [[nodiscard]] Bridge bridge(const Beside& at, std::span<const std::uint32_t> near) {
+  /// `near` and `around`: the points that HoleFinder::radius_beside() wants.
+  [[nodiscard]] Bridge bridge(const Beside& at, std::span<const std::uint32_t> near,
+                              std::span<const std::uint32_t> around) {
     Eigen::Vector3f normal = at.normal;
     if (normal.isZero()) normal = fit_within(2 * at.widest, at.point, 0).normal.cast<float>();
     if (normal.isZero()) return {};
-    const float hole =
-        holes_.radius_beside(grid_, at.point, near, normal, kBridged * at.radius, at.widest);
+    const float hole = holes_.radius_beside(grid_, at.point, near, around, normal,
+                                            kBridged * at.radius, at.widest);
     for (const float times : {kAsOnGrid, kAtLeast}) {
       const float wanted = std::min(times * hole, largest_);
       if (!(wanted > at.radius) || hole > kBridged * wanted) return {};
@@ -87,19 +87,21 @@ class Closer {
 
 }  // namespace
 
-std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+std::size_t close_gaps(const detail::NeighborhoodGraph& graph, std::span<const float> sums,
                        std::span<const float> noise, std::vector<float>& spacings,
                        std::vector<float>& radii, PointFits& own, float largest) {
+  const CellGrid& grid = graph.grid();
   std::vector<float> reaches(grid.size());  // m; 0: no hole is beside the point
   for (std::uint32_t i = 0; i < grid.size(); ++i) {
     const bool beside = own.asides[i] > kBesideHole || own.others[i] != 0;
-    if (sums[i] < kFaint || beside) reaches[i] = 2 * kBridged * radii[i];
+    if (sums[i] < kFaint || beside) reaches[i] = kBridged * radii[i];
   }
   std::vector<std::uint8_t> raised(grid.size());
-  const auto close = [&](Closer& closer, std::uint32_t i, std::span<const std::uint32_t> near) {
+  const auto close = [&](Closer& closer, std::uint32_t i, std::span<const std::uint32_t> near,
+                         std::span<const std::uint32_t> around) {
     const float widest = (sums[i] < kFaint ? kFaintWidestHole : kWidestHole) * radii[i];
     const Bridge bridge =
-        closer.bridge({i, radii[i], widest, spacings[i], noise[i], own.normals[i]}, near);
+        closer.bridge({i, radii[i], widest, spacings[i], noise[i], own.normals[i]}, near, around);
     if (bridge.radius <= 0) return;
     radii[i] = bridge.radius;
     spacings[i] = std::max(spacings[i], bridge.radius / kUsualMultiple);
@@ -107,7 +109,7 @@ std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
     raised[i] = 1;
   };
   detail::for_each_near(
-      grid, reaches, [&] { return Closer(grid, largest); }, close);
+      graph, reaches, [&] { return Closer(grid, largest); }, close);
   return static_cast<std::size_t>(std::ranges::count(raised, 1));
 }
 
@@ -118,12 +120,13 @@ void refine_gaps(Surfels& s) {
   Sampling& sampling = s.sampling;
   const std::vector<float> before = s.radii.values;
   const auto largest = static_cast<float>(largest_radius(sampling.facts));
-  if (close_gaps(sampling.grid, s.sums.own, sampling.local.sigmas, sampling.spacings,
-                 s.radii.values, s.fits, largest) == 0) {
+  if (close_gaps(s.graph, s.sums.own, sampling.local.sigmas, sampling.spacings, s.radii.values,
+                 s.fits, largest) == 0) {
     return;
   }
   limit_radii(sampling.grid, kSlope, s.radii.values, &s.fits);
-  s.sums.update(sampling.grid, before, s.radii.values, options.kernel);
+  widen(s.graph, s.radii.values);
+  s.sums.update(s.graph, before, s.radii.values, options.kernel);
 }
 
 }  // namespace palpate

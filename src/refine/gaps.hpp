@@ -23,8 +23,9 @@ void refine_gaps(Surfels& surfels);
 /// outlier has all others on one side and keeps its radius; so does the border of a segment. Holes
 /// whose radius is above 0.8 R stay, except around points that hardly any other's support reaches,
 /// where those above 3 R do. `sums`: WeightSums::own; `noise`: of each point, m. None is raised
-/// above `largest`, m. Returns how many were raised. Does not depend on the number of threads.
-std::size_t close_gaps(const CellGrid& grid, std::span<const float> sums,
+/// above `largest`, m. The graph holds R. Returns how many were raised. Does not depend on the
+/// number of threads.
+std::size_t close_gaps(const detail::NeighborhoodGraph& graph, std::span<const float> sums,
                        std::span<const float> noise, std::vector<float>& spacings,
                        std::vector<float>& radii, PointFits& own,
                        float largest = std::numeric_limits<float>::infinity());

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "geometry/neighborhoods.hpp"
 #include "geometry/signed_sets.hpp"
 #include "refine/cannot_link_sets.hpp"
 #include "refine/segments.hpp"
@@ -54,15 +53,17 @@ class SegmentGrowing {
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
   SegmentGrowing(const SegmentInput& input, const PointFits& own,
                  const std::vector<std::uint32_t>& assigned)
-      : input_(input), own_(own), assigned_(assigned), sets_(input.grid.size()) {}
+      : input_(input), own_(own), assigned_(assigned), sets_(input.grid().size()) {}
 
   detail::SignedSets& run() {
-    const auto blocks = detail::make_blocks(input_.grid, detail::kBlockPoints);
-    std::vector<Later> later(blocks.size());
-    detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-      detail::Surroundings surroundings;
-      detail::NearPairs pairs;
-      for (std::size_t b = begin; b < end; ++b) look(blocks[b], surroundings, pairs, later[b]);
+    std::vector<Later> later(input_.graph.blocks());
+    input_.graph.for_each_block<detail::NearPairs>([&](const auto& rows, auto& pairs) {
+      const auto reach = [this](std::uint32_t i) { return kPairReach * input_.spacings[i]; };
+      rows.each([&](const detail::NeighborRow& row) {
+        pairs.each(input_.grid(), row, reach, [&](std::uint32_t i, std::uint32_t j) {
+          meet(i, j, rows.block(), later[rows.number()]);
+        });
+      });
     });
     join(later);
     return sets_;
@@ -70,7 +71,7 @@ class SegmentGrowing {
 
  private:
   void join(const std::vector<Later>& later) {
-    CannotLinkSets constrained(sets_, input_.grid.size());
+    CannotLinkSets constrained(sets_, input_.grid().size());
     for (const Later& block : later) {
       for (const Pair& pair : block.stacked) constrained.add_cannot_link(pair.a, pair.b, pair.sign);
     }
@@ -87,19 +88,6 @@ class SegmentGrowing {
     for (const Pair& pair : turning) constrained.join(pair.a, pair.b, pair.sign);
   }
 
-  void look(const detail::Block& block, detail::Surroundings& surroundings,
-            detail::NearPairs& pairs, Later& later) {
-    const detail::Reach reach{.of_points = input_.spacings, .times = kPairReach, .of_cells = {}};
-    detail::for_each_part(
-        input_.grid, reach, block, surroundings,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          pairs.each(
-              input_.grid, first, count, runs,
-              [this](std::uint32_t i) { return kPairReach * input_.spacings[i]; },
-              [&](std::uint32_t i, std::uint32_t j) { meet(i, j, block, later); });
-        });
-  }
-
   /// Joins i and j, which are near each other, if they lie on one segment. Compares their assigned
   /// planes: at a sharp rim, where two sides meet, these are as far apart as the sides are.
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
@@ -108,9 +96,9 @@ class SegmentGrowing {
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
     const std::uint32_t a = assigned_[i];
     const std::uint32_t b = assigned_[j];
-    const Vector3f offset = input_.grid.points()[b] - input_.grid.points()[a];
+    const Vector3f offset = input_.grid().points()[b] - input_.grid().points()[a];
     const float length = offset.norm();
-    const float near = (input_.grid.points()[j] - input_.grid.points()[i]).norm();
+    const float near = (input_.grid().points()[j] - input_.grid().points()[i]).norm();
     const float curvature =
         std::min(fitted_curvature(input_, own_, a), fitted_curvature(input_, own_, b));
     const float turn = std::max(kTurn, kTurnMargin * curvature * length);
@@ -151,6 +139,15 @@ class SegmentGrowing {
 
 }  // namespace
 
+std::vector<float> segment_reaches(std::span<const float> spacings, std::span<const float> radii,
+                                   bool seen) {
+  std::vector<float> reaches(radii.size());
+  for (std::size_t i = 0; i < reaches.size(); ++i) {
+    reaches[i] = std::max(kPairReach * spacings[i], look_reach(seen) * radii[i]);
+  }
+  return reaches;
+}
+
 float segment_tolerance(const SegmentInput& input, std::uint32_t i, std::uint32_t j) {
   return 3 * std::max(std::max(input.noise[i], input.noise[j]),
                       kTolerance * std::min(input.spacings[i], input.spacings[j]));
@@ -163,7 +160,7 @@ GrownSegments grow_segments(const SegmentInput& input, PointFits& own) {
   result.second_planes = std::move(snapped.second_planes);
   SegmentGrowing growing(input, own, snapped.assigned);
   detail::SignedSets& sets = growing.run();
-  const std::size_t count = input.grid.size();
+  const std::size_t count = input.grid().size();
   std::vector<std::uint32_t>& segment = result.segments.segment;
   segment.assign(count, SurfacePoints::Segments::kNone);
   std::vector<std::uint32_t> sizes;

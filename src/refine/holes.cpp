@@ -6,8 +6,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
+
+#include "geometry/neighborhoods.hpp"
 
 namespace palpate {
 namespace {
@@ -99,11 +102,17 @@ bool HoleFinder::is_filled(const CellGrid& grid, std::uint32_t i,
 }
 
 float HoleFinder::radius_beside(const CellGrid& grid, std::uint32_t i,
-                                std::span<const std::uint32_t> near, const Vector3f& normal,
+                                std::span<const std::uint32_t> near,
+                                std::span<const std::uint32_t> around, const Vector3f& normal,
                                 float least, float largest) {
   start(normal, 2 * largest);
   if (is_filled(grid, i, near, least)) return 0;
-  cut(grid, i, near);
+  near_.clear();
+  std::ranges::copy_if(around, std::back_inserter(near_), [&](std::uint32_t j) {
+    return detail::squared_distance(grid.points()[i], grid.points()[j]) <= 4 * least * least;
+  });
+  if (is_filled(grid, i, near_, least)) return 0;
+  cut(grid, i, near_);
   if (squared_ <= least * least) return 0;
   near_.clear();
   grid.within(grid.points()[i], (1 + kDiscRim) * largest, near_);

@@ -17,12 +17,13 @@ class HoleFinder {
 
   /// The radius (m) of the widest empty disc in the plane through point i that has the point on its
   /// rim and others all around it; 0: there is none of more than `least` and at most `largest`.
-  /// `near`: points within twice `least`, or some of them; where these fill the plane none is
-  /// looked for. `normal`: the plane's, unit. Points more than 45 degrees off the plane belong to
-  /// other segments; one that is nearer than the hole is wide hides it. What a segment's border is
-  /// open to is no hole.
+  /// `near`: points within `least`; where these fill the plane, as they mostly do, none is looked
+  /// for. `around`: all within twice `least`, and any others. `normal`: the plane's, unit. Points
+  /// more than 45 degrees off the plane belong to other segments; one that is nearer than the hole
+  /// is wide hides it. What a segment's border is open to is no hole.
   [[nodiscard]] float radius_beside(const CellGrid& grid, std::uint32_t i,
                                     std::span<const std::uint32_t> near,
+                                    std::span<const std::uint32_t> around,
                                     const Eigen::Vector3f& normal, float least, float largest);
 
  private:

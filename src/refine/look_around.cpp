@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "field/formulas.hpp"
-#include "geometry/neighborhoods.hpp"
+#include "prepare/plane_fits.hpp"
 #include "refine/segments.hpp"
 
 namespace palpate {
@@ -26,9 +26,9 @@ constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 constexpr float kSafe = 0.999f;  // derived: rounding takes less
 
 // Votes of one segment on another; all are judgement.
-constexpr float kVoteReach = 1.3f;        // R
-constexpr std::size_t kVoteSegments = 4;  // other segments that a point votes on
-constexpr int kVotesEach = 3;             // points of each, the nearest
+constexpr float kVoteReach = kNeighborsReach;  // R
+constexpr std::size_t kVoteSegments = 4;       // other segments that a point votes on
+constexpr int kVotesEach = 3;                  // points of each, the nearest
 
 /// Looks from the points of one block at other segments.
 class Outlook {
@@ -37,36 +37,30 @@ class Outlook {
           GrownSegments& grown)
       : input_(input), own_(own), viewer_(eye), grown_(grown), segments_(grown.segments) {}
 
-  void look(const detail::Block& block, detail::Surroundings& surroundings,
-            std::vector<SegmentVote>& votes) {
-    const detail::Reach reach{.of_points = input_.radii, .times = reach_, .of_cells = {}};
-    detail::for_each_part(
-        input_.grid, reach, block, surroundings,
-        [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          if (!alone(first, runs)) look_from(first, count, runs, votes);
-        });
+  void look(const detail::NeighborhoodGraph::BlockRows& rows, std::vector<SegmentVote>& votes) {
+    rows.each([&](const detail::NeighborRow& row) {
+      if (!alone(row)) look_from(row, votes);
+    });
   }
 
  private:
   /// Is there but one segment, and does it not curl so far that it may hide itself?
-  [[nodiscard]] bool alone(std::uint32_t first, std::span<const simd::Run> runs) const {
+  [[nodiscard]] bool alone(const detail::NeighborRow& row) const {
     // A point of one segment that hides another is turned from it by 143 degrees or more
     // (kGapCosine), so one of the two by half of that from the first.
     constexpr float kSquaredCurl = 0.5f * (1 - kGapCosine);
-    const std::uint32_t segment = segments_.segment[first];
-    const Vector3f& n = own_.normals[first];
-    for (const simd::Run& run : runs) {
-      for (std::uint32_t j = run.begin; j < run.end; ++j) {
-        if (segments_.segment[j] != segment) return false;
-        const float cosine = n.dot(own_.normals[j]);
-        if (viewer_ && !(cosine > 0 && cosine * cosine > kSquaredCurl)) return false;
-      }
-    }
-    return true;
+    const std::uint32_t segment = segments_.segment[row.first];
+    const Vector3f& n = own_.normals[row.first];
+    return std::ranges::all_of(row.neighbors, [&](std::uint32_t j) {
+      if (segments_.segment[j] != segment) return false;
+      if (!viewer_) return true;
+      const float cosine = n.dot(own_.normals[j]);
+      return cosine > 0 && cosine * cosine > kSquaredCurl;
+    });
   }
 
-  void look_from(std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs,
-                 std::vector<SegmentVote>& votes) {
+  void look_from(const detail::NeighborRow& row, std::vector<SegmentVote>& votes) {
+    const auto [first, count, neighbors] = row;
     simd::Eyes eyes = {};
     eyes.squared_slope = kSafe * kGapSlope * kGapSlope;
     eyes.segments = segments_.segment.data();
@@ -81,8 +75,9 @@ class Outlook {
       eyes.squared_vote[q] = eyes_[q].voting;
       eyes.segment[q] = eyes_[q].segment;
     }
-    pairs_.each_hit(detail::make_join(input_.grid, first, count, runs), simd::best_joins().apart,
-                    eyes, [&](std::uint32_t i, std::uint32_t j) { meet(first, i - first, j); });
+    pairs_.each_hit(
+        input_.grid(), row, simd::best_joins().apart, eyes,
+        [&, from = first](std::uint32_t i, std::uint32_t j) { meet(from, i - from, j); });
     for (std::uint32_t q = 0; q < count; ++q) vote(first + q, others_[q], votes);
   }
 
@@ -100,19 +95,19 @@ class Outlook {
   [[nodiscard]] Eye eye_at(std::uint32_t i) const {
     const float spacing = input_.spacings[i];
     const float voting = kVoteReach * input_.radii[i];
-    return {input_.grid.points()[i],
+    return {input_.grid().points()[i],
             own_.normals[i],
             kGapTube * spacing,
             viewer_ ? kGapResiduals * own_.residuals[i] : std::numeric_limits<float>::infinity(),
             grown_.confident[i] != 0 ? voting * voting : -1,
             segments_.segment[i],
-            viewer_ && own_.normals[i].dot(*viewer_ - input_.grid.points()[i]) > 0};
+            viewer_ && own_.normals[i].dot(*viewer_ - input_.grid().points()[i]) > 0};
   }
 
   void meet(std::uint32_t first, std::uint32_t q, std::uint32_t j) {
     if (j == first + q) return;
     const Eye& eye = eyes_[q];
-    const Vector3f offset = input_.grid.points()[j] - eye.at;
+    const Vector3f offset = input_.grid().points()[j] - eye.at;
     const float squared = offset.squaredNorm();
     if (viewer_ && is_before(eye, j, offset, squared)) grown_.hidden[first + q] = 1;
     const bool votes_on = squared <= eye.voting && segments_.segment[j] != eye.segment &&
@@ -144,7 +139,7 @@ class Outlook {
       if (k == kVoteSegments) continue;
       if (k == count) voted[count++] = {segment, 0};
       if (voted[k].second++ >= kVotesEach) continue;
-      const Vector3f offset = input_.grid.points()[j] - input_.grid.points()[i];
+      const Vector3f offset = input_.grid().points()[j] - input_.grid().points()[i];
       const auto [a, b] = std::minmax(segments_.segment[i], segment);
       votes.push_back(
           {a, b,
@@ -165,15 +160,17 @@ class Outlook {
 
 }  // namespace
 
+float look_reach(bool seen) {
+  return seen ? kGapReach : kVoteReach;
+}
+
 std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
                                      const std::optional<Vector3f>& eye, GrownSegments& grown) {
-  if (eye) grown.hidden.assign(input.grid.size(), 0);
-  const auto blocks = detail::make_blocks(input.grid, detail::kBlockPoints);
-  std::vector<std::vector<SegmentVote>> votes(blocks.size());
-  detail::parallel_ranges(blocks.size(), 8, [&](std::size_t begin, std::size_t end) {
-    detail::Surroundings surroundings;
-    Outlook outlook(input, own, eye, grown);
-    for (std::size_t b = begin; b < end; ++b) outlook.look(blocks[b], surroundings, votes[b]);
+  if (eye) grown.hidden.assign(input.grid().size(), 0);
+  std::vector<std::vector<SegmentVote>> votes(input.graph.blocks());
+  input.graph.for_each_block<std::optional<Outlook>>([&](const auto& rows, auto& outlook) {
+    if (!outlook) outlook.emplace(input, own, eye, grown);
+    outlook->look(rows, votes[rows.number()]);
   });
   std::vector<SegmentVote> all;
   for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());

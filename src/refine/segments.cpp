@@ -59,7 +59,7 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& p
       if (cosine != 0) given[segment].add(cosine < 0 ? -1 : 1);
     }
     if (prior.eye) {
-      const Vector3f offset = *prior.eye - input.grid.points()[i];
+      const Vector3f offset = *prior.eye - input.grid().points()[i];
       const float cosine = own.normals[i].dot(offset.normalized());
       if (grown.hidden[i] != 0) {
         ++counts[segment].hidden;
@@ -133,7 +133,7 @@ std::vector<ComponentSums> sums_of_components(const SegmentInput& input, const P
   std::vector<ComponentSums> sums(signs.size());
   for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
     if (segments.segment[i] == SurfacePoints::Segments::kNone) continue;
-    const Vector3d p = input.grid.points()[i].cast<double>();
+    const Vector3d p = input.grid().points()[i].cast<double>();
     const Vector3d n = signs[segments.segment[i]] * own.normals[i].cast<double>();
     const double area =
         static_cast<double>(input.spacings[i]) * static_cast<double>(input.spacings[i]);
@@ -227,9 +227,11 @@ void refine_segments(Surfels& s) {
     if (s.weights.values[i] <= 0) s.fits.confidences[i] = 0;
   }
   const PriorSigns prior = given_signs(s.placed, s.sampling, s.options);
+  s.graph.widen(segment_reaches(s.sampling.spacings, s.radii.values, prior.eye.has_value()),
+                s.radii.values);
   s.segments =
-      make_segments({s.sampling.grid, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas},
-                    prior, s.fits, s.second_planes);
+      make_segments({s.graph, s.sampling.spacings, s.radii.values, s.sampling.local.sigmas}, prior,
+                    s.fits, s.second_planes);
 }
 
 }  // namespace palpate

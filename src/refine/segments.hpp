@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
 #include "prepare/orientation.hpp"
@@ -18,13 +19,20 @@
 
 namespace palpate {
 
-/// Sorted points and what is measured of them before segments.
+/// Sorted points and what is measured of them before segments. The graph holds what
+/// segment_reaches() says.
 struct SegmentInput {
-  const CellGrid& grid;
+  const detail::NeighborhoodGraph& graph;
   std::span<const float> spacings;  // m
   std::span<const float> radii;     // m
   std::span<const float> noise;     // sigma at each point, m
+
+  [[nodiscard]] const CellGrid& grid() const { return graph.grid(); }
 };
+
+/// How far from each point segments are looked for, m. `seen`: is there a viewpoint?
+[[nodiscard]] std::vector<float> segment_reaches(std::span<const float> spacings,
+                                                 std::span<const float> radii, bool seen);
 
 /// Puts each point on a segment: confident points that continue each other's planes make one; an
 /// uncertain point joins the segment whose plane it lies on and takes over its fit. Those that lie
@@ -61,6 +69,9 @@ struct SegmentVote {
   std::uint32_t b = 0;
   float value = 0;
 };
+
+/// How far look_around() looks, in R. `seen`: is there a viewpoint?
+[[nodiscard]] float look_reach(bool seen);
 
 /// Returns the votes on pairs of segments, in the order of their numbers. Where there is an eye,
 /// notes which points another segment hides from it.

@@ -46,7 +46,7 @@ struct Refit {
 class Snapping {
  public:
   Snapping(const SegmentInput& input, PointFits& own)
-      : input_(input), own_(own), confident_(input.grid.size()) {
+      : input_(input), own_(own), confident_(input.grid().size()) {
     detail::parallel_ranges(confident_.size(), 512, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) confident_[i] = is_confident(i) ? 1 : 0;
     });
@@ -117,14 +117,14 @@ class Snapping {
     for (std::uint32_t i = 0; i < found.size(); ++i) {
       if (found[i] == 0) continue;
       confident_[i] = 1;
-      positions.push_back(input_.grid.points()[i]);
+      positions.push_back(input_.grid().points()[i]);
     }
     if (positions.empty()) return found;
     const CellGrid new_ones(positions);
     each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
       if (confident_[i] != 0 && own_.others[i] == 0) return;
       near.clear();
-      new_ones.within(input_.grid.points()[i], kFarSnapReach * input_.radii[i], near);
+      new_ones.within(input_.grid().points()[i], kFarSnapReach * input_.radii[i], near);
       found[i] = near.empty() ? 0 : 1;
     });
     return found;
@@ -136,20 +136,20 @@ class Snapping {
     const auto radius = static_cast<double>(input_.radii[i]);
     const auto noise = static_cast<double>(input_.noise[i]);
     const float reach = kNormalsReach * input_.radii[i];
-    const Vector3f& p = input_.grid.points()[i];
+    const Vector3f& p = input_.grid().points()[i];
     refit.near.clear();
-    input_.grid.within(p, reach, refit.near);
+    input_.grid().within(p, reach, refit.near);
     std::erase_if(refit.near, [this](std::uint32_t j) { return confident_[j] != 0; });
     const auto fit_to = [&](const auto& belongs) {
       refit.some.clear();
       std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
-      return refit.fitter.fit(input_.grid, p, refit.some, static_cast<double>(reach), 0, 0);
+      return refit.fitter.fit(input_.grid(), p, refit.some, static_cast<double>(reach), 0, 0);
     };
     SegmentFit fit = fit_to([this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
     if (!fit.is_smooth(radius, noise)) return false;
     const Vector3f normal = fit.normal.cast<float>();
     fit = fit_to([&](std::uint32_t j) {
-      return std::abs(normal.dot(input_.grid.points()[j] - p)) <= kSnapSlope * input_.radii[i];
+      return std::abs(normal.dot(input_.grid().points()[j] - p)) <= kSnapSlope * input_.radii[i];
     });
     if (!fit.is_segment(radius, noise)) return false;
     take_fit(fit, i, own_);
@@ -163,7 +163,7 @@ class Snapping {
     for (std::uint32_t i = 0; i < confident_.size(); ++i) {
       if (confident_[i] == 0) continue;
       confident_points_.push_back(i);
-      positions.push_back(input_.grid.points()[i]);
+      positions.push_back(input_.grid().points()[i]);
     }
     confident_grid_ = CellGrid(positions);
   }
@@ -173,7 +173,7 @@ class Snapping {
   void list_confident(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
       near.clear();
-      confident_grid_.within(input_.grid.points()[i], reach * input_.radii[i], near);
+      confident_grid_.within(input_.grid().points()[i], reach * input_.radii[i], near);
       for (std::uint32_t& j : near) j = confident_points_[confident_grid_.order()[j]];
       if (near.size() >= kFewConfident) return;
     }
@@ -198,7 +198,7 @@ class Snapping {
 
   /// Gives a point the fit of its plane's owner, or at least its trust where an arc joins both.
   void take_over(std::uint32_t i, std::uint32_t owner) {
-    const float distance = (input_.grid.points()[i] - input_.grid.points()[owner]).norm();
+    const float distance = (input_.grid().points()[i] - input_.grid().points()[owner]).norm();
     const float turn = kTurnMargin * fitted_curvature(input_, own_, owner) * distance;
     if (std::abs(own_.normals[i].dot(own_.normals[owner])) < 1 - 0.5f * turn * turn) {
       own_.normals[i] = own_.normals[owner];
@@ -212,15 +212,15 @@ class Snapping {
   [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t owner,
                                std::vector<std::uint32_t>& around) const {
     around.clear();
-    const Vector3f& p = input_.grid.points()[i];
-    input_.grid.within(p, input_.radii[i], around);
+    const Vector3f& p = input_.grid().points()[i];
+    input_.grid().within(p, input_.radii[i], around);
     const float on = std::max(kSnapResiduals * own_.residuals[owner], kSnapSlope * input_.radii[i]);
     float shared = 0;
     float all = 0;
     for (const std::uint32_t j : around) {
       const float area = input_.spacings[j] * input_.spacings[j];
       all += area;
-      if (std::abs(own_.normals[owner].dot(input_.grid.points()[j] - p)) <= on) shared += area;
+      if (std::abs(own_.normals[owner].dot(input_.grid().points()[j] - p)) <= on) shared += area;
     }
     return shared >= kShared * all;
   }
@@ -229,7 +229,7 @@ class Snapping {
   [[nodiscard]] bool is_among_unassigned(std::uint32_t i, std::vector<std::uint32_t>& near) const {
     if (static_cast<double>(own_.confidences[i]) < kPlanar) return false;
     near.clear();
-    input_.grid.within(input_.grid.points()[i], input_.radii[i], near);
+    input_.grid().within(input_.grid().points()[i], input_.radii[i], near);
     const auto unassigned = std::ranges::count_if(
         near, [this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
     return 2 * static_cast<std::size_t>(unassigned) >= near.size();
@@ -241,7 +241,7 @@ class Snapping {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
-      const Vector3f offset = input_.grid.points()[i] - input_.grid.points()[j];
+      const Vector3f offset = input_.grid().points()[i] - input_.grid().points()[j];
       const float length = offset.norm();
       const float off = std::abs(own_.normals[j].dot(offset));
       const float cost = off + kNearness * length;
@@ -263,7 +263,7 @@ class Snapping {
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
       if (std::abs(own_.normals[first].dot(own_.normals[j])) > kOtherPlane) continue;
-      const Vector3f offset = input_.grid.points()[i] - input_.grid.points()[j];
+      const Vector3f offset = input_.grid().points()[i] - input_.grid().points()[j];
       const float off = std::abs(own_.normals[j].dot(offset));
       const float squared = offset.squaredNorm();
       if (off > kOnBoth * input_.spacings[i] || squared >= best) continue;

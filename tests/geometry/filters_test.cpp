@@ -36,10 +36,14 @@ TEST(Clip, KeepsWhatIsInsideWithAllItsColumns) {
   EXPECT_TRUE(clip(cloud, Box{}).empty());
 }
 
+detail::NeighborhoodGraph graph_of(const CellGrid& grid, const std::vector<float>& radii) {
+  return detail::NeighborhoodGraph(grid, radii, radii);
+}
+
 std::vector<std::uint8_t> mask_of(const CellGrid& grid) {
   std::vector<float> radii = local_spacings(grid);
   for (float& radius : radii) radius *= 2.5f;
-  return radius_outliers(grid, radii, WeightSums(grid, radii).own);
+  return radius_outliers(grid, radii, WeightSums(graph_of(grid, radii), radii).own);
 }
 
 TEST(Speckle, IsWhatFloatsAroundASurfaceAndNothingOfIt) {
@@ -71,8 +75,9 @@ TEST(Speckle, LeavesALineAndASphereAlone) {
 
 TEST(WeightSums, WantARadiusForEachPoint) {
   const CellGrid grid(Clouds(1).plane(3, 1));
-  EXPECT_THROW(WeightSums(grid, std::vector<float>(3, 1.f)), Error);
-  EXPECT_THROW(WeightSums(grid, std::vector<float>(9, 0.f)), Error);
+  const detail::NeighborhoodGraph graph = graph_of(grid, std::vector<float>(9, 1.f));
+  EXPECT_THROW(WeightSums(graph, std::vector<float>(3, 1.f)), Error);
+  EXPECT_THROW(WeightSums(graph, std::vector<float>(9, 0.f)), Error);
 }
 
 TEST(WeightSums, FollowRadiiThatChangeAsIfSummedAnew) {
@@ -83,9 +88,12 @@ TEST(WeightSums, FollowRadiiThatChangeAsIfSummedAnew) {
   for (const std::size_t i : {7u, 8u, 2000u, 3999u}) {
     after[i] = static_cast<float>(clouds.uniform(0.02, 0.3));
   }
-  WeightSums sums(grid, before);
-  sums.update(grid, before, after);
-  const WeightSums anew(grid, after);
+  detail::NeighborhoodGraph graph = graph_of(grid, before);
+  graph.keep();
+  WeightSums sums(graph, before);
+  graph.widen(after, after);
+  sums.update(graph, before, after);
+  const WeightSums anew(graph_of(grid, after), after);
   EXPECT_EQ(sums.own, anew.own);
   EXPECT_EQ(sums.around, anew.around);
 }

@@ -11,7 +11,7 @@
 #include "base/cpu.hpp"
 #include "field/formulas.hpp"
 #include "geometry/clouds.hpp"
-#include "geometry/neighborhoods.hpp"
+#include "geometry/neighborhood_graph.hpp"
 #include "palpate/field/field_options.hpp"
 #include "prepare/weights.hpp"
 
@@ -54,6 +54,15 @@ simd::Eyes eyes_at(const CellGrid& grid, const simd::Join& join,
   return eyes;
 }
 
+detail::NeighborhoodGraph graph_of(const CellGrid& grid, float reach) {
+  return detail::NeighborhoodGraph(grid, std::vector<float>(grid.size(), reach));
+}
+
+WeightSums sums_of(const CellGrid& grid, const std::vector<float>& radii,
+                   Kernel kernel = Kernel::wyvill) {
+  return {detail::NeighborhoodGraph(grid, radii, radii), radii, kernel};
+}
+
 std::vector<std::uint32_t> two_segments(std::size_t count) {
   std::vector<std::uint32_t> segments(count);
   for (std::uint32_t i = 0; i < count; ++i) segments[i] = i % 3 == 0 ? 1 : 0;
@@ -85,15 +94,13 @@ TEST(Joins, AreTheSameBitForBitOnEveryProcessor) {
   for (float& v : a) v = static_cast<float>(clouds.uniform(0.01, 0.3));
   for (float& v : b) v = static_cast<float>(clouds.uniform(0.5, 2));
   const std::vector<std::uint32_t> segments = two_segments(grid.size());
-  detail::for_each_neighborhood(
-      grid, {.of_points = a, .times = 1, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        const simd::Join join = detail::make_join(grid, first, count, runs);
-        const simd::Eyes eyes = eyes_at(grid, join, segments);
-        const Results old = run(simd::kJoinsBaseline, join, a, b, eyes);
-        const Results now = run(simd::kJoinsV3, join, a, b, eyes);
-        EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
-      });
+  graph_of(grid, 0.4f).for_each_row([&](const detail::NeighborRow& row) {
+    const simd::Join join = row.join(grid);
+    const simd::Eyes eyes = eyes_at(grid, join, segments);
+    const Results old = run(simd::kJoinsBaseline, join, a, b, eyes);
+    const Results now = run(simd::kJoinsV3, join, a, b, eyes);
+    EXPECT_EQ(std::memcmp(&old, &now, sizeof old), 0);
+  });
 }
 
 TEST(Joins, FindAllHitsInRisingOrder) {
@@ -105,84 +112,50 @@ TEST(Joins, FindAllHitsInRisingOrder) {
     radii[i] = static_cast<float>(clouds.uniform(0.01, 0.3));
     squared[i] = radii[i] * radii[i];
   }
-  detail::for_each_neighborhood(
-      grid, {.of_points = radii, .times = 1, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        const simd::Join join = detail::make_join(grid, first, count, runs);
-        std::vector<simd::Hit> hits(grid.size() + 1);
-        const std::size_t found =
-            simd::best_joins().within(join, squared.data() + first, hits.data());
-        std::size_t pairs = 0;
-        for (std::size_t h = 0; h < found; ++h) {
-          EXPECT_TRUE(h == 0 || hits[h].candidate > hits[h - 1].candidate);
-          EXPECT_LT(hits[h].queries, 1u << count);
-          pairs += static_cast<std::size_t>(std::popcount(hits[h].queries));
-        }
-        std::vector<std::uint32_t> near;
-        for (std::uint32_t i = first; i < first + count; ++i) {
-          grid.within(grid.points()[i], radii[i], near);
-        }
-        EXPECT_EQ(pairs, near.size());
-      });
+  graph_of(grid, 0.3f).for_each_row([&](const detail::NeighborRow& row) {
+    std::vector<simd::Hit> hits(grid.size() + 1);
+    const std::size_t found =
+        simd::best_joins().within(row.join(grid), squared.data() + row.first, hits.data());
+    std::size_t pairs = 0;
+    for (std::size_t h = 0; h < found; ++h) {
+      EXPECT_TRUE(h == 0 || hits[h].candidate > hits[h - 1].candidate);
+      EXPECT_LT(hits[h].queries, 1u << row.count);
+      pairs += static_cast<std::size_t>(std::popcount(hits[h].queries));
+    }
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
+      grid.within(grid.points()[i], radii[i], near);
+    }
+    EXPECT_EQ(pairs, near.size());
+  });
 }
 
 TEST(Joins, FindWhatIsOffAPlaneOrOnAnotherSegment) {
   Clouds clouds;
   const CellGrid grid(clouds.sphere(1003, 0.5));
   const std::vector<std::uint32_t> segments = two_segments(grid.size());
-  const std::vector<float> reach(grid.size(), 0.5f);
-  detail::for_each_neighborhood(
-      grid, {.of_points = reach, .times = 1, .of_cells = {}},
-      [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-        const simd::Join join = detail::make_join(grid, first, count, runs);
-        const simd::Eyes eyes = eyes_at(grid, join, segments);
-        std::vector<simd::Hit> hits(grid.size() + 1);
-        std::vector<std::uint32_t> found(grid.size());
-        const std::size_t n = simd::best_joins().apart(join, eyes, hits.data());
-        for (std::size_t h = 0; h < n; ++h) found[hits[h].candidate] = hits[h].queries;
-        for (std::uint32_t j = 0; j < grid.size(); ++j) {
-          for (std::uint32_t q = 0; q < count; ++q) {
-            const Vector3f& p = grid.points()[first + q];
-            const Vector3f way = grid.points()[j] - p;
-            const float height = p.normalized().dot(way);
-            const float aside = way.squaredNorm() - height * height;
-            const bool off =
-                std::abs(height) > 0.1f && aside <= 0.09f && height * height >= 0.25f * aside;
-            const bool other =
-                q % 2 == 0 && way.squaredNorm() <= 0.01f && segments[j] != segments[first + q];
-            const bool near = detail::squared_distance(grid.points()[j], p) <= 0.25f;
-            EXPECT_EQ((found[j] >> q & 1) != 0, near && (off || other));
-          }
-        }
-      });
-}
-
-TEST(Joins, FindTheRunsThatATestOfEveryLeafFinds) {
-  Clouds clouds;
-  const CellGrid grid(clouds.sphere(5000, 1));
-  std::vector<float> radii(grid.size());
-  for (float& r : radii) r = static_cast<float>(clouds.uniform(0.01, 0.3));
-  const std::vector<float> reach = detail::largest_in_cells(grid, radii);
-  const auto covered = [](std::span<const simd::Run> runs, std::uint32_t i) {
-    for (const simd::Run& run : runs) {
-      if (run.begin <= i && i < run.end) return true;
+  graph_of(grid, 0.5f).for_each_row([&](const detail::NeighborRow& row) {
+    const simd::Join join = row.join(grid);
+    const simd::Eyes eyes = eyes_at(grid, join, segments);
+    std::vector<simd::Hit> hits(grid.size() + 1);
+    std::vector<std::uint32_t> found(grid.size());
+    const std::size_t n = simd::best_joins().apart(join, eyes, hits.data());
+    for (std::size_t h = 0; h < n; ++h) found[hits[h].candidate] = hits[h].queries;
+    for (std::uint32_t j = 0; j < grid.size(); ++j) {
+      for (std::uint32_t q = 0; q < row.count; ++q) {
+        const Vector3f& p = grid.points()[row.first + q];
+        const Vector3f way = grid.points()[j] - p;
+        const float height = p.normalized().dot(way);
+        const float aside = way.squaredNorm() - height * height;
+        const bool off =
+            std::abs(height) > 0.1f && aside <= 0.09f && height * height >= 0.25f * aside;
+        const bool other =
+            q % 2 == 0 && way.squaredNorm() <= 0.01f && segments[j] != segments[row.first + q];
+        const bool near = detail::squared_distance(grid.points()[j], p) <= 0.25f;
+        EXPECT_EQ((found[j] >> q & 1) != 0, near && (off || other));
+      }
     }
-    return false;
-  };
-  const auto check = [&](const detail::Reach& how, auto&& wanted) {
-    detail::for_each_neighborhood(
-        grid, how, [&](std::uint32_t first, std::uint32_t count, std::span<const simd::Run> runs) {
-          for (std::uint32_t j = 0; j < grid.size(); j += 7) {
-            const float d = (grid.points()[j] - grid.points()[first + count / 2]).norm();
-            EXPECT_TRUE(d > wanted(first + count / 2, j) || covered(runs, j));
-          }
-          for (std::size_t r = 1; r < runs.size(); ++r) EXPECT_GT(runs[r].begin, runs[r - 1].end);
-        });
-  };
-  check({.of_points = radii, .times = 1, .of_cells = {}},
-        [&](std::uint32_t i, std::uint32_t) { return radii[i]; });
-  check({.of_points = {}, .times = 1, .of_cells = reach},
-        [&](std::uint32_t, std::uint32_t j) { return radii[j]; });
+  });
 }
 
 // S_i and Sbar_i in double precision over all pairs.
@@ -195,7 +168,7 @@ void expect_sums(const CellGrid& grid, const std::vector<float>& radii, Kernel k
   for (std::size_t i = 0; i < own.size(); ++i) {
     for (std::size_t j = 0; j < own.size(); ++j) own[i] += weight(i, j);
   }
-  const std::vector<float> weights = density_weights(WeightSums(grid, radii, kernel));
+  const std::vector<float> weights = density_weights(sums_of(grid, radii, kernel));
   for (std::size_t i = 0; i < own.size(); ++i) {
     double around = 0;
     for (std::size_t j = 0; j < own.size(); ++j) around += weight(i, j) * own[j];
@@ -218,7 +191,7 @@ TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
       const CellGrid grid(Clouds(3).plane(40, spacing, 0.2));
       const auto radius = static_cast<float>(multiple * spacing);
       const std::vector<float> radii(grid.size(), radius);
-      const std::vector<float> weights = density_weights(WeightSums(grid, radii));
+      const std::vector<float> weights = density_weights(sums_of(grid, radii));
       std::vector<std::uint32_t> near;
       const auto middle = static_cast<float>(19.5 * spacing);
       grid.within(Vector3f(middle, middle, 0), radius, near);
@@ -235,7 +208,7 @@ TEST(DensityWeights, MakeAPlaneWeighAboutOneHoweverDense) {
 TEST(DensityWeights, AreFiniteForCoincidentPointsAndTinyRadii) {
   const CellGrid grid(std::vector<Vector3f>(300, Vector3f(1, 2, 3)));
   for (const float radius : {1e-30f, 1e-3f, 1e18f}) {
-    const auto weights = density_weights(WeightSums(grid, std::vector<float>(300, radius)));
+    const auto weights = density_weights(sums_of(grid, std::vector<float>(300, radius)));
     ASSERT_EQ(weights.size(), 300u);
     for (const float w : weights) EXPECT_NEAR(w, 1. / 300, 1e-6);
   }

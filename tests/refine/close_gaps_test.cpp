@@ -43,9 +43,10 @@ Case make_case(const Vector3f& odd, float radius) {
 std::size_t close(Case& made, PointFits& own) {
   std::vector<float> spacings(made.grid.size(), kGapSpacing);
   const std::vector<float> noise(made.grid.size(), 0.f);
-  own = fit_points(made.grid, spacings, made.radii, noise);
-  const WeightSums sums(made.grid, made.radii);
-  return close_gaps(made.grid, sums.own, noise, spacings, made.radii, own);
+  const detail::NeighborhoodGraph graph = neighborhood_graph(made.grid, made.radii);
+  own = fit_points(graph, spacings, made.radii, noise);
+  const WeightSums sums(graph, made.radii);
+  return close_gaps(graph, sums.own, noise, spacings, made.radii, own);
 }
 
 TEST(CloseGaps, RaisesWhatOthersLieRoundAbout) {

@@ -16,14 +16,20 @@ struct Fitted {
         spacings(points.size(), 1.f),
         radii(points.size(), kFittedRadius),
         noise(points.size(), 0.f),
-        own(fit_points(grid, spacings, radii, noise)) {}
+        graph(neighborhood_graph(grid, radii)),
+        own(fit_points(graph, spacings, radii, noise)) {
+    graph.widen(segment_reaches(spacings, radii, true), radii);
+  }
+  Fitted(const Fitted&) = delete;  // the graph refers to the grid
+  Fitted& operator=(const Fitted&) = delete;
 
-  [[nodiscard]] SegmentInput input() const { return {grid, spacings, radii, noise}; }
+  [[nodiscard]] SegmentInput input() const { return {graph, spacings, radii, noise}; }
 
   CellGrid grid;
   std::vector<float> spacings;
   std::vector<float> radii;
   std::vector<float> noise;
+  detail::NeighborhoodGraph graph;
   PointFits own;
 };
 

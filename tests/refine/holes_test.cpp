@@ -33,8 +33,10 @@ float beside(const CellGrid& grid, float x, float y, float least = 0.9f,
   for (std::uint32_t i = 0; i < grid.size(); ++i) {
     if ((grid.points()[i] - Vector3f(x, y, 0)).norm() > 1e-3f) continue;
     std::vector<std::uint32_t> near;
-    grid.within(grid.points()[i], 2 * least, near);
-    return finder.radius_beside(grid, i, near, normal, least, 3);
+    std::vector<std::uint32_t> around;
+    grid.within(grid.points()[i], least, near);
+    grid.within(grid.points()[i], 3 * least, around);
+    return finder.radius_beside(grid, i, near, around, normal, least, 3);
   }
   ADD_FAILURE() << "no point at " << x << ", " << y;
   return 0;

@@ -39,7 +39,8 @@ std::vector<float> searched_weights(const FilteredDepth& depth, const BlockSurfa
   const CellGrid grid(positions);
   std::vector<float> radii;
   for (const std::uint32_t i : grid.order()) radii.push_back(surface.radius(blocks[i]));
-  const std::vector<float> sorted = density_weights(WeightSums(grid, radii));
+  const std::vector<float> sorted =
+      density_weights(WeightSums(detail::NeighborhoodGraph(grid, radii, radii), radii));
   std::vector<float> weights(positions.size());
   for (std::size_t k = 0; k < weights.size(); ++k) weights[grid.order()[k]] = sorted[k];
   return weights;

@@ -20,13 +20,21 @@ struct Run {
   std::uint32_t end;
 };
 
-/// The points [query, query + count) and the runs of points that may be near one of them.
+/// The points [query, query + count) and those that may be near one of them.
 struct Join {
   const float* points;  ///< x, y, z of all points, m
   std::size_t query;
-  std::size_t count;  ///< query points, 1 ... kQueries
+  std::size_t count;                ///< query points, 1 ... kQueries
+  const std::uint32_t* candidates;  ///< in rising order
+  std::size_t candidate_count;
+};
+
+/// Where candidates are looked for, and how far, m^2.
+struct Search {
   const Run* runs;
   std::size_t run_count;
+  const float* squared_reaches;  ///< of each query point
+  const float* squared_own;      ///< of all points: how far they reach themselves; nullptr: nowhere
 };
 
 /// A result for each of the query points.
@@ -81,6 +89,11 @@ struct JoinFunctions {
   /// for count + 1; the result is runs[1] ... runs[n], and n is returned.
   std::size_t (*near)(const Leaves& leaves, const float* lower, const float* upper,
                       float squared_radius, Run* runs);
+
+  /// The points of the search's runs that a query point reaches, or that reach one themselves, in
+  /// rising order; the join's own candidates do not count. `found` has room for all of the runs and
+  /// one more; returns how many there are.
+  std::size_t (*gather)(const Join& join, const Search& search, std::uint32_t* found);
 
   /// The candidates within squared_radii[l], m^2, of the point query + l, in rising order. `hits`
   /// has room for all candidates and one more; returns how many there are.

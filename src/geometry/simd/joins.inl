@@ -51,18 +51,14 @@ struct Joins {
     Offset to(const float* point) const { return {point[0] - x, point[1] - y, point[2] - z}; }
   };
 
-  template <class Visit>
-  static inline void each_candidate(const Join& join, const Visit& visit) {
-    for (std::size_t r = 0; r < join.run_count; ++r) {
-      for (std::size_t c = join.runs[r].begin; c < join.runs[r].end; ++c) visit(c);
-    }
-  }
-
   // Calls visit(offset, candidate) for all candidates, offsets from the queries [query, + kLanes).
   template <class Visit>
   static inline void each(const Join& join, std::size_t query, const Visit& visit) {
     const Queries queries(join, query);
-    each_candidate(join, [&](std::size_t c) { visit(queries.to(join.points + 3 * c), c); });
+    for (std::size_t k = 0; k < join.candidate_count; ++k) {
+      const std::size_t c = join.candidates[k];
+      visit(queries.to(join.points + 3 * c), c);
+    }
   }
 
   static inline std::uint32_t bits(const Mask& mask, const Mask& bit_of_lane) {
@@ -74,10 +70,36 @@ struct Joins {
     return static_cast<std::uint32_t>(all | all >> 32);
   }
 
+  static constexpr std::size_t kGroups = kQueries / kLanes;  // derived: registers for all queries
+
+  static inline std::array<Queries, kGroups> all_queries(const Join& join) {
+    return [&]<std::size_t... kGroup>(std::index_sequence<kGroup...>) {
+      return std::array<Queries, kGroups>{Queries(join, join.query + kGroup * kLanes)...};
+    }
+    (std::make_index_sequence<kGroups>());
+  }
+
+  static std::size_t gather(const Join& join, const Search& search, std::uint32_t* found) {
+    const std::array<Queries, kGroups> queries = all_queries(join);
+    std::size_t count = 0;
+    for (std::size_t r = 0; r < search.run_count; ++r) {
+      for (std::size_t c = search.runs[r].begin; c < search.runs[r].end; ++c) {
+        const float own = search.squared_own == nullptr ? -1.f : search.squared_own[c];
+        Mask near{};
+        for (std::size_t g = 0; g < kGroups; ++g) {
+          const Floats squared = queries[g].to(join.points + 3 * c).squared();
+          near |= (squared <= load(search.squared_reaches + g * kLanes)) | (squared <= own);
+        }
+        found[count] = static_cast<std::uint32_t>(c);  // no branch: hits are random
+        count += bits(near, near) != 0;
+      }
+    }
+    return count;
+  }
+
   // The candidates for which near(q, offset, candidate) is true of a lane of [q, q + kLanes).
   template <class Near>
   static inline std::size_t find_hits(const Join& join, Hit* hits, const Near& near) {
-    constexpr std::size_t kGroups = kQueries / kLanes;  // registers that hold all queries
     std::size_t count = 0;
     Mask bit_of_lane[kGroups];
     for (std::size_t g = 0; g < kGroups; ++g) {
@@ -85,12 +107,10 @@ struct Joins {
       for (std::size_t l = 0; l < kLanes; ++l) bits_of_group[l] = 1 << (g * kLanes + l);
       std::memcpy(&bit_of_lane[g], bits_of_group, sizeof bits_of_group);
     }
-    const auto queries = [&]<std::size_t... kGroup>(std::index_sequence<kGroup...>) {
-      return std::array<Queries, kGroups>{Queries(join, join.query + kGroup * kLanes)...};
-    }
-    (std::make_index_sequence<kGroups>());
+    const std::array<Queries, kGroups> queries = all_queries(join);
     const std::uint32_t used = (1u << join.count) - 1;
-    each_candidate(join, [&](std::size_t c) {
+    for (std::size_t k = 0; k < join.candidate_count; ++k) {
+      const std::size_t c = join.candidates[k];
       std::uint32_t lanes = 0;
       for (std::size_t g = 0; g < kGroups; ++g) {
         const Offset offset = queries[g].to(join.points + 3 * c);
@@ -98,7 +118,7 @@ struct Joins {
       }
       hits[count] = {static_cast<std::uint32_t>(c), lanes & used};
       count += (lanes & used) != 0;
-    });
+    }
     return count;
   }
 
@@ -261,6 +281,7 @@ struct Joins {
 
   static constexpr JoinFunctions functions() {
     return {&near,
+            &gather,
             &within,
             &apart,
             &moments,
