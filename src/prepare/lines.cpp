@@ -105,11 +105,12 @@ Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
                    std::vector<CellGrid::Neighbor>& nearest) {
   nearest_distinct(grid, i, kOnLine, nearest);
   Line line = line_among(grid, i, nearest);
-  std::size_t others = kOnLine - 1;
-  for (int k = 1; k < kLineScales && line.off >= kThin; ++k) {
-    others *= 2;
-    grid.nearest(grid.points()[i], others + 1, nearest);
-    line = line_among(grid, i, nearest);
+  if (line.off < kThin) return line;
+  const std::size_t most = (kOnLine - 1) << (kLineScales - 1);
+  grid.nearest(grid.points()[i], most + 1, nearest);
+  for (std::size_t others = 2 * (kOnLine - 1); others <= most && line.off >= kThin; others *= 2) {
+    const std::size_t count = std::min(others + 1, nearest.size());
+    line = line_among(grid, i, std::span<const CellGrid::Neighbor>(nearest).first(count));
   }
   return line;
 }
@@ -122,28 +123,33 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return widen(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
-/// Calls visit(i) for about a thousand points, spread over the cloud. Clouds of fewer than 100
-/// points decide nothing: none.
-template <class Visit>
-void each_sample(const CellGrid& grid, const Visit& visit) {
+/// About a thousand points, spread over the cloud. Clouds of fewer than 100 points decide nothing:
+/// none.
+std::vector<std::uint32_t> samples_of(const CellGrid& grid) {
   constexpr std::size_t kSamples = 1000;  // points, about; judgement
   constexpr std::size_t kFewest = 100;    // points of a cloud; judgement
-  if (grid.size() < kFewest) return;
+  std::vector<std::uint32_t> samples;
+  if (grid.size() < kFewest) return samples;
   const std::size_t step = std::max<std::size_t>(1, grid.size() / kSamples);
-  for (std::size_t i = step / 2; i < grid.size(); i += step) visit(static_cast<std::uint32_t>(i));
+  for (std::size_t i = step / 2; i < grid.size(); i += step) {
+    samples.push_back(static_cast<std::uint32_t>(i));
+  }
+  return samples;
 }
 
 }  // namespace
 
 bool lies_in_lines(const CellGrid& grid) {
+  const std::vector<std::uint32_t> samples = samples_of(grid);
+  const auto enough =
+      static_cast<std::size_t>(std::ceil(kLines * static_cast<float>(samples.size())));
   std::vector<CellGrid::Neighbor> nearest;
   std::size_t lines = 0;
-  std::size_t looked = 0;
-  each_sample(grid, [&](std::uint32_t i) {
-    ++looked;
-    if (noisy_line_at(grid, i, nearest).off < kThin) ++lines;
-  });
-  return looked > 0 && static_cast<float>(lines) >= kLines * static_cast<float>(looked);
+  for (std::size_t k = 0; k < samples.size() && lines + samples.size() - k >= enough; ++k) {
+    if (noisy_line_at(grid, samples[k], nearest).off < kThin) ++lines;
+    if (lines >= enough) return true;
+  }
+  return false;
 }
 
 namespace {
@@ -166,21 +172,28 @@ float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
   });
 }
 
+/// The line that each point is on.
+std::vector<Line> lines_of(const CellGrid& grid) {
+  std::vector<Line> lines(grid.size());
+  detail::parallel_each_with<std::vector<CellGrid::Neighbor>>(
+      lines.size(), 64, [&](std::size_t i, auto& found) {
+        lines[i] = noisy_line_at(grid, static_cast<std::uint32_t>(i), found);
+      });
+  return lines;
+}
+
 /// The side of the square grid whose holes are as wide as those between lines, m, at each point of
 /// a line with others on both sides; 0 elsewhere.
-std::vector<float> sides_of_squares(const CellGrid& grid) {
+std::vector<float> sides_of_squares(const CellGrid& grid, const std::vector<Line>& lines) {
   std::vector<float> sides(grid.size());
-  detail::parallel_ranges(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Neighbor> found;
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto at = static_cast<std::uint32_t>(i);
-      const Line line = noisy_line_at(grid, at, found);
-      if (line.off >= kThin) continue;
-      const float gap = gap_across(grid, at, line, 2 * line.spacing, near);
-      if (gap > 0) sides[i] = side_of_square(gap, line.step);
-    }
-  });
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      sides.size(), 64, [&](std::size_t i, auto& near) {
+        const Line& line = lines[i];
+        if (line.off >= kThin) return;
+        const float gap =
+            gap_across(grid, static_cast<std::uint32_t>(i), line, 2 * line.spacing, near);
+        if (gap > 0) sides[i] = side_of_square(gap, line.step);
+      });
   return sides;
 }
 
@@ -205,20 +218,16 @@ std::vector<float> averaged_along(const CellGrid& grid, const std::vector<float>
 }  // namespace
 
 void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings) {
-  const std::vector<float> sides = averaged_along(grid, sides_of_squares(grid));
-  detail::parallel_ranges(spacings.size(), 64, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellGrid::Neighbor> found;
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto at = static_cast<std::uint32_t>(i);
-      float side = sides[i];
-      if (side <= 0) {
-        const Line line = noisy_line_at(grid, at, found);
-        if (line.off < kThin) side = spacing_beside(grid, at, line, sides, near);
-      }
-      spacings[i] = std::max(spacings[i], side);
-    }
-  });
+  const std::vector<Line> lines = lines_of(grid);
+  const std::vector<float> sides = averaged_along(grid, sides_of_squares(grid, lines));
+  detail::parallel_each_with<std::vector<std::uint32_t>>(
+      spacings.size(), 64, [&](std::size_t i, auto& near) {
+        float side = sides[i];
+        if (side <= 0 && lines[i].off < kThin) {
+          side = spacing_beside(grid, static_cast<std::uint32_t>(i), lines[i], sides, near);
+        }
+        spacings[i] = std::max(spacings[i], side);
+      });
 }
 
 }  // namespace palpate

@@ -53,7 +53,12 @@ class SegmentGrowing {
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
   SegmentGrowing(const SegmentInput& input, const PointFits& own,
                  const std::vector<std::uint32_t>& assigned)
-      : input_(input), own_(own), assigned_(assigned), sets_(input.grid().size()) {}
+      : input_(input), own_(own), assigned_(assigned), sets_(input.grid().size()) {
+    curvatures_.reserve(assigned.size());
+    for (std::uint32_t i = 0; i < assigned.size(); ++i) {
+      curvatures_.push_back(fitted_curvature(input, own, i));
+    }
+  }
 
   detail::SignedSets& run() {
     std::vector<Later> later(input_.graph.blocks());
@@ -99,8 +104,7 @@ class SegmentGrowing {
     const Vector3f offset = input_.grid().points()[b] - input_.grid().points()[a];
     const float length = offset.norm();
     const float near = (input_.grid().points()[j] - input_.grid().points()[i]).norm();
-    const float curvature =
-        std::min(fitted_curvature(input_, own_, a), fitted_curvature(input_, own_, b));
+    const float curvature = std::min(curvatures_[a], curvatures_[b]);
     const float turn = std::max(kTurn, kTurnMargin * curvature * length);
     const float cosine = own_.normals[i].dot(own_.normals[j]);
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
@@ -134,6 +138,7 @@ class SegmentGrowing {
   const SegmentInput& input_;
   const PointFits& own_;
   const std::vector<std::uint32_t>& assigned_;
+  std::vector<float> curvatures_;  // of each point's fit, 1/m
   detail::SignedSets sets_;
 };
 
