@@ -45,16 +45,21 @@ NeighborRow NeighborhoodGraph::find_sifted(const Block& part, Surroundings& surr
 void NeighborhoodGraph::keep() {
   kept_.resize(blocks_.size());
   std::atomic<std::size_t> all = 0;
-  parallel_each_with<Surroundings>(blocks_.size(), kBlocksAtOnce, [&](std::size_t b, auto& around) {
-    if (all >= kMostKept) return;
+  struct Memory {
+    Surroundings around;
     Kept rows;
+  };
+  parallel_each_with<Memory>(blocks_.size(), kBlocksAtOnce, [&](std::size_t b, Memory& memory) {
+    if (all >= kMostKept) return;
+    auto& [around, rows] = memory;
+    rows.clear();
     find_leaves(blocks_[b], around);
     for_each_part(blocks_[b], [&](const Block& part) {
       if (rows.neighbors.size() < kMostKept)
         rows.push_back(find_sifted(make_block(*grid_, part.begin, part.end), around).neighbors);
     });
     // Which blocks are kept may depend on the threads; what is read does not.
-    if ((all += rows.neighbors.size()) <= kMostKept) kept_[b] = std::move(rows);
+    if ((all += rows.neighbors.size()) <= kMostKept) kept_[b] = rows;
   });
 }
 
@@ -82,16 +87,17 @@ void NeighborhoodGraph::find_again(std::span<const std::uint8_t> wider,
   struct Memory {
     Surroundings around;
     Surroundings grown;
+    Kept rows;
   };
   parallel_each_with<Memory>(kept_.size(), kBlocksAtOnce, [&](std::size_t b, Memory& memory) {
-    auto& [around, grown] = memory;
+    auto& [around, grown, rows] = memory;
     const auto is_wider = [&](const Block& part) {
       return std::ranges::count(wider.subspan(part.begin, part.size()), 1) > 0;
     };
     grown.find(*grid_, blocks_[b], -1, grown_cells);
     if (kept_[b].ends.empty() || (grown.empty() && !is_wider(blocks_[b]))) return;
     find_leaves(blocks_[b], around);
-    Kept rows;
+    rows.clear();
     std::size_t k = 0;
     for_each_part(blocks_[b], [&](const Block& part) {
       const bool again = is_wider(part) || grown.reach(make_block(*grid_, part.begin, part.end));
@@ -99,7 +105,7 @@ void NeighborhoodGraph::find_again(std::span<const std::uint8_t> wider,
                            : kept_[b].row(k));
       ++k;
     });
-    kept_[b] = std::move(rows);
+    kept_[b] = rows;
   });
 }
 

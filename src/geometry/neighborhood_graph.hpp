@@ -99,6 +99,10 @@ class NeighborhoodGraph {
     std::vector<std::uint32_t> neighbors;
     std::vector<std::uint32_t> ends;  // of the rows, in `neighbors`; empty: none is kept
 
+    void clear() {
+      neighbors.clear();
+      ends.clear();
+    }
     void push_back(std::span<const std::uint32_t> row) {
       neighbors.insert(neighbors.end(), row.begin(), row.end());
       ends.push_back(static_cast<std::uint32_t>(neighbors.size()));

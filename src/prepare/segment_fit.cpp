@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "geometry/neighborhoods.hpp"
 #include "geometry/normals.hpp"
@@ -183,22 +184,22 @@ SegmentFit SegmentFitter::fit_offsets(double reach) {
 }
 
 void SegmentFitter::subtract_quadric(double reach, SegmentFit& fit) {
-  const Vector3d& normal = fit.normal;
+  const Vector3d normal = fit.normal;
   const Vector3d u = normal.unitOrthogonal();
   const Vector3d v = normal.cross(u);
+  local_.reserve(offsets_.size());
   std::array<Two, 8> sums = {};  // the moments
   std::array<Two, 3> right = {};
   double squares = 0;
   for (const Vector3d& offset : offsets_) {
     const Vector3d& p = local_.emplace_back(u.dot(offset), v.dot(offset), normal.dot(offset));
-    const double x = p.x() / reach;
-    const double y = p.y() / reach;
-    const double xx = x * x;
-    const double xy = x * y;
-    const double yy = y * y;
-    const Two low[] = {{1, x}, {y, xx}, {xy, yy}};
-    const Two high[] = {
-        {xx * x, xx * y}, {yy * x, yy * y}, {xx * xx, xx * xy}, {xx * yy, yy * xy}, {yy * yy, 0}};
+    const Two at = Two{p.x(), p.y()} / reach;
+    const Two squares_of_both = at * at;
+    const auto [x, y] = std::pair(at[0], at[1]);
+    const auto [xx, yy] = std::pair(squares_of_both[0], squares_of_both[1]);
+    const Two second = {xx, x * y};
+    const Two low[] = {{1, x}, {y, xx}, {second[1], yy}};
+    const Two high[] = {xx * at, yy * at, xx * second, yy * second, {yy * yy, 0}};
     for (int k = 0; k < 3; ++k) {
       sums[k] += low[k];
       right[k] += p.z() * low[k];
