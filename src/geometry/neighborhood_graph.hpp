@@ -94,6 +94,16 @@ class NeighborhoodGraph {
     for_each_block<Nothing>([&](const BlockRows& rows, Nothing&) { rows.each(body); });
   }
 
+  /// Calls body(i, neighbors of its row, memory) for all points, likewise.
+  template <class Memory, class Body>
+  void for_each_point(const Body& body) const {
+    for_each_block<Memory>([&](const BlockRows& rows, Memory& memory) {
+      rows.each([&](const NeighborRow& row) {
+        for (std::uint32_t q = 0; q < row.count; ++q) body(row.first + q, row.neighbors, memory);
+      });
+    });
+  }
+
  private:
   struct Kept {
     std::vector<std::uint32_t> neighbors;

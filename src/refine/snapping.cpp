@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <utility>
 
-#include "geometry/parallel.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/segment_fit.hpp"
 #include "refine/segments.hpp"
@@ -35,6 +35,9 @@ constexpr float kNearness = 0.1f;
 constexpr float kOtherPlane = 0.97f;  // cosine (14 degrees): planes that differ by more are two
 constexpr float kOnBoth = 0.2f;       // spacings off the second plane, at most
 
+using Around = std::span<const std::uint32_t>;  // a point's neighbours, and others of its row
+using Confident = std::vector<std::uint32_t>;   // points around, that are confident
+
 /// What a second fit needs; keeps its memory in between.
 struct Refit {
   std::vector<std::uint32_t> near;
@@ -58,8 +61,8 @@ class Snapping {
     assign_planes(std::vector<std::uint8_t>(confident_.size(), 1));
     assign_planes(fit_unassigned());
     std::vector<std::uint8_t> alone(confident_.size());
-    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
-      if (assigned_[i] == kUnassigned) alone[i] = is_among_unassigned(i, near) ? 1 : 0;
+    input_.graph.for_each_point<Confident>([&](std::uint32_t i, Around around, Confident&) {
+      if (assigned_[i] == kUnassigned) alone[i] = is_among_unassigned(i, around) ? 1 : 0;
     });
     for (std::uint32_t i = 0; i < alone.size(); ++i) {
       if (assigned_[i] == kUnassigned) {
@@ -92,10 +95,10 @@ class Snapping {
   void assign_planes(const std::vector<std::uint8_t>& marked) {
     if (std::ranges::count(marked, 1) == 0) return;
     index_confident();
-    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
+    input_.graph.for_each_point<Confident>([&](std::uint32_t i, Around around, Confident& near) {
       if (marked[i] == 0) return;
       if (confident_[i] == 0) {
-        assign_plane(i, near);
+        assign_plane(i, around, near);
         return;
       }
       assigned_[i] = i;
@@ -110,8 +113,8 @@ class Snapping {
   /// a wall which is lower than R. Marks the points that may have another plane now.
   std::vector<std::uint8_t> fit_unassigned() {
     std::vector<std::uint8_t> found(confident_.size());
-    each_with<Refit>([&](std::uint32_t i, Refit& refit) {
-      if (assigned_[i] == kUnassigned) found[i] = fit_again(i, refit) ? 1 : 0;
+    input_.graph.for_each_point<Refit>([&](std::uint32_t i, Around around, Refit& refit) {
+      if (assigned_[i] == kUnassigned) found[i] = fit_again(i, around, refit) ? 1 : 0;
     });
     std::vector<Vector3f> positions;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
@@ -121,25 +124,27 @@ class Snapping {
     }
     if (positions.empty()) return found;
     const CellGrid new_ones(positions);
-    each_with<std::vector<std::uint32_t>>([&](std::uint32_t i, auto& near) {
-      if (confident_[i] != 0 && own_.others[i] == 0) return;
-      near.clear();
-      new_ones.within(input_.grid().points()[i], kFarSnapReach * input_.radii[i], near);
-      found[i] = near.empty() ? 0 : 1;
-    });
+    detail::parallel_each_with<std::vector<std::uint32_t>>(
+        found.size(), 512, [&](std::size_t i, auto& near) {
+          if (confident_[i] != 0 && own_.others[i] == 0) return;
+          near.clear();
+          new_ones.within(input_.grid().points()[i], kFarSnapReach * input_.radii[i], near);
+          found[i] = near.empty() ? 0 : 1;
+        });
     return found;
   }
 
   /// Fits a plane to the unassigned points around, then a segment to all uncertain ones that lie on
   /// it.
-  bool fit_again(std::uint32_t i, Refit& refit) {
+  bool fit_again(std::uint32_t i, Around around, Refit& refit) {
     const auto radius = static_cast<double>(input_.radii[i]);
     const auto noise = static_cast<double>(input_.noise[i]);
     const float reach = kNormalsReach * input_.radii[i];
     const Vector3f& p = input_.grid().points()[i];
     refit.near.clear();
-    input_.grid().within(p, reach, refit.near);
-    std::erase_if(refit.near, [this](std::uint32_t j) { return confident_[j] != 0; });
+    std::ranges::copy_if(around, std::back_inserter(refit.near), [&](std::uint32_t j) {
+      return confident_[j] == 0 && is_within(reach, i, j);
+    });
     const auto fit_to = [&](const auto& belongs) {
       refit.some.clear();
       std::ranges::copy_if(refit.near, std::back_inserter(refit.some), belongs);
@@ -170,7 +175,7 @@ class Snapping {
 
   /// Confident points around; where they are few, as in the foot of a narrow crease, farther ones
   /// too.
-  void list_confident(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+  void list_confident(std::uint32_t i, Confident& near) const {
     for (const float reach : {kSnapReach, kFarSnapReach}) {
       near.clear();
       confident_grid_.within(input_.grid().points()[i], reach * input_.radii[i], near);
@@ -179,19 +184,17 @@ class Snapping {
     }
   }
 
-  template <class Memory, class Body>
-  void each_with(const Body& body) const {
-    detail::parallel_each_with<Memory>(confident_.size(), 512, [&](std::size_t i, Memory& memory) {
-      body(static_cast<std::uint32_t>(i), memory);
-    });
+  [[nodiscard]] bool is_within(float reach, std::uint32_t i, std::uint32_t j) const {
+    const auto points = input_.grid().points();
+    return detail::squared_distance(points[i], points[j]) <= reach * reach;
   }
 
-  void assign_plane(std::uint32_t i, std::vector<std::uint32_t>& near) {
+  void assign_plane(std::uint32_t i, Around around, Confident& near) {
     list_confident(i, near);
     const std::uint32_t owner = best_plane(i, near);
     if (owner == kUnassigned) return;
     const std::uint32_t second = second_plane(i, owner, near);
-    if (!is_shared(i, owner, near)) return;
+    if (!is_shared(i, owner, around)) return;
     assigned_[i] = owner;
     second_planes_[i] = second;
   }
@@ -209,15 +212,13 @@ class Snapping {
 
   /// Does enough of the area around lie on the owner's plane, too? At a corner of three faces a
   /// third does.
-  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t owner,
-                               std::vector<std::uint32_t>& around) const {
-    around.clear();
+  [[nodiscard]] bool is_shared(std::uint32_t i, std::uint32_t owner, Around around) const {
     const Vector3f& p = input_.grid().points()[i];
-    input_.grid().within(p, input_.radii[i], around);
     const float on = std::max(kSnapResiduals * own_.residuals[owner], kSnapSlope * input_.radii[i]);
     float shared = 0;
     float all = 0;
     for (const std::uint32_t j : around) {
+      if (!is_within(input_.radii[i], i, j)) continue;
       const float area = input_.spacings[j] * input_.spacings[j];
       all += area;
       if (std::abs(own_.normals[owner].dot(input_.grid().points()[j] - p)) <= on) shared += area;
@@ -226,18 +227,17 @@ class Snapping {
   }
 
   /// Are half of the points around unassigned, too? On a thing so small a plane has to do.
-  [[nodiscard]] bool is_among_unassigned(std::uint32_t i, std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] bool is_among_unassigned(std::uint32_t i, Around around) const {
     if (static_cast<double>(own_.confidences[i]) < kPlanar) return false;
-    near.clear();
-    input_.grid().within(input_.grid().points()[i], input_.radii[i], near);
-    const auto unassigned = std::ranges::count_if(
-        near, [this](std::uint32_t j) { return assigned_[j] == kUnassigned; });
-    return 2 * static_cast<std::size_t>(unassigned) >= near.size();
+    int excess = 0;  // of unassigned points over others
+    for (const std::uint32_t j : around) {
+      if (is_within(input_.radii[i], i, j)) excess += assigned_[j] == kUnassigned ? 1 : -1;
+    }
+    return excess >= 0;
   }
 
   /// The confident point on whose plane the point lies best.
-  [[nodiscard]] std::uint32_t best_plane(std::uint32_t i,
-                                         const std::vector<std::uint32_t>& near) const {
+  [[nodiscard]] std::uint32_t best_plane(std::uint32_t i, const Confident& near) const {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
@@ -258,7 +258,7 @@ class Snapping {
 
   /// The nearest confident point of another plane that the point lies on as well.
   [[nodiscard]] std::uint32_t second_plane(std::uint32_t i, std::uint32_t first,
-                                           const std::vector<std::uint32_t>& near) const {
+                                           const Confident& near) const {
     float best = std::numeric_limits<float>::infinity();
     std::uint32_t owner = kUnassigned;
     for (const std::uint32_t j : near) {
