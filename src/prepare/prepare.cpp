@@ -63,7 +63,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   watch.lap(report.seconds_normals);
   s.sums = WeightSums(s.graph, s.radii.values, options.kernel);
   refine(refinements, Stage::fits, s, stop);
-  s.weights = weigh(s.sampling, s.radii, s.sums, options);
+  s.weights = weigh(s.graph, s.sampling, s.radii, s.sums, options);
   watch.lap(report.seconds_weights);
   refine(refinements, Stage::weights, s, stop);
   if (s.segments.empty()) orient(s.sampling, given_signs(placed, s.sampling, options), s.fits);

@@ -117,21 +117,20 @@ std::vector<float> density_weights(const WeightSums& sums) {
   return weights;
 }
 
-void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
+void weigh_by_counts(const detail::NeighborhoodGraph& graph, std::span<const std::uint32_t> counts,
                      std::span<const float> radii, std::vector<float>& weights) {
   // Factor: a lone point still holds the surface together; judgement.
   constexpr float kLeast = 0.2f;
   constexpr float kMost = 3;  // factor; judgement (docs/preparation.md, Weights)
-  detail::parallel_each_with<std::vector<std::uint32_t>>(
-      weights.size(), 1024, [&](std::size_t i, auto& near) {
-        near.clear();
-        grid.within(grid.points()[i], radii[i], near);
-        float sum = 0;
-        for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
-        const float mean = near.empty() ? 0 : sum / static_cast<float>(near.size());
-        if (!(mean > 0)) return;
-        weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
-      });
+  const auto weigh_one = [&](auto, std::uint32_t i, std::span<const std::uint32_t> near, auto) {
+    float sum = 0;
+    for (const std::uint32_t k : near) sum += static_cast<float>(counts[k]);
+    const float mean = sum / static_cast<float>(near.size());
+    if (!(mean > 0)) return;
+    weights[i] *= std::clamp(static_cast<float>(counts[i]) / mean, kLeast, kMost);
+  };
+  detail::for_each_near(
+      graph, radii, [] { return 0; }, weigh_one);
 }
 
 std::vector<std::uint8_t> radius_outliers(const CellGrid& grid, std::span<const float> radii,
@@ -145,11 +144,11 @@ std::vector<std::uint8_t> radius_outliers(const CellGrid& grid, std::span<const 
   return mask;
 }
 
-Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
-              const PrepareOptions& options) {
+Weights weigh(const detail::NeighborhoodGraph& graph, const Sampling& sampling, const Radii& radii,
+              const WeightSums& sums, const PrepareOptions& options) {
   Weights weights{density_weights(sums), 0};
   if (!sampling.counts.empty()) {
-    weigh_by_counts(sampling.grid, sampling.counts, radii.values, weights.values);
+    weigh_by_counts(graph, sampling.counts, radii.values, weights.values);
   }
   if (!options.remove_speckle || options.paper) return weights;
   auto mask = radius_outliers(sampling.grid, radii.values, sums.own);

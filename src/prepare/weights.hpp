@@ -44,8 +44,8 @@ struct WeightSums {
 /// Lets points that stand for many weigh more than those that stand for few: multiplies each
 /// density weight by the point's count over the mean count within its radius. Sums of weights stay
 /// near 1, and means over points become means over what was measured, which halves their noise. All
-/// in sorted order; radii in m.
-void weigh_by_counts(const CellGrid& grid, std::span<const std::uint32_t> counts,
+/// in sorted order; radii in m, which the graph holds.
+void weigh_by_counts(const detail::NeighborhoodGraph& graph, std::span<const std::uint32_t> counts,
                      std::span<const float> radii, std::vector<float>& weights);
 
 /// 1 for each point, in sorted order, that noise has put where no surface is: fewer than three
@@ -62,7 +62,8 @@ struct Weights {
 
 /// Density weights (docs/method.md 2.2) by the `sums` of the radii, by how many points each stands
 /// for, and 0 for radius and isolated outliers, which stay in the index.
-[[nodiscard]] Weights weigh(const Sampling& sampling, const Radii& radii, const WeightSums& sums,
+[[nodiscard]] Weights weigh(const detail::NeighborhoodGraph& graph, const Sampling& sampling,
+                            const Radii& radii, const WeightSums& sums,
                             const PrepareOptions& options);
 
 }  // namespace palpate

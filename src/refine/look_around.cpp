@@ -26,9 +26,8 @@ constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 constexpr float kSafe = 0.999f;  // derived: rounding takes less
 
 // Votes of one segment on another; all are judgement.
-constexpr float kVoteReach = kNeighborsReach;  // R
-constexpr std::size_t kVoteSegments = 4;       // other segments that a point votes on
-constexpr int kVotesEach = 3;                  // points of each, the nearest
+constexpr std::size_t kVoteSegments = 4;  // other segments that a point votes on
+constexpr int kVotesEach = 3;             // points of each, the nearest
 
 /// Looks from the points of one block at other segments.
 class Outlook {
@@ -94,7 +93,7 @@ class Outlook {
 
   [[nodiscard]] Eye eye_at(std::uint32_t i) const {
     const float spacing = input_.spacings[i];
-    const float voting = kVoteReach * input_.radii[i];
+    const float voting = kNeighborsReach * input_.radii[i];
     return {input_.grid().points()[i],
             own_.normals[i],
             kGapTube * spacing,
@@ -150,7 +149,7 @@ class Outlook {
   const SegmentInput& input_;
   const PointFits& own_;
   const std::optional<Vector3f>& viewer_;
-  const float reach_ = viewer_ ? kGapReach : kVoteReach;  // R
+  const float reach_ = viewer_ ? kGapReach : kNeighborsReach;  // R
   GrownSegments& grown_;
   const SurfacePoints::Segments& segments_;
   detail::NearPairs pairs_;
@@ -161,7 +160,7 @@ class Outlook {
 }  // namespace
 
 float look_reach(bool seen) {
-  return seen ? kGapReach : kVoteReach;
+  return seen ? kGapReach : kNeighborsReach;
 }
 
 std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,

@@ -230,7 +230,7 @@ TEST(CountWeights, KeepTheSumOfWeights) {
   for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = 2 + i % 5;
   const std::vector<float> radii(grid.size(), 0.01f);
   std::vector<float> weights(grid.size(), 1.0f);
-  weigh_by_counts(grid, counts, radii, weights);
+  weigh_by_counts(detail::NeighborhoodGraph(grid, radii), counts, radii, weights);
   const float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
   EXPECT_NEAR(sum / static_cast<float>(weights.size()), 1, 0.05);
   EXPECT_GT(weights[4], 2 * weights[0]);
