@@ -1,18 +1,11 @@
-// Keeps the rows of the neighbourhood graph, and finds again those that have to hold more.
+// Keeps the rows of the neighbourhood graph, and finds those again that have to hold more.
 #include "geometry/neighborhood_graph.hpp"
 
-#include <atomic>
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
 namespace palpate::detail {
-namespace {
-
-// Neighbours in all rows together: 64 MiB; judgement. A cloud of half a million points with R
-// of 2.5 spacings has 6 million.
-constexpr std::size_t kMostKept = std::size_t{1} << 24;
-
-}  // namespace
 
 NeighborhoodGraph::NeighborhoodGraph(const CellGrid& grid, std::vector<float> radii,
                                      std::span<const float> supports)
@@ -31,36 +24,31 @@ void NeighborhoodGraph::find_leaves(const Block& block, Surroundings& surroundin
 
 NeighborRow NeighborhoodGraph::find_row(const Block& part, Surroundings& surroundings) const {
   const auto own = std::span<const float>(radii_).subspan(part.begin, part.size());
-  return surroundings.row(part, *std::max_element(own.begin(), own.end()));
+  if (kept_.empty()) {  // read once, it is not worth sifting
+    return surroundings.row(part, *std::max_element(own.begin(), own.end()));
+  }
+  simd::Row squared = {};
+  for (std::uint32_t q = 0; q < part.size(); ++q) squared[q] = own[q] * own[q];
+  return surroundings.sifted_row(*grid_, part, squared, squared_supports_);
 }
 
-NeighborRow NeighborhoodGraph::find_sifted(const Block& part, Surroundings& surroundings) const {
-  simd::Row squared = {};
-  for (std::uint32_t q = 0; q < part.size(); ++q) {
-    squared[q] = radii_[part.begin + q] * radii_[part.begin + q];
-  }
-  return surroundings.sifted_row(*grid_, part, squared, squared_supports_);
+void NeighborhoodGraph::keep_block(std::size_t b, Search& search) {
+  auto& [around, rows] = search;
+  const std::size_t most = kMostAPoint * blocks_[b].size();
+  rows.clear();
+  find_leaves(blocks_[b], around);
+  for_each_part(blocks_[b], [&](const Block& part) {
+    if (rows.neighbors.size() > most) return;
+    rows.push_back(find_row(make_block(*grid_, part.begin, part.end), around).neighbors);
+  });
+  if (rows.neighbors.size() > most) rows.clear();
+  kept_[b] = rows;
 }
 
 void NeighborhoodGraph::keep() {
   kept_.resize(blocks_.size());
-  std::atomic<std::size_t> all = 0;
-  struct Memory {
-    Surroundings around;
-    Kept rows;
-  };
-  parallel_each_with<Memory>(blocks_.size(), kBlocksAtOnce, [&](std::size_t b, Memory& memory) {
-    if (all >= kMostKept) return;
-    auto& [around, rows] = memory;
-    rows.clear();
-    find_leaves(blocks_[b], around);
-    for_each_part(blocks_[b], [&](const Block& part) {
-      if (rows.neighbors.size() < kMostKept)
-        rows.push_back(find_sifted(make_block(*grid_, part.begin, part.end), around).neighbors);
-    });
-    // Which blocks are kept may depend on the threads; what is read does not.
-    if ((all += rows.neighbors.size()) <= kMostKept) kept_[b] = rows;
-  });
+  parallel_each_with<Search>(blocks_.size(), kBlocksAtOnce,
+                             [&](std::size_t b, Search& search) { keep_block(b, search); });
 }
 
 void NeighborhoodGraph::widen(std::span<const float> radii, std::span<const float> supports) {
@@ -79,33 +67,11 @@ void NeighborhoodGraph::widen(std::span<const float> radii, std::span<const floa
   for (std::size_t c = 0; c < cells.size(); ++c) {
     cell_supports_[c] = std::max(cell_supports_[c], cells[c]);
   }
-  find_again(wider, cells);
-}
-
-void NeighborhoodGraph::find_again(std::span<const std::uint8_t> wider,
-                                   std::span<const float> grown_cells) {
-  struct Memory {
-    Surroundings around;
-    Surroundings grown;
-    Kept rows;
-  };
-  parallel_each_with<Memory>(kept_.size(), kBlocksAtOnce, [&](std::size_t b, Memory& memory) {
-    auto& [around, grown, rows] = memory;
-    const auto is_wider = [&](const Block& part) {
-      return std::ranges::count(wider.subspan(part.begin, part.size()), 1) > 0;
-    };
-    grown.find(*grid_, blocks_[b], -1, grown_cells);
-    if (kept_[b].ends.empty() || (grown.empty() && !is_wider(blocks_[b]))) return;
-    find_leaves(blocks_[b], around);
-    rows.clear();
-    std::size_t k = 0;
-    for_each_part(blocks_[b], [&](const Block& part) {
-      const bool again = is_wider(part) || grown.reach(make_block(*grid_, part.begin, part.end));
-      rows.push_back(again ? find_sifted(make_block(*grid_, part.begin, part.end), around).neighbors
-                           : kept_[b].row(k));
-      ++k;
-    });
-    kept_[b] = rows;
+  parallel_each_with<Search>(kept_.size(), kBlocksAtOnce, [&](std::size_t b, Search& search) {
+    if (!is_kept(b)) return;
+    const std::span own = std::span(wider).subspan(blocks_[b].begin, blocks_[b].size());
+    search.around.find(*grid_, blocks_[b], -1, cells);
+    if (!search.around.empty() || std::ranges::count(own, 1) > 0) keep_block(b, search);
   });
 }
 

@@ -88,10 +88,6 @@ void Surroundings::find(const CellGrid& grid, const Block& block, float radius,
   while (count_ % simd::kQueries != 0) push_back(nowhere, 0);
 }
 
-bool Surroundings::reach(const Block& part) {
-  return !near(part, -1).empty();
-}
-
 std::span<const simd::Run> Surroundings::near(const Block& part, float squared_radius) {
   if (count_ == 0) return {};
   const simd::Leaves leaves{

@@ -125,8 +125,8 @@ template <class Pick>
   return pick_in_cells(grid, values, [](float a, float b) { return b < a ? b : a; });
 }
 
-/// Calls visit(part) for the parts of a block: simd::kQueries points, fewer in the last. Without
-/// boxes.
+/// Calls visit(part) for the parts of a block: simd::kQueries points, fewer in the last. Their boxes
+/// are not set.
 template <class Visit>
 void for_each_part(const Block& block, const Visit& visit) {
   for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {
@@ -154,8 +154,6 @@ class Surroundings {
   void find(const CellGrid& grid, const Block& block, float radius,
             std::span<const float> reach_of_cells = {});
 
-  /// Does the own reach of any of these leaves end in a part of the block?
-  [[nodiscard]] bool reach(const Block& part);
   [[nodiscard]] bool empty() const { return count_ == 0; }
 
   /// All points of the leaves within `radius` of a part of the block, or within their own reach, m.

@@ -69,8 +69,8 @@ float side_of_square(float gap, float along) {
 /// Calls find(reach) once `near` holds the points within `reach` of a point, then within twice as
 /// much each time that it finds 0, kLineWidenings times in all. @return what it found
 template <class Find>
-float widen(const CellGrid& grid, std::uint32_t i, float reach, std::vector<std::uint32_t>& near,
-            const Find& find) {
+float search_wider(const CellGrid& grid, std::uint32_t i, float reach,
+                   std::vector<std::uint32_t>& near, const Find& find) {
   for (int k = 0; k < kLineWidenings; ++k, reach *= 2) {
     near.clear();
     grid.within(grid.points()[i], reach, near);
@@ -120,7 +120,7 @@ Line noisy_line_at(const CellGrid& grid, std::uint32_t i,
 /// to kLineWidenings times; 0: there is none. `near`: memory.
 float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float reach,
                  std::vector<std::uint32_t>& near) {
-  return widen(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
+  return search_wider(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
 /// About a thousand points, spread over the cloud. Clouds of fewer than 100 points decide nothing:
@@ -158,7 +158,7 @@ namespace {
 /// there is none. The square of a gap is at most 2 s^2 (side_of_square).
 float spacing_beside(const CellGrid& grid, std::uint32_t i, const Line& line,
                      std::span<const float> spacings, std::vector<std::uint32_t>& near) {
-  return widen(grid, i, 2 * line.spacing, near, [&](float nearest) {
+  return search_wider(grid, i, 2 * line.spacing, near, [&](float nearest) {
     float spacing = 0;
     for (const std::uint32_t j : near) {
       const Eigen::Vector3f offset = grid.points()[j] - grid.points()[i];

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/near_pairs.hpp"
 #include "geometry/normals.hpp"
 #include "prepare/given_normals.hpp"
 #include "prepare/segment_fit.hpp"

@@ -70,6 +70,7 @@ Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
   watch.lap(report.seconds_normals);
 
   s.prepared.report = report;
+  s.graph = {};  // its grid moves on
   assemble(s);
   refine(refinements, Stage::points, s, stop);
   complete(s.prepared);

@@ -30,7 +30,7 @@ struct Surfels {
   const PrepareOptions& options;
   Sampling sampling = {};
   Radii radii = {};
-  detail::NeighborhoodGraph graph = {};  ///< of the sampling's points, from the first fits on
+  detail::NeighborhoodGraph graph = {};  ///< of the sampling's points, from the first fits until all are assembled
   PointFits fits = {};
   WeightSums sums = {};
   Weights weights = {};

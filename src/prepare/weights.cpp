@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/near_pairs.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {

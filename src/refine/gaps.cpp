@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "geometry/near_pairs.hpp"
 #include "prepare/limit_radii.hpp"
 #include "prepare/plane_fits.hpp"
 #include "prepare/segment_fit.hpp"

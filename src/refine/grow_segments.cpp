@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/signed_sets.hpp"
+#include "geometry/near_pairs.hpp"
 #include "refine/cannot_link_sets.hpp"
 #include "refine/segments.hpp"
 

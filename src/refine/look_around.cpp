@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "field/formulas.hpp"
+#include "geometry/near_pairs.hpp"
 #include "prepare/plane_fits.hpp"
 #include "refine/segments.hpp"
 
@@ -26,6 +27,8 @@ constexpr float kGapResiduals = 3;  // least height, in residuals: three sigma
 constexpr float kSafe = 0.999f;  // derived: rounding takes less
 
 // Votes of one segment on another; all are judgement.
+constexpr float kVoteReach = 1.3f;  // R
+static_assert(kVoteReach <= kNeighborsReach, "the graph has to hold it");
 constexpr std::size_t kVoteSegments = 4;  // other segments that a point votes on
 constexpr int kVotesEach = 3;             // points of each, the nearest
 
@@ -93,7 +96,7 @@ class Outlook {
 
   [[nodiscard]] Eye eye_at(std::uint32_t i) const {
     const float spacing = input_.spacings[i];
-    const float voting = kNeighborsReach * input_.radii[i];
+    const float voting = kVoteReach * input_.radii[i];
     return {input_.grid().points()[i],
             own_.normals[i],
             kGapTube * spacing,
@@ -149,7 +152,7 @@ class Outlook {
   const SegmentInput& input_;
   const PointFits& own_;
   const std::optional<Vector3f>& viewer_;
-  const float reach_ = viewer_ ? kGapReach : kNeighborsReach;  // R
+  const float reach_ = look_reach(viewer_.has_value());  // R
   GrownSegments& grown_;
   const SurfacePoints::Segments& segments_;
   detail::NearPairs pairs_;
@@ -160,7 +163,7 @@ class Outlook {
 }  // namespace
 
 float look_reach(bool seen) {
-  return seen ? kGapReach : kNeighborsReach;
+  return seen ? kGapReach : kVoteReach;
 }
 
 std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,

@@ -2,12 +2,12 @@
 #include "geometry/neighborhood_graph.hpp"
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "geometry/clouds.hpp"
+#include "support/thread_limit.hpp"
 
 namespace palpate {
 namespace {
@@ -111,6 +111,20 @@ TEST(NeighborhoodGraph, IsReadAsWellWhereItIsTooLargeToKeep) {
   EXPECT_GE(rows, grid.size() / simd::kQueries);
 }
 
+TEST(NeighborhoodGraph, HoldsTheSameOfBlocksThatAreTooLargeToKeep) {
+  Clouds clouds;
+  const CellGrid grid(clouds.sphere(4000, 1));
+  std::vector<float> radii(grid.size(), 0.1f);
+  std::fill(radii.begin(), radii.begin() + 2000, 1.2f);  // rows of 1,500 neighbours and more
+  const std::vector<float> supports(grid.size(), 0.1f);
+  NeighborhoodGraph graph(grid, radii, supports);
+  graph.keep();
+  EXPECT_EQ(rows_of(graph), all_pairs(graph, radii, supports));
+  std::fill(radii.begin() + 2000, radii.begin() + 3000, 1.2f);
+  graph.widen(radii, supports);
+  EXPECT_EQ(rows_of(graph), all_pairs(graph, radii, supports));
+}
+
 TEST(NeighborhoodGraph, DoesNotDependOnTheNumberOfThreads) {
   Clouds clouds;
   const CellGrid grid(clouds.sphere(20000, 1));
@@ -121,7 +135,7 @@ TEST(NeighborhoodGraph, DoesNotDependOnTheNumberOfThreads) {
     return rows_of(graph);
   };
   const Rows many = kept();
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   EXPECT_EQ(kept(), many);
 }
 
