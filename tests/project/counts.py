@@ -69,7 +69,7 @@ def types(path):
                       path.read_text(encoding="utf-8"), re.M)
 
 
-HEART = ("prepare", "refine", "field", "scene", "stream", "sight", "large", "depth", "contact", "geometry")  # between a cloud and a force
+HEART = ("prepare", "refine", "field", "scene", "stream", "sight", "large", "depth", "contact", "geometry", "tool")  # between a cloud and a force
 MOST_METHODS, MOST_MEMBERS = 20, 12  # of a class, where its reader still knows the first at the last
 # What a sentence does not begin with: each leaves out who does what.
 RIDDLE = re.compile(r"\s*//[/!]?<? *(Of|By|As|To be|Those)\b")

@@ -31,6 +31,7 @@ FLOORS = CORE | {
     "bag": {"base", "geometry", "depth", "io", "message"},
     "dds": {"base", "message"},
     "align": {"base", "geometry", "field"},
+    "tool": {"base", "geometry", "field", "contact"},
     "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
     "sensor": {"base", "geometry", "depth", "io", "message", "bag", "dds", "field", "prepare",
                "scene", "sim"},
