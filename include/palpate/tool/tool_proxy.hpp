@@ -1,0 +1,87 @@
+// The proxy of a tool that turns: position, orientation and opening, forces and torques.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+
+#include "palpate/contact/proxy.hpp"
+#include "palpate/field/field.hpp"
+#include "palpate/geometry/pose.hpp"
+#include "palpate/tool/tool.hpp"
+
+namespace palpate {
+
+struct ToolOptions {
+  double stiffness = 500;  ///< K of forces and of the grip, N/m
+  /// g, m, above 0: turns have the stiffness K g^2 (N m/rad). 0: the tool's radius of gyration, at
+  /// least 10 mm and at most half of its extent (1 mm for a point).
+  double gyration = 0;
+  /// Looks at the surface that a step in contact takes before it settles, 2 to 6: more follow a
+  /// fast hand over strong curvature more closely.
+  int iterations = 2;
+};
+
+/// What one step of a tool's proxy gives.
+struct ToolContact {
+  /// Where a sample of the tool presses on the surface. The forces of a contact add up to
+  /// its wrench once the hand rests.
+  struct Touch {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the sample, m, world
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the surface, outward, unit
+    double force = 0;                                    ///< along the normal, N
+    int sample = -1;                                     ///< of Tool::samples()
+  };
+  /// Six constraints hold a rigid tool, a seventh a gripper's opening.
+  static constexpr int kMostTouches = 7;
+
+  /// On the hand: K (proxy - hand), K g^2 times the turn from hand to proxy, and what is left of
+  /// springs that a change of the surface ended.
+  Wrench wrench;
+  Pose proxy;
+  double stiffness = 0;   ///< of all springs in the force, N/m
+  bool touching = false;  ///< held by a surface
+  std::array<Touch, kMostTouches> touches{};
+  int touch_count = 0;
+  int iterations = 0;   ///< looks at the surface
+  int evaluations = 0;  ///< field samples and ball tests spent
+  int source = -1;      ///< index of the source that presses most; -1: none
+  ContactNote notes = ContactNote::none;
+};
+
+/// The god-object of a tool: where the hand is, as far as no sample of the tool enters a solid, by
+/// the least motion in the metric diag(K, K g^2) (docs/method.md 3.7).
+///
+/// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
+/// system. Non-finite input latches a fault: a zero wrench until reset(). More than half a turn
+/// between hand and proxy is taken the short way round. Friction and texture are not rendered.
+class ToolProxy {
+ public:
+  /// @throws Error without a tool, and when an option is not finite or out of its range.
+  explicit ToolProxy(std::shared_ptr<const Tool> tool, const ToolOptions& options = {});
+  ~ToolProxy();
+  ToolProxy(ToolProxy&&) noexcept;
+  ToolProxy& operator=(ToolProxy&&) noexcept;
+
+  /// Moves the tool towards the hand (world). `dt` is the time since the last step, s, at least 0.
+  /// The first step after construction puts the tool where the hand is; what is solid there pushes
+  /// it out, softly: stiffness comes with the hand's motion. Spends at most max_evaluations().
+  [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
+
+  /// Where the tool is. At the origin until the first step or reset().
+  [[nodiscard]] const Pose& pose() const noexcept;
+  /// The gyration is the one in use.
+  [[nodiscard]] const ToolOptions& options() const noexcept;
+  [[nodiscard]] const Tool& tool() const noexcept;
+  /// Evaluations of the field in a step, at most.
+  [[nodiscard]] int max_evaluations() const noexcept;
+
+  /// Puts the tool at `pose` and forgets contact and faults.
+  void reset(const Pose& pose) noexcept;
+
+ private:
+  class Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,225 @@
+// The iterations of a tool's step, and how it follows a surface that has changed.
+#include "tool/descent.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kSolved = 1e-11;  // m, that the solver leaves open: 5e-9 N at 500 N/m
+constexpr int kRestores = 4;       // of the looks: the last ones only lead out of the surface
+constexpr double kWidest = 0.375;  // of R: margin within which a surface is nearly flat (judgement)
+constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
+constexpr double kAhead = 3;       // times the hand's motion: as wide is the first margin of a step
+constexpr double kWithin = 1.5;    // margins are so much wider than the motion that they are for
+constexpr double kLongest = 0.25;  // of R, that a sample moves between two looks
+constexpr double kSlowest = 0.05;  // of a pull, as for a point
+constexpr double kArrived = 2e-7;  // of R: nothing is left to be done (nanometres)
+constexpr double kRestored = 2e-3;  // of R: the same, while only leading out of the surface
+constexpr double kUnproved = 0.02;  // of R: a motion so short needs no look at where it led
+constexpr double kDeep = 5e-3;      // of R: a sample deeper than this keeps a step from ending
+constexpr double kOutside = 0.01;   // of R: a pose with no sample deeper can be gone back to
+constexpr double kRisen = 1e-3;     // of R: less is left to the iterations
+
+// The share of a pull that ends on the closest pose, by the secant of the last motion, which was a
+// share of the pull before: less than 1 where the tool swings.
+double pace_of(const Motion& pull, const Motion& pull_before, const Motion& motion) {
+  const double turned_back = motion.dot(pull_before - pull);
+  const double length = motion.squaredNorm();
+  return turned_back > length ? std::max(kSlowest, length / turned_back) : 1;
+}
+
+// Is the tool inside of what contradicts itself? It may stay there only where the surface has
+// moved.
+bool is_squeezed(const LeastMotion& least, const Look& look, double radius) {
+  return least.end == LeastMotion::End::infeasible && look.deepest < -kDeep * radius;
+}
+
+}  // namespace
+
+Descent::Descent(std::shared_ptr<const Tool> tool, const Metric& metric, int iterations)
+    : tool_(std::move(tool)), metric_(metric), iterations_(iterations), gaps_(tool_) {}
+
+double Descent::farthest(const Motion& motion) const noexcept {
+  const double extent = tool_->extent() + 0.5 * std::abs(pose_.opening);
+  return motion.head<3>().norm() + extent * metric_.rotation(motion).norm() +
+         0.5 * std::abs(motion[6]);
+}
+
+int Descent::most_evaluations(const Tool& tool) noexcept {
+  const std::size_t look = tool.samples().size() + tool.nodes().size();
+  return static_cast<int>(1 + tool.roots().size() +
+                          ToolContact::kMostTouches * GapSearch::kMostRises + kMostLooks * look);
+}
+
+void Descent::move_to(const Pose& pose) noexcept {
+  gaps_.move(farthest(metric_.between(pose_, pose)));
+  pose_ = pose;
+}
+
+void Descent::forget() noexcept {
+  gaps_.forget();
+  outside_.reset();
+}
+
+void Descent::release(const Pose& pose) noexcept {
+  move_to(pose);
+  touches_.count = 0;
+  outside_ = pose;
+}
+
+void Descent::follow(const Field& field, const Pose& hand, double moved,
+                     ToolContact& contact) noexcept {
+  const double radius = gaps_.radius();
+  Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius)};
+  plane_count_ = 0;
+  bool goes_on = true;
+  for (int look = 0; goes_on && look < kMostLooks; ++look) {
+    ++contact.iterations;
+    const bool restores = step.settles || look + kRestores >= kMostLooks;
+    if (restores && !step.settles && !step.whole) contact.notes |= ContactNote::sweep_truncated;
+    goes_on = iterate(field, hand, restores, step, contact);
+  }
+  if (!goes_on) return;
+  contact.notes |= ContactNote::not_converged;
+  if (!step.proved && outside_) move_to(*outside_);
+}
+
+// One look and one motion. False: the step is done.
+bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progress& step,
+                      ToolContact& contact) noexcept {
+  constraints_.clear();
+  if (tool_->roots().size() > 1) {  // fingers do not pass through each other
+    constraints_.add({.normal = Motion::Unit(6), .bound = -pose_.opening});
+  }
+  const Look look = gaps_.look(field, pose_, metric_, step.margin, constraints_);
+  if (look.unknown) {  // what is not known is solid: back to where it was not
+    contact.notes |= ContactNote::sweep_truncated;
+    if (outside_) move_to(*outside_);
+    return false;
+  }
+  const std::size_t seen = constraints_.all().size();
+  if (look.deepest > -kOutside * gaps_.radius()) {
+    outside_ = pose_;
+  } else {
+    step.creased = step.creased || step.held > 0;
+  }
+  if (restores) return restore(look, step);
+  if (step.creased) add_planes();
+  const LeastMotion pull = solve(metric_.between(pose_, hand));
+  remember_touches(pull);
+  const bool held = step.held > 0 && pull.count > 0;
+  const double pace = held ? pace_of(pull.motion, step.pull, step.motion) : 1;
+  const LeastMotion least = pace < 1 ? solve(pace * metric_.between(pose_, hand)) : pull;
+  step.pull = pull.motion;
+  const double far = move(least, seen, look, step);
+  if (pace == 1 && step.whole && pull.count == 0) pose_ = hand;
+  return goes_on(pull, far, look, step);
+}
+
+// A motion back onto the constraints, and onto the planes that were active in this step. False: it
+// is as good as none.
+bool Descent::restore(const Look& look, Progress& step) noexcept {
+  const std::size_t seen = constraints_.all().size();
+  add_planes();
+  const LeastMotion back = solve(Motion::Zero());
+  const bool squeezed = is_squeezed(back, look, gaps_.radius());
+  const double far = move(back, seen, look, step);
+  step.proved = step.proved && !squeezed;
+  return squeezed || far >= kRestored * gaps_.radius();
+}
+
+// A crease shows one of its faces at a time, so those that were met go on holding.
+void Descent::add_planes() noexcept {
+  for (std::size_t i = 0; i < plane_count_; ++i) constraints_.add(planes_[i]);
+}
+
+// Moves as far as the look is right. Returns how far a sample would have gone at most, m.
+double Descent::move(const LeastMotion& least, std::size_t seen, const Look& look,
+                     Progress& step) noexcept {
+  const double radius = gaps_.radius();
+  const double far = farthest(least.motion);
+  const double longest =
+      std::max(std::min(kLongest * radius, look.margin / kWithin), look.clearance);
+  step.whole = far <= longest;
+  step.proved = far < kUnproved * radius;
+  if (!step.whole) step.margin = kWidest * radius;
+  step.motion = step.whole ? least.motion : (longest / far * least.motion).eval();
+  remember_planes(least, seen, step.motion);
+  pose_ = metric_.moved(pose_, step.motion);
+  gaps_.move(std::min(far, longest));
+  return far;
+}
+
+// What squeezes the tool cannot all be followed: then it is held where it is.
+LeastMotion Descent::solve(const Motion& wanted) noexcept {
+  LeastMotion least = least_motion(constraints_.all(), wanted, kSolved);
+  if (least.end != LeastMotion::End::infeasible) return least;
+  for (Constraint& each : constraints_.all()) each.bound = std::min(0.0, each.bound);
+  least = least_motion(constraints_.all(), wanted, kSolved);
+  least.end = LeastMotion::End::infeasible;
+  return least;
+}
+
+bool Descent::goes_on(const LeastMotion& pull, double far, const Look& look,
+                      Progress& step) noexcept {
+  const double radius = gaps_.radius();
+  if (is_squeezed(pull, look, radius)) {
+    step.settles = true;
+    return true;
+  }
+  if (step.whole && far < kArrived * radius) return false;
+  if (step.whole && pull.count == 0) return !step.proved && !constraints_.all().empty();
+  if (pull.count > 0) ++step.held;
+  if (!step.whole || step.held < iterations_) return true;
+  if (step.proved && look.deepest > -kDeep * radius) return false;
+  step.settles = true;
+  return true;
+}
+
+// `seen`: constraints before the planes that are known already.
+void Descent::remember_planes(const LeastMotion& least, std::size_t seen,
+                              const Motion& motion) noexcept {
+  for (int k = 0; k < least.count; ++k) {
+    const auto index = static_cast<std::size_t>(least.active[static_cast<std::size_t>(k)].index);
+    if (index < seen && plane_count_ < planes_.size()) {
+      planes_[plane_count_++] = constraints_.all()[index];
+    }
+  }
+  for (std::size_t i = 0; i < plane_count_; ++i) {
+    planes_[i].bound -= planes_[i].normal.dot(motion);
+  }
+}
+
+void Descent::remember_touches(const LeastMotion& least) noexcept {
+  touches_.count = 0;
+  for (int k = 0; k < least.count; ++k) {
+    const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
+    const Constraint& held = constraints_.all()[static_cast<std::size_t>(active.index)];
+    if (held.sample < 0) continue;
+    touches_.all[static_cast<std::size_t>(touches_.count++)] = {held.sample, held.normal.head<3>(),
+                                                                active.multiplier};
+  }
+}
+
+void Descent::lift(const Field& field, double reach, ToolContact& contact) noexcept {
+  const double high = std::max(reach, kLongest * 2 * gaps_.radius());
+  constraints_.clear();
+  for (const Touches::Touch& touch : touches_.span()) {
+    const Tool::Sample& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
+    const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose_);
+    const double rise = gaps_.rise(field, sample, x, high * touch.normal) * high;
+    if (rise < kRisen * gaps_.radius()) continue;
+    Constraint constraint = constraint_on(*tool_, touch.sample, x, touch.normal, pose_, metric_);
+    constraint.bound = rise;
+    constraints_.add(constraint);
+  }
+  if (constraints_.all().empty()) return;
+  const LeastMotion least = least_motion(constraints_.all(), Motion::Zero(), kSolved);
+  if (least.end != LeastMotion::End::solved) return;
+  move_to(metric_.moved(pose_, least.motion));
+  contact.notes |= ContactNote::reanchored;
+}
+
+}  // namespace palpate

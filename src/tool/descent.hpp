@@ -1,0 +1,97 @@
+// One step's motion of a tool: to the pose nearest to the hand that keeps its samples out.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "palpate/tool/tool_proxy.hpp"
+#include "tool/gap_search.hpp"
+
+namespace palpate {
+
+/// What touches, as the solver left it.
+struct Touches {
+  /// A constraint that presses.
+  struct Touch {
+    int sample = -1;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, outward, unit
+    double multiplier = 0;                             ///< m; times the stiffness a force
+  };
+  std::array<Touch, ToolContact::kMostTouches> all{};
+  int count = 0;
+
+  [[nodiscard]] std::span<const Touch> span() const noexcept {
+    return {all.data(), static_cast<std::size_t>(count)};
+  }
+};
+
+/// Moves a tool's pose (docs/method.md 3.7). Iterates: linearises the surface at the samples near
+/// it, solves for the least motion, and moves as far as that is right. Real-time.
+class Descent {
+ public:
+  /// `iterations`: looks in contact before it settles.
+  Descent(std::shared_ptr<const Tool> tool, const Metric& metric, int iterations);
+
+  /// Forgets what was known of the surface: it has changed.
+  void forget() noexcept;
+  /// The tool is free to be there.
+  void release(const Pose& pose) noexcept;
+  /// The surface has changed: lifts the tool, which touches it, to where each touch finds it again
+  /// within `reach` (m) above.
+  void lift(const Field& field, double reach, ToolContact& contact) noexcept;
+  /// Goes where the hand is, as far as the surface lets it; `moved`: how far any sample of the hand
+  /// has moved since the last step, m, at most.
+  void follow(const Field& field, const Pose& hand, double moved, ToolContact& contact) noexcept;
+
+  [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
+  [[nodiscard]] const Touches& touches() const noexcept { return touches_; }
+  [[nodiscard]] GapSearch& gaps() noexcept { return gaps_; }
+  [[nodiscard]] const Metric& metric() const noexcept { return metric_; }
+  /// The farthest that any sample moves with this, m, at most.
+  [[nodiscard]] double farthest(const Motion& motion) const noexcept;
+  /// Field samples and ball tests of a step, at most.
+  [[nodiscard]] static int most_evaluations(const Tool& tool) noexcept;
+
+ private:
+  static constexpr int kMostLooks = 10;  // six towards the hand, four out of what was not foreseen
+
+  // What a step has seen so far.
+  struct Progress {
+    Motion motion = Motion::Zero();  // the last one
+    Motion pull = Motion::Zero();    // that it is the allowed share of
+    double margin = 0;               // m, of the next look
+    int held = 0;                    // looks with something active
+    bool settles = false;
+    bool whole = true;     // the last motion was not shortened
+    bool proved = true;    // nor so long that what it leads to has to be looked at
+    bool creased = false;  // it led into a face that the look before did not show
+  };
+
+  [[nodiscard]] bool iterate(const Field& field, const Pose& hand, bool restores, Progress& step,
+                             ToolContact& contact) noexcept;
+  [[nodiscard]] LeastMotion solve(const Motion& wanted) noexcept;
+  [[nodiscard]] bool restore(const Look& look, Progress& step) noexcept;
+  double move(const LeastMotion& least, std::size_t seen, const Look& look,
+              Progress& step) noexcept;
+  [[nodiscard]] bool goes_on(const LeastMotion& pull, double far, const Look& look,
+                             Progress& step) noexcept;
+  void add_planes() noexcept;
+  void remember_planes(const LeastMotion& least, std::size_t seen, const Motion& motion) noexcept;
+  void remember_touches(const LeastMotion& least) noexcept;
+  void move_to(const Pose& pose) noexcept;
+
+  std::shared_ptr<const Tool> tool_;
+  Metric metric_;
+  int iterations_;
+  GapSearch gaps_;
+  Pose pose_;
+  Touches touches_;
+  ConstraintList constraints_;
+  std::optional<Pose> outside_;  // the last that was looked at without a sample in the surface
+  // Planes that were active in this step, with bounds for motions from where the tool is now.
+  std::array<Constraint, kMostLooks * ToolContact::kMostTouches> planes_;
+  std::size_t plane_count_ = 0;
+};
+
+}  // namespace palpate

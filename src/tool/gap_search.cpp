@@ -1,0 +1,194 @@
+// Goes down the trees of balls to the samples near the surface, past what is known to be far.
+#include "tool/gap_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "contact/probe.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr double kNothing = -std::numeric_limits<double>::infinity();  // known of a gap
+// A share of a gap, that a sample can move unseen: gaps are of first order, and where a surface
+// curves it is nearer than that (judgement).
+constexpr double kTrusted = 0.6;
+constexpr double kUnseen = 0.5;  // of R: the gap where no point has weight (judgement)
+// In R: how much larger a ball is asked to be than it has to, and how far the tool moves before one
+// that was not free is asked again. Smaller: more questions; larger: more of them in vain.
+constexpr double kExtra = 0.5;
+constexpr double kPush = 0.25;       // of R, that a surface which came pushes the tool in one look
+constexpr double kResolutions = 16;  // R where no surface says it: what resolution is a share of
+constexpr double kRiseSteps = 8;     // in R, on a path on which a touch is found again (judgement)
+constexpr double kMostSteps = 64;    // of these: no surface as thick as R / 4 is missed in 16 R
+constexpr int kBisections = 12;      // of one of these: to 3e-5 R
+constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
+
+}  // namespace
+
+double ConstraintList::drop_half() noexcept {
+  const auto half = all_.begin() + kCapacity / 2;
+  std::nth_element(all_.begin(), half, all_.end(),
+                   [](const Constraint& a, const Constraint& b) { return a.bound > b.bound; });
+  count_ = kCapacity / 2;
+  return half->bound;
+}
+
+Constraint constraint_on(const Tool& tool, int sample, const Eigen::Vector3d& x,
+                         const Eigen::Vector3d& normal, const Pose& pose,
+                         const Metric& metric) noexcept {
+  const int side = tool.samples()[static_cast<std::size_t>(sample)].side;
+  Constraint constraint;
+  constraint.normal << normal, (x - pose.position).cross(normal) / metric.gyration,
+      0.5 * side * normal.dot(pose.orientation * tool.axis());
+  constraint.sample = sample;
+  return constraint;
+}
+
+GapSearch::GapSearch(std::shared_ptr<const Tool> tool)
+    : tool_(std::move(tool)),
+      sample_bounds_(tool_->samples().size(), kNothing),
+      node_bounds_(tool_->nodes().size(), kNothing),
+      node_asked_(tool_->nodes().size(), kNothing) {}
+
+void GapSearch::forget() noexcept {
+  std::fill(sample_bounds_.begin(), sample_bounds_.end(), kNothing);
+  std::fill(node_bounds_.begin(), node_bounds_.end(), kNothing);
+  std::fill(node_asked_.begin(), node_asked_.end(), kNothing);
+  odometer_ = 0;
+}
+
+void GapSearch::begin(const Field& field, const Pose& pose) noexcept {
+  evaluations_ = 0;
+  nearest_ = {};
+  if (radius_known_) return;
+  ++evaluations_;
+  const double radius = field.sample(pose.position).radius;
+  radius_known_ = radius > 0;
+  radius_ = radius_known_ ? radius : kResolutions * field.traits().resolution;
+}
+
+bool GapSearch::is_free(const Field& field, const Ball& ball) noexcept {
+  ++evaluations_;
+  return field.is_free(ball);
+}
+
+double GapSearch::gap(const Field& field, const Tool::Sample& sample,
+                      const Eigen::Vector3d& x) noexcept {
+  ++evaluations_;
+  const Sample here = field.sample(x);
+  if (const std::optional<double> distance = first_order_distance(here)) {
+    return *distance - sample.radius;
+  }
+  return here.value > 0 || here.support <= 0 ? 1 : -1;
+}
+
+double GapSearch::rise(const Field& field, const Tool::Sample& sample, const Eigen::Vector3d& x,
+                       const Eigen::Vector3d& path) noexcept {
+  const auto is_free = [&](double share) { return gap(field, sample, x + share * path) > 0; };
+  if (!is_free(1)) return 0;
+  const double steps = std::clamp(std::ceil(kRiseSteps * path.norm() / radius_), 4.0, kMostSteps);
+  double free = 1;
+  double solid = 1;
+  while (free == solid && solid > 0) {
+    solid = std::max(0.0, solid - 1 / steps);
+    if (is_free(solid)) free = solid;
+  }
+  if (free == solid) return 0;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (free + solid);
+    (is_free(middle) ? free : solid) = middle;
+  }
+  return free;
+}
+
+Look GapSearch::look(const Field& field, const Pose& pose, const Metric& metric, double margin,
+                     ConstraintList& constraints) noexcept {
+  Walk walk{field, pose, metric, constraints, {.margin = margin}};
+  nearest_ = {};
+  walk.found.clearance = std::numeric_limits<double>::infinity();
+  for (const std::int32_t root : tool_->roots()) {
+    visit(walk, root);
+    const double bound = node_bounds_[static_cast<std::size_t>(root)];
+    walk.found.clearance = std::min(walk.found.clearance, bound - odometer_);
+  }
+  return walk.found;
+}
+
+void GapSearch::visit(Walk& walk, std::int32_t index) noexcept {
+  if (passes(walk, index)) return;
+  const auto at = static_cast<std::size_t>(index);
+  const Tool::Node& node = tool_->nodes()[at];
+  if (node.left >= 0) {
+    visit(walk, node.left);
+    visit(walk, node.right);
+    node_bounds_[at] = std::min(node_bounds_[static_cast<std::size_t>(node.left)],
+                                node_bounds_[static_cast<std::size_t>(node.right)]);
+    return;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = node.begin; i < node.end; ++i) {
+    if (sample_bounds_[i] - odometer_ < walk.found.margin) look_at(walk, i);
+    least = std::min(least, sample_bounds_[i]);
+  }
+  node_bounds_[at] = least;
+}
+
+// Is nothing within the margin of the node's samples, as far as is known or one ball shows?
+bool GapSearch::passes(Walk& walk, std::int32_t index) noexcept {
+  const auto at = static_cast<std::size_t>(index);
+  if (node_bounds_[at] - odometer_ >= walk.found.margin) return true;
+  if (node_asked_[at] >= odometer_) return false;
+  const Tool::Node& node = tool_->nodes()[at];
+  const double free = walk.found.margin + kExtra * radius_;
+  const Eigen::Vector3d center = tool_->in_world(node.center, node.side, walk.pose);
+  const bool is = is_free(walk.field, {center, node.radius + free});
+  if (is) {
+    node_bounds_[at] = odometer_ + free;
+  } else {
+    node_asked_[at] = odometer_ + kExtra * radius_;
+  }
+  return is;
+}
+
+void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
+  ++evaluations_;
+  const Tool::Sample& sample = tool_->samples()[index];
+  const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, walk.pose);
+  const Sample here = walk.field.sample(x);
+  if (here.radius > 0) {
+    radius_ = here.radius;
+    radius_known_ = true;
+  }
+  sample_bounds_[index] = odometer_ + kTrusted * kUnseen * radius_;
+  const std::optional<double> distance = first_order_distance(here);
+  if (!distance) {
+    if (here.value > 0 || here.support <= 0) return;
+    walk.found.unknown = true;
+    sample_bounds_[index] = kNothing;
+    return;
+  }
+  if (here.averted) return;
+  const double gap = *distance - sample.radius;
+  const Eigen::Vector3d normal = here.gradient.normalized();
+  sample_bounds_[index] = odometer_ + kTrusted * gap;
+  walk.found.deepest = std::min(walk.found.deepest, gap);
+  if (nearest_.normal.isZero(0) || gap < nearest_.gap) nearest_ = {gap, x, normal};
+  if (gap >= walk.found.margin) return;
+  constrain(walk, constraint_on(*tool_, static_cast<int>(index), x, normal, walk.pose, walk.metric),
+            gap);
+}
+
+// Where the list is full the nearer half stays, and the margin ends before what was dropped.
+void GapSearch::constrain(Walk& walk, Constraint constraint, double gap) const noexcept {
+  if (walk.constraints.full()) {
+    walk.found.margin =
+        std::clamp(-walk.constraints.drop_half(), kLeastMargin * radius_, walk.found.margin);
+    if (gap >= walk.found.margin) return;
+  }
+  constraint.bound = std::min(-gap, kPush * radius_);
+  walk.constraints.add(constraint);
+}
+
+}  // namespace palpate

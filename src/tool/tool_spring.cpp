@@ -1,0 +1,60 @@
+// Stiffness that changes without giving energy, as of the proxy of three degrees of freedom, with
+// the length of a motion in the metric in the place of a distance.
+#include "tool/tool_spring.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+constexpr double kFadedAway = 0.002;  // of the stiffness, as for a point: 3 mN of 1.5 N
+constexpr double kSofter = 0.95;      // of the wanted stiffness, as for a point; less is felt
+
+void add(const Motion& stretch, double stiffness, const Metric& metric, ToolContact& contact) {
+  contact.wrench.force += stiffness * stretch.head<3>();
+  contact.wrench.torque += stiffness * metric.gyration * stretch.segment<3>(3);
+  contact.wrench.grip += stiffness * stretch[6];
+  contact.stiffness += stiffness;
+}
+
+}  // namespace
+
+void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& contact) noexcept {
+  const Motion stretch = metric.between(step.hand, step.now);
+  const double length = stretch.norm();
+  if (step.jumped) leave(step.before, metric);
+  const double wanted = std::max(0.0, step.full - fading_);
+  const double begun = wanted * (length > step.moved ? step.moved / length : 1);
+  if (step.jumped) {
+    tank_.take_over(begun);
+  } else if (step.touching && !touching_) {
+    tank_.restart(begun);
+  }
+  touching_ = contact.touching = step.touching;
+  if (touching_) {
+    add(stretch, tank_.follow(wanted, length, 0, step.dt), metric, contact);
+    if (tank_.stiffness() < kSofter * wanted) contact.notes |= ContactNote::softer;
+  }
+  if (fading_ > 0) add_fading(step, metric, contact);
+}
+
+// The spring of the last step stays at the anchor; two pull like one between them.
+void ToolSpring::leave(const Pose& anchor, const Metric& metric) noexcept {
+  const double both = fading_ + stiffness();
+  if (both > 0) {
+    anchor_ = metric.moved(anchor_, stiffness() / both * metric.between(anchor_, anchor));
+  }
+  fading_ = both;
+  gone_ = kFadedAway * both;
+}
+
+void ToolSpring::add_fading(const Step& step, const Metric& metric, ToolContact& contact) noexcept {
+  const Motion stretch = metric.between(step.hand, anchor_);
+  const double left = fading_ * std::exp(-step.dt / EnergyTank::kTime);
+  tank_.fill(0.5 * (fading_ - left) * stretch.squaredNorm());
+  fading_ = left > gone_ ? left : 0;
+  add(stretch, fading_, metric, contact);
+}
+
+}  // namespace palpate

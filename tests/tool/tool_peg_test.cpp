@@ -1,0 +1,109 @@
+// A peg in a hole: how far it moves and turns before walls hold it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "palpate/field/analytic.hpp"
+#include "tool/tool_rig.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Solid below z = 0, but for a round hole along z without a bottom.
+class HoleField final : public Field {
+ public:
+  explicit HoleField(double radius) : radius_(radius) {}
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const double rho = x.head<2>().norm();
+    const double wall = radius_ - rho;  // above 0 in the hole
+    const Vector3d inward =
+        rho > 0 ? Vector3d(-x.x() / rho, -x.y() / rho, 0) : Vector3d(Vector3d::UnitX());
+    Sample sample{.value = x.z(), .gradient = Vector3d::UnitZ(), .support = 1, .radius = 0.01};
+    if (x.z() >= 0 && wall > 0) {
+      sample.value = std::hypot(wall, x.z());
+      if (sample.value > 0)
+        sample.gradient = (x.z() * Vector3d::UnitZ() + wall * inward) / sample.value;
+    } else if (x.z() < 0 && wall > x.z()) {
+      sample.value = wall;
+      sample.gradient = inward;
+    }
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return sample(ball.center).value > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {.source = 0}; }
+  [[nodiscard]] Traits traits() const noexcept override { return {.resolution = 2e-5}; }
+
+ private:
+  double radius_;
+};
+
+constexpr double kPeg = 0.009;       // m, the peg's radius
+constexpr double kHole = 0.01;       // m, the hole's
+constexpr double kPegLength = 0.04;  // m
+constexpr double kInHole = -0.03;    // m, where the peg's middle is
+
+ToolProxy peg() {
+  std::vector<Tool::Sample> samples;
+  for (int i = 0; i < 720; ++i) {
+    const double angle = std::numbers::pi * i / 360;
+    for (const double z : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
+      samples.push_back({{kPeg * std::cos(angle), kPeg * std::sin(angle), z * kPegLength}, 0, 0});
+    }
+  }
+  return proxy_of(Tool(std::move(samples)), kOptions);
+}
+
+TEST(PegInAHole, IsFreeSidewaysAndThenHeldByItsWall) {
+  const HoleField hole(kHole);
+  ToolProxy proxy = peg();
+  proxy.reset(pose_at({0, 0, kInHole}));
+  double force = 0;
+  double torque = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double x = 1e-5 * i;
+    const ToolContact contact = proxy.step(hole, pose_at({x, 0, kInHole}), kTick);
+    const Vector3d truth(-kStiffness * std::max(0.0, x - (kHole - kPeg)), 0, 0);
+    force = std::max(force, (contact.wrench.force - truth).norm());
+    torque = std::max(torque, contact.wrench.torque.norm());
+  }
+  EXPECT_LT(force, 1e-9);
+  EXPECT_LT(torque, 1e-9);
+}
+
+// Both rings of its ends touch the wall, on opposite sides, when 2 a cos t + h sin t = 2 b.
+TEST(PegInAHole, TiltsUntilItJams) {
+  double jam = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double open = 2 * kPeg * std::cos(jam) + kPegLength * std::sin(jam) - 2 * kHole;
+    jam -= open / (kPegLength * std::cos(jam) - 2 * kPeg * std::sin(jam));
+  }
+  const HoleField hole(kHole);
+  ToolProxy proxy = peg();
+  proxy.reset(pose_at({0, 0, kInHole}));
+  double force = 0;
+  double torque = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double tilt = 5e-4 * i;
+    ToolContact contact;
+    for (int k = 0; k < 10; ++k) {
+      contact = proxy.step(hole, pose_at({0, 0, kInHole}, {0, tilt, 0}), kTick);
+    }
+    const Vector3d truth(0, -kTurnStiffness * std::max(0.0, tilt - jam), 0);
+    torque = std::max(torque, (contact.wrench.torque - truth).norm());
+    force = std::max(force, contact.wrench.force.norm());
+  }
+  EXPECT_GT(jam, 0.02);
+  EXPECT_LT(jam, 0.15);
+  EXPECT_LT(force, 1e-9);
+  EXPECT_LT(torque, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate::test

@@ -1,0 +1,230 @@
+// What a tool's proxy promises besides exact forces: it is the proxy of a point where the tool is a
+// ball, follows what moves, softens with the surface, and refuses what is wrong.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/numbers.hpp"
+#include "contact/test_fields.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/field/analytic.hpp"
+#include "tool/tool_rig.hpp"
+
+namespace palpate::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The largest difference of forces between a ball as a tool and the proxy of a point whose field
+/// has a tool radius, N, over the ticks of a curved path.
+double difference_to_proxy(const Field& surface, const Field& pushed_out, double height) {
+  ToolProxy six = proxy_of(Tool::ball(0.003), {.stiffness = 500});
+  Proxy three({.stiffness = 500, .tangent_tolerance = 1e-6});
+  double worst = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double t = kTick * i;
+    const Vector3d hand(0.02 * std::sin(3 * t), 0.02 * std::cos(2.3 * t),
+                        height + 0.004 * std::cos(5 * t));
+    const ToolContact contact =
+        six.step(surface, pose_at(hand, {0.3 * std::sin(t), 0.2 * t, 0}), kTick);
+    const Contact point = three.step(pushed_out, hand, kTick);
+    worst = std::max(worst, (contact.wrench.force - point.force).norm());
+    EXPECT_LT(contact.wrench.torque.norm(), 1e-12);
+  }
+  return worst;
+}
+
+TEST(ToolProxy, ABallIsTheProxyWithAToolRadius) {
+  const AnalyticField::Options ball{.tool_radius = 0.003};
+  EXPECT_LT(difference_to_proxy(PlaneField(), PlaneField(ball), 0), 1e-9);
+  EXPECT_LT(difference_to_proxy(SphereField(0.05), SphereField(0.05, ball), 0.05), 2e-3);
+}
+
+// The plane steps up and down under a box that rests: it goes along in the tick, flat.
+TEST(ToolProxy, APlaneThatStepsTakesABoxAlong) {
+  PlaneField plane({.reanchor_reach = 0.02});
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3), {.gyration = 0.03});
+  Random random(4);
+  const Pose hand = pose_at({0, 0, -0.02}, {0.02, -0.01, 0});
+  (void)press(proxy, plane, pose_at({0, 0, 0.05}), hand);
+  int lost = 0;
+  int lifted = 0;
+  double deepest = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double height = 0.015 * (random.uniform() - 0.5);
+    plane.set_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, height)));
+    for (int tick = 0; tick < 20; ++tick) {
+      const ToolContact contact = proxy.step(plane, hand, kTick);
+      lost += contact.touching && contact.touch_count > 0 ? 0 : 1;
+      lifted += has(contact.notes, ContactNote::reanchored) ? 1 : 0;
+      deepest = std::max(deepest, depth_of(proxy, plane));
+    }
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_LT(deepest, 0.02 * kSupport);
+  EXPECT_GT(lifted, 100);
+}
+
+// What was known of gaps does not hold for a surface that has moved: a floor that rises into a tool
+// which hovers over it, too near to be free for certain.
+TEST(ToolProxy, APlaneThatRisesMeetsAToolAtRest) {
+  PlaneField plane({.reanchor_reach = 0.02});
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  const Pose hand = pose_at({0, 0, 0.012});
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(proxy.step(plane, hand, kTick).touching);
+  }
+  plane.set_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.005)));
+  EXPECT_TRUE(proxy.step(plane, hand, kTick).touching);
+  EXPECT_LT(depth_of(proxy, plane), 0.02 * kSupport);
+}
+
+// Farther than the surface says that it steps: the old spring fades, and what takes its place is
+// paid for. The force is as it was in the tick before.
+TEST(ToolProxy, AJumpOfTheSurfaceDoesNotStepTheForce) {
+  PlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3), {.gyration = 0.03});
+  const Pose hand = pose_at({0, 0, 0.005});
+  const ToolContact before = press(proxy, plane, pose_at({0, 0, 0.05}), hand);
+  plane.set_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.004)));
+  const ToolContact after = proxy.step(plane, hand, kTick);
+  EXPECT_NEAR(before.wrench.force.z(), 2.5, 1e-9);
+  EXPECT_NEAR(after.wrench.force.z(), 2.5, 0.15);
+  EXPECT_NEAR(after.proxy.position.z(), 0.014, 1e-5);
+  ToolContact later;
+  for (int i = 0; i < 500; ++i) later = proxy.step(plane, hand, kTick);
+  EXPECT_LE(later.wrench.force.z(), 4.5);
+  EXPECT_TRUE(has(later.notes, ContactNote::softer));
+}
+
+TEST(ToolProxy, TheSurfaceSoftensTheWholeWrench) {
+  const PlaneField soft({.surface = {.stiffness_factor = 0.5, .presence = 0.5, .source = 3}});
+  const PlaneField hard;
+  const Tool tool = Tool::box({0.04, 0.06, 0.02}, 5e-3);
+  ToolProxy one = proxy_of(tool);
+  ToolProxy other = proxy_of(tool);
+  const Pose from = pose_at({0, 0, 0.05});
+  const Pose to = pose_at({0, 0, 0.008}, {0.2, 0.1, 0});
+  const ToolContact a = press(one, soft, from, to);
+  const ToolContact b = press(other, hard, from, to);
+  EXPECT_LT((4 * a.wrench.force - b.wrench.force).norm(), 1e-6);
+  EXPECT_LT((4 * a.wrench.torque - b.wrench.torque).norm(), 1e-6);
+  EXPECT_EQ(a.source, 3);
+}
+
+// Both fingers close on a box between them, which is wider than the hand's opening.
+TEST(ToolProxy, AGripperIsHeldOpenByWhatItHolds) {
+  const BoxField box({0.02, 0.05, 0.05});
+  ToolProxy proxy = proxy_of(Tool::gripper({0.006, 0.012, 0.03}, 0.004));
+  Pose hand = pose_at({0, 0, 0.03}, Vector3d::Zero(), 0.03);
+  proxy.reset(hand);
+  ToolContact contact;
+  for (int i = 0; i < 500; ++i) {
+    hand.opening = std::max(0.016, 0.03 - 1e-4 * i);
+    contact = proxy.step(box, hand, kTick);
+  }
+  EXPECT_NEAR(contact.wrench.grip, 500 * 0.004, 1e-9);
+  EXPECT_NEAR(contact.proxy.opening, 0.02, 1e-12);
+  EXPECT_LT(contact.wrench.force.norm(), 1e-9);
+  EXPECT_LT(contact.wrench.torque.norm(), 1e-9);
+}
+
+TEST(ToolProxy, LatchesAFaultOnWhatIsNotFinite) {
+  const PlaneField plane;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Pose turned_wrong = pose_at({0, 0, 0.005});
+  turned_wrong.orientation.coeffs().setZero();
+  for (const auto& [hand, dt] :
+       {std::pair(pose_at({0, nan, 0}), kTick), std::pair(turned_wrong, kTick),
+        std::pair(pose_at({0, 0, 2e9}), kTick), std::pair(pose_at({0, 0, 0}), -1.0),
+        std::pair(pose_at({0, 0, 0}, Vector3d::Zero(), nan), kTick)}) {
+    ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+    (void)press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.005}));
+    EXPECT_TRUE(has(proxy.step(plane, hand, dt).notes, ContactNote::fault));
+    const ToolContact after = proxy.step(plane, pose_at({0, 0, 0.005}), kTick);
+    EXPECT_TRUE(has(after.notes, ContactNote::fault));
+    EXPECT_EQ(after.wrench.force, Vector3d(0, 0, 0));
+    proxy.reset(pose_at({0, 0, 0.05}));
+    EXPECT_FALSE(has(proxy.step(plane, pose_at({0, 0, 0.05}), kTick).notes, ContactNote::fault));
+  }
+}
+
+TEST(ToolProxy, ChecksItsOptions) {
+  const Tool tool = Tool::box({0.04, 0.06, 0.02}, 5e-3);
+  EXPECT_THROW(ToolProxy(nullptr), Error);
+  EXPECT_THROW(proxy_of(tool, {.stiffness = -1}), Error);
+  EXPECT_THROW(proxy_of(tool, {.gyration = std::numeric_limits<double>::infinity()}), Error);
+  EXPECT_THROW(proxy_of(tool, {.iterations = 7}), Error);
+  EXPECT_DOUBLE_EQ(proxy_of(tool).options().gyration, 0.5 * tool.extent());
+  const Tool thin({{{0.008, 0, 0}, 0, 0}, {{0, 0, 0}, 0.05, 0}});
+  EXPECT_DOUBLE_EQ(proxy_of(thin).options().gyration, 0.01);
+  EXPECT_GT(proxy_of(Tool({{Vector3d::Zero(), 0, 0}})).options().gyration, 0);
+}
+
+/// Solid below z = 0, with normals that are far off, otherwise in each cube of 3 mm.
+class WrongNormalsField final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const Vector3d cell = (x / 3e-3).array().floor();
+    const double angle = cell.dot(Vector3d(12.9898, 78.233, 37.719));
+    const Vector3d normal(3 * std::cos(angle), 3 * std::sin(angle), 1);
+    return {.value = x.z(), .gradient = normal.normalized(), .support = 1, .radius = kSupport};
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return ball.center.z() > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override { return {.resolution = 2e-5}; }
+};
+
+// Constraints contradict each other there: the tool stays where it was looked at and is outside.
+TEST(ToolProxy, GoesBackFromWhatItCannotSolve) {
+  const WrongNormalsField field;
+  ToolProxy proxy = proxy_of(Tool::capsule(0.03, 0.003, 0.005));
+  proxy.reset(pose_at({0, 0, 0.04}));
+  int unfinished = 0;
+  double deepest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Pose hand = pose_at({1e-4 * i, 0, 0.04 - 2e-5 * i});
+    const ToolContact contact = proxy.step(field, hand, kTick);
+    unfinished += has(contact.notes, ContactNote::not_converged) ? 1 : 0;
+    deepest = std::max(deepest, depth_of(proxy, field));
+  }
+  EXPECT_GT(unfinished, 100);
+  EXPECT_LT(deepest, 0.02 * kSupport);
+}
+
+// Nothing is known of where a solid ends: the tool stays, until it is free.
+TEST(ToolProxy, StaysWhereTheSolidIsUnknown) {
+  DullPlateField plate;
+  ToolProxy proxy = proxy_of(Tool::box({0.02, 0.02, 0.02}, 5e-3), {.stiffness = 500});
+  (void)press(proxy, plate, pose_at({0, 0, 0.03}), pose_at({0, 0, 0.008}));
+  const Pose before = proxy.pose();
+  plate.dull = true;
+  for (int i = 0; i < 20; ++i) {
+    const ToolContact contact = proxy.step(plate, pose_at({1e-4 * i, 0, 0.008}), kTick);
+    EXPECT_TRUE(has(contact.notes, ContactNote::sweep_truncated));
+    EXPECT_EQ(contact.proxy.position, before.position);
+    EXPECT_NEAR(contact.wrench.force.z(), 1, 1e-9);
+  }
+  plate.dull = false;
+  for (int i = 0; i < 20; ++i) (void)proxy.step(plate, pose_at({0, 0, 0.008 + 1e-3 * i}), kTick);
+  EXPECT_FALSE(proxy.step(plate, pose_at({0, 0, 0.03}), kTick).touching);
+}
+
+// Where the tool begins in a solid it comes out, and no force steps up.
+TEST(ToolProxy, ComesOutOfWhatItBeginsIn) {
+  const PlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  const Pose hand = pose_at({0, 0, 0.002});
+  double largest = 0;
+  for (int i = 0; i < 100; ++i) {
+    largest = std::max(largest, proxy.step(plane, hand, kTick).wrench.force.norm());
+  }
+  EXPECT_LT(depth_of(proxy, plane), 0.02 * kSupport);
+  EXPECT_LT(largest, 0.1);
+}
+
+}  // namespace
+}  // namespace palpate::test
