@@ -125,8 +125,8 @@ ToolContact ToolProxy::Inside::step(const Field& field, const Pose& given, doubl
   ToolContact contact;
   field.begin_step();
   move(field, hand, changed, contact);
-  end(field);
   report(field, contact);
+  end(field);
   pull(before, hand, dt, changed ? &traits.step : nullptr, contact);
   hand_ = hand;
   if (is_finite(contact.wrench) && in_range(pose())) return contact;
@@ -204,7 +204,8 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
   for (ToolContact::Touch& touch : contact.touches) touch.force *= spring_.stiffness();
 }
 
-// Reads what the surface is where it is touched. A touch's force is still its multiplier.
+// Reads what the surface is where it is touched, before the field's step ends: its budget counts
+// that, too. A touch's force is still its multiplier.
 void ToolProxy::Inside::report(const Field& field, ToolContact& contact) noexcept {
   contact.proxy = pose();
   contact.evaluations = descent_.gaps().evaluations();

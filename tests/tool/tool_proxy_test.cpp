@@ -213,6 +213,61 @@ TEST(ToolProxy, StaysWhereTheSolidIsUnknown) {
   EXPECT_FALSE(proxy.step(plate, pose_at({0, 0, 0.03}), kTick).touching);
 }
 
+/// A plane that counts what it is asked outside of a proxy's steps, where its budget is another.
+class SteppedPlaneField final : public Field {
+ public:
+  mutable int late = 0;
+  mutable int surfaces = 0;
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    return counted(), plane_.sample(x);
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return counted(), plane_.is_free(ball);
+  }
+  [[nodiscard]] Surface surface(const Vector3d& x) const noexcept override {
+    ++surfaces;
+    return counted(), plane_.surface(x);
+  }
+  [[nodiscard]] Traits traits() const noexcept override { return plane_.traits(); }
+  void begin_step() const noexcept override { within_ = true; }
+  void end_step(const Vector3d&, const Vector3d&) const noexcept override { within_ = false; }
+
+ private:
+  void counted() const noexcept { late += within_ ? 0 : 1; }
+
+  PlaneField plane_;
+  mutable bool within_ = false;
+};
+
+TEST(ToolProxy, AsksTheFieldOnlyWithinItsSteps) {
+  const SteppedPlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  (void)press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.008}, {0.2, 0.1, 0}));
+  EXPECT_EQ(plane.late, 0);
+  EXPECT_GT(plane.surfaces, 100);
+}
+
+// Fog lies under a tool that comes down in free air: it stops where its middle would go in, where
+// this field first doubts, and never goes back up.
+TEST(ToolProxy, StopsWhereTheUnknownBegins) {
+  DullPlateField plate;
+  plate.dull = true;
+  ToolProxy proxy = proxy_of(Tool::box({0.02, 0.02, 0.02}, 5e-3));
+  int stopped = 0;
+  double rise = 0;
+  proxy.reset(pose_at({0, 0, 0.1}));
+  for (int i = 0; i < 100; ++i) {
+    const Pose before = proxy.pose();
+    const ToolContact contact = proxy.step(plate, pose_at({0, 0, 0.1005 - 1e-3 * i}), kTick);
+    stopped += has(contact.notes, ContactNote::sweep_truncated) ? 1 : 0;
+    if (i > 0) rise = std::max(rise, contact.proxy.position.z() - before.position.z());
+  }
+  EXPECT_GE(stopped, 15);
+  EXPECT_LE(rise, 0);
+  EXPECT_NEAR(proxy.pose().position.z(), 0.02, 1e-3);
+}
+
 // Where the tool begins in a solid it comes out, and no force steps up.
 TEST(ToolProxy, ComesOutOfWhatItBeginsIn) {
   const PlaneField plane;
