@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -58,6 +59,12 @@ void Descent::move_to(const Pose& pose) noexcept {
   pose_ = pose;
 }
 
+// Never farther than to where the step before was outside: to be dragged back over more would be
+// felt as a blow.
+void Descent::go_back() noexcept {
+  if (outside_) move_to(outside_->pose);
+}
+
 void Descent::forget() noexcept {
   gaps_.forget();
   outside_.reset();
@@ -66,7 +73,7 @@ void Descent::forget() noexcept {
 void Descent::release(const Pose& pose) noexcept {
   move_to(pose);
   touches_.count = 0;
-  outside_ = pose;
+  outside_ = {pose};
 }
 
 void Descent::follow(const Field& field, const Pose& hand, double moved,
@@ -74,6 +81,7 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
   const double radius = gaps_.radius();
   Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius)};
   plane_count_ = 0;
+  if (outside_ && std::exchange(outside_->is_old, true)) outside_.reset();
   bool goes_on = true;
   for (int look = 0; goes_on && look < kMostLooks; ++look) {
     ++contact.iterations;
@@ -83,7 +91,7 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
   }
   if (!goes_on) return;
   contact.notes |= ContactNote::not_converged;
-  if (!step.proved && outside_) move_to(*outside_);
+  if (!step.proved) go_back();
 }
 
 // One look and one motion. False: the step is done.
@@ -96,12 +104,12 @@ bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progr
   const Look look = gaps_.look(field, pose_, metric_, step.margin, constraints_);
   if (look.unknown) {  // what is not known is solid: back to where it was not
     contact.notes |= ContactNote::sweep_truncated;
-    if (outside_) move_to(*outside_);
+    go_back();
     return false;
   }
   const std::size_t seen = constraints_.all().size();
   if (look.deepest > -kOutside * gaps_.radius()) {
-    outside_ = pose_;
+    outside_ = {pose_};
   } else {
     step.creased = step.creased || step.held > 0;
   }

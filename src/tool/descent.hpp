@@ -56,6 +56,11 @@ class Descent {
  private:
   static constexpr int kMostLooks = 10;  // six towards the hand, four out of what was not foreseen
 
+  // A pose that was looked at without a sample in the surface.
+  struct Outside {
+    Pose pose;
+    bool is_old = false;  // seen before this step
+  };
   // What a step has seen so far.
   struct Progress {
     Motion motion = Motion::Zero();  // the last one
@@ -80,6 +85,7 @@ class Descent {
   void remember_planes(const LeastMotion& least, std::size_t seen, const Motion& motion) noexcept;
   void remember_touches(const LeastMotion& least) noexcept;
   void move_to(const Pose& pose) noexcept;
+  void go_back() noexcept;
 
   std::shared_ptr<const Tool> tool_;
   Metric metric_;
@@ -88,7 +94,7 @@ class Descent {
   Pose pose_;
   Touches touches_;
   ConstraintList constraints_;
-  std::optional<Pose> outside_;  // the last that was looked at without a sample in the surface
+  std::optional<Outside> outside_;  // the last one
   // Planes that were active in this step, with bounds for motions from where the tool is now.
   std::array<Constraint, kMostLooks * ToolContact::kMostTouches> planes_;
   std::size_t plane_count_ = 0;
