@@ -9,6 +9,9 @@ namespace palpate {
 namespace {
 
 constexpr double kSolved = 1e-11;  // m, that the solver leaves open: 5e-9 N at 500 N/m
+// Of a motion, that may be left open where normals are opposed: ten times the least that the solver
+// tells them apart by, as long levers make them longer than 1.
+constexpr double kOpposed = 1e-5;
 constexpr int kRestores = 4;       // of the looks: the last ones only lead out of the surface
 constexpr double kWidest = 0.375;  // of R: margin within which a surface is nearly flat (judgement)
 constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
@@ -31,10 +34,10 @@ double pace_of(const Motion& pull, const Motion& pull_before, const Motion& moti
   return turned_back > length ? std::max(kSlowest, length / turned_back) : 1;
 }
 
-// Is the tool inside of what contradicts itself? It may stay there only where the surface has
-// moved.
+// Is the tool inside of what contradicts itself, or of what the solver did not come through? It may
+// stay there only where the surface has moved.
 bool is_squeezed(const LeastMotion& least, const Look& look, double radius) {
-  return least.end == LeastMotion::End::infeasible && look.deepest < -kDeep * radius;
+  return least.end != LeastMotion::End::solved && look.deepest < -kDeep * radius;
 }
 
 }  // namespace
@@ -122,7 +125,8 @@ bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progr
   const LeastMotion least = pace < 1 ? solve(pace * metric_.between(pose_, hand)) : pull;
   step.pull = pull.motion;
   const double far = move(least, seen, look, step);
-  if (pace == 1 && step.whole && pull.count == 0) pose_ = hand;
+  const bool free = pull.end == LeastMotion::End::solved && pull.count == 0;
+  if (pace == 1 && step.whole && free) pose_ = hand;
   return goes_on(pull, far, look, step);
 }
 
@@ -160,12 +164,14 @@ double Descent::move(const LeastMotion& least, std::size_t seen, const Look& loo
   return far;
 }
 
-// What squeezes the tool cannot all be followed: then it is held where it is.
+// What squeezes the tool cannot all be followed: then it is held where it is. Normals that are
+// nearly opposed contradict each other even there, unless that much of the motion is left open.
 LeastMotion Descent::solve(const Motion& wanted) noexcept {
   LeastMotion least = least_motion(constraints_.all(), wanted, kSolved);
   if (least.end != LeastMotion::End::infeasible) return least;
   for (Constraint& each : constraints_.all()) each.bound = std::min(0.0, each.bound);
-  least = least_motion(constraints_.all(), wanted, kSolved);
+  least = least_motion(constraints_.all(), wanted, kSolved + kOpposed * wanted.norm());
+  if (least.end == LeastMotion::End::infeasible) least = {};  // no motion at all
   least.end = LeastMotion::End::infeasible;
   return least;
 }
@@ -173,11 +179,12 @@ LeastMotion Descent::solve(const Motion& wanted) noexcept {
 bool Descent::goes_on(const LeastMotion& pull, double far, const Look& look,
                       Progress& step) noexcept {
   const double radius = gaps_.radius();
-  if (is_squeezed(pull, look, radius)) {
+  const bool still = step.whole && far < kArrived * radius;
+  if (is_squeezed(pull, look, radius) || (still && look.deepest < -kDeep * radius)) {
     step.settles = true;
     return true;
   }
-  if (step.whole && far < kArrived * radius) return false;
+  if (still) return false;
   if (step.whole && pull.count == 0) return !step.proved && !constraints_.all().empty();
   if (pull.count > 0) ++step.held;
   if (!step.whole || step.held < iterations_) return true;

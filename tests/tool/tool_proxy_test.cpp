@@ -195,6 +195,76 @@ TEST(ToolProxy, GoesBackFromWhatItCannotSolve) {
   EXPECT_LT(deepest, 0.02 * kSupport);
 }
 
+/// Free between two walls that lean by nearly nothing against each other.
+class SlotField final : public Field {
+ public:
+  double half = 0.02;  // of its width, m
+  double lean = 3e-8;  // rad
+  std::uint64_t revision = 0;
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const double side = x.x() > 0 ? 1 : -1;
+    const Vector3d normal = Vector3d(-side, 0, x.x() > 0 ? 0 : lean).normalized();
+    return {.value = half - std::abs(x.x()), .gradient = normal, .support = 1, .radius = kSupport};
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return half - std::abs(ball.center.x()) > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override {
+    return {.resolution = 2e-5, .revision = revision, .reanchor_reach = 5e-3, .step = 5e-3};
+  }
+};
+
+// A tool as wide as a slot slides along it, though its constraints contradict each other by what
+// the solver cannot tell from rounding.
+TEST(ToolProxy, SlidesInASlotAsWideAsItIs) {
+  for (const double lean : {0.0, 1e-9, -3e-8, -3e-7, 3e-7, 1e-5}) {
+    SlotField slot;
+    slot.half = 0.01;
+    slot.lean = lean;
+    ToolProxy proxy = proxy_of(Tool::box({0.02, 0.03, 0.01}, 5e-3));
+    proxy.reset(pose_at({0, 0, 0}));
+    double lag = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Pose hand = pose_at({3e-3, 0, 2e-4 * i});
+      const ToolContact contact = proxy.step(slot, hand, kTick);
+      lag = std::max(lag, hand.position.z() - contact.proxy.position.z());
+      EXPECT_LT(depth_of(proxy, slot), 0.02 * kSupport);
+    }
+    EXPECT_LT(lag, 1e-3) << lean;
+  }
+}
+
+// A slot that closes on a tool squeezes it: there is no way out along the nearly opposed normals.
+// Whenever a step leaves it deep inside, the step says so; what it moves stays small.
+TEST(ToolProxy, SaysThatItIsSqueezed) {
+  for (const bool turned_about : {false, true}) {
+    SlotField slot;
+    ToolProxy proxy = proxy_of(Tool::box({0.02, 0.03, 0.01}, 5e-3));
+    const Pose hand = pose_at({1e-3, 0, 0}, {0, 0, turned_about ? 0.2 : 0.0});
+    proxy.reset(hand);
+    int deep = 0;
+    int silent = 0;
+    double farthest = 0;
+    for (int i = 0; i < 400; ++i) {
+      if (i % 20 == 0) {
+        slot.half -= 1e-3;
+        ++slot.revision;
+      }
+      const ToolContact contact = proxy.step(slot, hand, kTick);
+      const bool is_deep = depth_of(proxy, slot) > 0.05 * kSupport;
+      deep += is_deep ? 1 : 0;
+      silent += is_deep && !has(contact.notes, ContactNote::not_converged) ? 1 : 0;
+      farthest = std::max(farthest, (contact.proxy.position - hand.position).norm());
+      EXPECT_FALSE(has(contact.notes, ContactNote::fault));
+    }
+    EXPECT_GT(deep, 100);
+    EXPECT_EQ(silent, 0);
+    EXPECT_LT(farthest, 0.02);
+  }
+}
+
 // Nothing is known of where a solid ends: the tool stays, until it is free.
 TEST(ToolProxy, StaysWhereTheSolidIsUnknown) {
   DullPlateField plate;
