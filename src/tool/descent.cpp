@@ -101,8 +101,9 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
 bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progress& step,
                       ToolContact& contact) noexcept {
   constraints_.clear();
-  if (tool_->roots().size() > 1) {  // fingers do not pass through each other
+  if (tool_->opens()) {  // fingers do not pass through each other
     constraints_.add({.normal = Motion::Unit(6), .bound = -pose_.opening});
+    constraints_.keep();
   }
   const Look look = gaps_.look(field, pose_, metric_, step.margin, constraints_);
   if (look.unknown) {  // what is not known is solid: back to where it was not

@@ -29,7 +29,7 @@ constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
 
 double ConstraintList::drop_half() noexcept {
   const auto half = all_.begin() + kCapacity / 2;
-  std::nth_element(all_.begin(), half, all_.end(),
+  std::nth_element(all_.begin() + static_cast<std::ptrdiff_t>(kept_), half, all_.end(),
                    [](const Constraint& a, const Constraint& b) { return a.bound > b.bound; });
   count_ = kCapacity / 2;
   return half->bound;

@@ -15,13 +15,16 @@ namespace palpate {
 /// A list of constraints of fixed capacity.
 class ConstraintList {
  public:
-  void clear() noexcept { count_ = 0; }
+  void clear() noexcept { count_ = kept_ = 0; }
+  /// What is in it stays until it is cleared.
+  void keep() noexcept { kept_ = count_; }
   [[nodiscard]] bool full() const noexcept { return count_ == kCapacity; }
   /// Does nothing when it is full.
   void add(const Constraint& constraint) noexcept {
     if (!full()) all_[count_++] = constraint;
   }
-  /// Drops the half with the smaller bounds. Returns the largest bound that was dropped.
+  /// Drops the half with the smaller bounds, but for what is kept. Returns the largest bound that
+  /// was dropped.
   double drop_half() noexcept;
 
   [[nodiscard]] std::span<Constraint> all() noexcept { return {all_.data(), count_}; }
@@ -31,6 +34,7 @@ class ConstraintList {
 
   std::array<Constraint, kCapacity> all_;
   std::size_t count_ = 0;
+  std::size_t kept_ = 0;  // the first ones
 };
 
 /// The constraint that keeps a sample of the tool, in the world at x, on the side of a surface's

@@ -44,6 +44,12 @@ bool in_range(const Pose& pose) {
          std::abs(pose.opening) <= Proxy::kLargestCoordinate;
 }
 
+// The pose that a hand wants a tool to have: of unit length, and no farther closed than it can be.
+Pose wanted_of(const Pose& given, const Tool& tool) {
+  return {given.position, given.orientation.normalized(),
+          tool.opens() ? std::max(0.0, given.opening) : 0.0};
+}
+
 bool is_finite(const Wrench& wrench) {
   return wrench.force.allFinite() && wrench.torque.allFinite() && std::isfinite(wrench.grip);
 }
@@ -94,8 +100,7 @@ class ToolProxy::Inside {
 void ToolProxy::Inside::reset(const Pose& given) noexcept {
   fault_ = !in_range(given);
   started_ = !fault_;
-  hand_ = fault_ ? Pose() : given;
-  hand_.orientation.normalize();
+  hand_ = fault_ ? Pose() : wanted_of(given, *tool_);
   descent_.release(hand_);
   descent_.forget();  // whether it is free there, too
   spring_.reset();
@@ -114,8 +119,7 @@ ToolContact ToolProxy::Inside::step(const Field& field, const Pose& given, doubl
   if (!in_range(given) || !std::isfinite(dt) || dt < 0) fault_ = true;
   if (fault_) return faulted();
   if (!started_) reset(given);
-  Pose hand = given;
-  hand.orientation.normalize();
+  const Pose hand = wanted_of(given, *tool_);
   const Pose before = pose();
   const Field::Traits traits = field.traits();
   const bool changed = revision_ && *revision_ != traits.revision;

@@ -130,6 +130,43 @@ TEST(ToolProxy, AGripperIsHeldOpenByWhatItHolds) {
   EXPECT_LT(contact.wrench.torque.norm(), 1e-9);
 }
 
+// A hand that squeezes beyond that finds the gripper closed, in the air as well as on a floor that
+// it is pressed onto, with more samples than the solver takes.
+TEST(ToolProxy, AClosedGripperIsClosedEverywhere) {
+  const PlaneField floor;
+  ToolProxy proxy = proxy_of(Tool::gripper({0.02, 0.03, 0.01}, 1e-3));
+  proxy.reset(pose_at({0, 0, 0.05}, Vector3d::Zero(), -0.004));
+  int touching = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double t = kTick * i;
+    const Pose hand = pose_at({0.01 * t, 0, std::max(5e-3, 0.05 - 5e-4 * i)},
+                              {0.1 * std::sin(20 * t), 0.1 * std::cos(30 * t), 0}, -0.004);
+    const ToolContact contact = proxy.step(floor, hand, kTick);
+    touching += contact.touching ? 1 : 0;
+    // A floor that is not flat under both fingers opens them: it never crosses them.
+    EXPECT_GE(contact.proxy.opening, -1e-10);
+    EXPECT_EQ(contact.touching || contact.wrench.grip == 0, true);
+  }
+  EXPECT_GT(touching, 150);
+  for (int i = 0; i < 300; ++i) (void)proxy.step(floor, pose_at({0, 0, 0.05}), kTick);
+  EXPECT_EQ(proxy.pose().opening, 0);
+}
+
+TEST(ToolProxy, ARigidToolHasNoOpening) {
+  const PlaneField floor;
+  ToolProxy one = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3), kOptions);
+  ToolProxy other = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3), kOptions);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d position(0, 0, 0.02 - 1e-4 * i);
+    const Pose opened = pose_at(position, {0.1, 0, 0}, 0.03 * std::sin(0.1 * i));
+    const Wrench a = one.step(floor, opened, kTick).wrench;
+    const Wrench b = other.step(floor, pose_at(position, {0.1, 0, 0}), kTick).wrench;
+    EXPECT_EQ(a.force, b.force);
+    EXPECT_EQ(a.torque, b.torque);
+    EXPECT_EQ(a.grip, 0);
+  }
+}
+
 TEST(ToolProxy, LatchesAFaultOnWhatIsNotFinite) {
   const PlaneField plane;
   const double nan = std::numeric_limits<double>::quiet_NaN();

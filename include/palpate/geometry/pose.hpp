@@ -10,7 +10,8 @@ struct Pose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the handle, m, world
   /// Rotation from the tool's axes to the world's, of unit length.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  double opening = 0;  ///< between the fingers of a gripper, m; 0 for other tools
+  /// Between the fingers of a gripper, m, at least 0; 0 for other tools.
+  double opening = 0;
 };
 
 /// Acts on a hand that holds a tool; in the world's axes.

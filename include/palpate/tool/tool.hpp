@@ -82,6 +82,10 @@ class Tool {
   [[nodiscard]] std::span<const std::int32_t> roots() const noexcept { return roots_; }
   /// Unit vector.
   [[nodiscard]] const Eigen::Vector3d& axis() const noexcept { return axis_; }
+  /// Does anything move with the opening?
+  [[nodiscard]] bool opens() const noexcept {
+    return samples_.front().side != 0 || samples_.back().side != 0;  // they are in order of sides
+  }
   /// The farthest that anything is from the handle at an opening of 0, m.
   [[nodiscard]] double extent() const noexcept { return extent_; }
   /// Radius of gyration about the handle: root mean square distance of the samples, m.

@@ -65,7 +65,8 @@ class ToolProxy {
 
   /// Moves the tool towards the hand (world). `dt` is the time since the last step, s, at least 0.
   /// The first step after construction puts the tool where the hand is; what is solid there pushes
-  /// it out, softly: stiffness comes with the hand's motion. Spends at most max_evaluations().
+  /// it out, softly: stiffness comes with the hand's motion. Spends at most max_evaluations(). An
+  /// opening below 0 is taken for 0: a gripper that is closed on nothing gives no grip.
   [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
 
   /// Where the tool is. At the origin until the first step or reset().
