@@ -19,6 +19,9 @@ constexpr double kLeastJump = 0.01;      // of R, as for a point: iterations lea
 constexpr double kFall = 0.5;  // of the stretch, as for a point: the least that is noted as a fall
 constexpr double kShortest = 0.1;  // of length 1: a shorter orientation is none
 
+// The tool has not caught up with the hand, as for a point.
+constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
+
 std::shared_ptr<const Tool> checked(std::shared_ptr<const Tool> tool) {
   if (!tool) throw Error("tool proxy: it has no tool; give one");
   return tool;
@@ -89,7 +92,7 @@ class ToolProxy::Inside {
   ToolOptions options_;
   Descent descent_;
   ToolSpring spring_;
-  Pose hand_;                              // in the last step
+  Pose hand_;                              // in the last step that caught up with it
   const Field* field_ = nullptr;           // in the last step; never looked into
   std::optional<std::uint64_t> revision_;  // of it, then; empty: no step since a reset
   double factor_ = 1;                      // of the stiffness, by what is touched
@@ -132,7 +135,7 @@ ToolContact ToolProxy::Inside::step(const Field& field, const Pose& given, doubl
   report(field, contact);
   end(field);
   pull(before, hand, dt, changed ? &traits.step : nullptr, contact);
-  hand_ = hand;
+  if (!has(contact.notes, kUnfinished)) hand_ = hand;
   if (is_finite(contact.wrench) && in_range(pose())) return contact;
   fault_ = true;
   return faulted();

@@ -98,6 +98,23 @@ TEST(ToolProxy, AJumpOfTheSurfaceDoesNotStepTheForce) {
   EXPECT_TRUE(has(later.notes, ContactNote::softer));
 }
 
+// A hand that leaps along a plane: the tool catches up in some steps, and nothing has fallen.
+TEST(ToolProxy, CatchingUpIsNoFall) {
+  const PlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  (void)press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.009}));
+  int lagging = 0;
+  ToolContact contact;
+  for (int i = 0; i < 50; ++i) {
+    contact = proxy.step(plane, pose_at({0.06, 0, 0.009}), kTick);
+    lagging += has(contact.notes, ContactNote::sweep_truncated) ? 1 : 0;
+    EXPECT_FALSE(has(contact.notes, ContactNote::fell));
+  }
+  EXPECT_GE(lagging, 2);
+  EXPECT_LE(lagging, 10);
+  EXPECT_LT((contact.wrench.force - Vector3d(0, 0, 0.5)).norm(), 1e-6);
+}
+
 TEST(ToolProxy, TheSurfaceSoftensTheWholeWrench) {
   const PlaneField soft({.surface = {.stiffness_factor = 0.5, .presence = 0.5, .source = 3}});
   const PlaneField hard;
