@@ -90,8 +90,9 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
     ++contact.iterations;
     const bool restores = step.settles || look + kRestores >= kMostLooks;
     if (restores && !step.settles && !step.whole) contact.notes |= ContactNote::sweep_truncated;
-    goes_on = iterate(field, hand, restores, step, contact);
+    goes_on = iterate(field, hand, restores, step, contact) && step.finite;
   }
+  if (!step.finite) contact.notes |= ContactNote::fault;
   if (!goes_on) return;
   contact.notes |= ContactNote::not_converged;
   if (!step.proved) go_back();
@@ -127,7 +128,7 @@ bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progr
   step.pull = pull.motion;
   const double far = move(least, seen, look, step);
   const bool free = pull.end == LeastMotion::End::solved && pull.count == 0;
-  if (pace == 1 && step.whole && free) pose_ = hand;
+  if (pace == 1 && step.whole && free && step.finite) pose_ = hand;
   return goes_on(pull, far, look, step);
 }
 
@@ -155,6 +156,8 @@ double Descent::move(const LeastMotion& least, std::size_t seen, const Look& loo
   const double far = farthest(least.motion);
   const double longest =
       std::max(std::min(kLongest * radius, look.margin / kWithin), look.clearance);
+  step.finite = std::isfinite(far);
+  if (!step.finite) return far;
   step.whole = far <= longest;
   step.proved = far < kUnproved * radius;
   if (!step.whole) step.margin = kWidest * radius;
@@ -233,7 +236,7 @@ void Descent::lift(const Field& field, double reach, ToolContact& contact) noexc
   }
   if (constraints_.all().empty()) return;
   const LeastMotion least = least_motion(constraints_.all(), Motion::Zero(), kSolved);
-  if (least.end != LeastMotion::End::solved) return;
+  if (least.end != LeastMotion::End::solved || !least.motion.allFinite()) return;
   move_to(metric_.moved(pose_, least.motion));
   contact.notes |= ContactNote::reanchored;
 }

@@ -68,6 +68,7 @@ class Descent {
     double margin = 0;               // m, of the next look
     int held = 0;                    // looks with something active
     bool settles = false;
+    bool finite = true;    // the last motion is
     bool whole = true;     // the last motion was not shortened
     bool proved = true;    // nor so long that what it leads to has to be looked at
     bool creased = false;  // it led into a face that the look before did not show

@@ -163,15 +163,16 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   }
   sample_bounds_[index] = odometer_ + kTrusted * kUnseen * radius_;
   const std::optional<double> distance = first_order_distance(here);
-  if (!distance) {
-    if (here.value > 0 || here.support <= 0) return;
+  const Eigen::Vector3d normal = here.gradient.normalized();
+  const bool finite = std::isfinite(distance.value_or(0)) && normal.allFinite();
+  if (!distance || !finite) {  // a field that is not finite is wrong, and solid
+    if (finite && (here.value > 0 || here.support <= 0)) return;
     walk.found.unknown = true;
     sample_bounds_[index] = kNothing;
     return;
   }
   if (here.averted) return;
   const double gap = *distance - sample.radius;
-  const Eigen::Vector3d normal = here.gradient.normalized();
   sample_bounds_[index] = odometer_ + kTrusted * gap;
   walk.found.deepest = std::min(walk.found.deepest, gap);
   if (nearest_.normal.isZero(0) || gap < nearest_.gap) nearest_ = {gap, x, normal};

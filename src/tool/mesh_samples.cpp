@@ -61,6 +61,8 @@ class Mesh {
  private:
   void weld(const Vector3d& vertex) {
     if (!vertex.allFinite()) throw Error("tool: a vertex is not finite; give metres");
+    kRequireMesh(vertex.cwiseAbs().maxCoeff() <= Tool::kLongest, "a vertex's coordinate",
+                 vertex.cwiseAbs().maxCoeff(), "give metres, 10 at most");
     const auto next = static_cast<std::uint32_t>(positions_.size());
     const auto [known, is_new] = known_.try_emplace({vertex.x(), vertex.y(), vertex.z()}, next);
     if (is_new) positions_.push_back(vertex);

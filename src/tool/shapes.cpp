@@ -20,7 +20,6 @@ constexpr double kDense = 0.28;       // radii between a stylus's balls: sqrt(1 
 constexpr int kLeastRing = 8;         // samples around a thin cylinder (judgement)
 constexpr double kRounded = 1e-9;     // of a step: 0.03 / 0.01 is three steps
 constexpr double kMillimetre = 1e-3;  // m, the unit of texts
-constexpr double kLongestTool = 10;   // m; nobody holds a longer tool, which may be one in metres
 
 void require_length(const char* name, double value) {
   kRequireTool.positive(name, value, "give a length above 0, in metres");
@@ -121,7 +120,7 @@ std::vector<double> sizes_of(std::string_view text, const Shape& shape) {
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('x', ++begin), text.size());
     const double size = kMillimetre * size_of(text.substr(begin, end - begin)).value_or(0);
-    if (!(size > 0 && size <= kLongestTool)) sizes.resize(shape.sizes);  // one too many follows
+    if (!(size > 0 && size <= Tool::kLongest)) sizes.resize(shape.sizes);  // one too many follows
     sizes.push_back(size);
     begin = end;
   }
@@ -129,7 +128,7 @@ std::vector<double> sizes_of(std::string_view text, const Shape& shape) {
     throw Error(fmt::format(
         "tool: \"{}\" has no such sizes; give {} in millimetres, {} above 0 and "
         "at most {:.0f}",
-        text, shape.form, shape.sizes == 1 ? "a number" : "numbers", kLongestTool / kMillimetre));
+        text, shape.form, shape.sizes == 1 ? "a number" : "numbers", Tool::kLongest / kMillimetre));
   }
   return sizes;
 }

@@ -19,6 +19,11 @@ void check_sample(const Tool::Sample& sample) {
     throw Error(
         "tool: a sample is not finite or has a radius below 0; give positions and radii in metres");
   }
+  const double out = std::max(sample.position.cwiseAbs().maxCoeff(), sample.radius);
+  if (out > Tool::kLongest) {
+    throw Error(
+        fmt::format("tool: a sample is {} m out; give metres, {} at most", out, Tool::kLongest));
+  }
   if (std::abs(sample.side) > 1) {
     throw Error(fmt::format("tool: the side of a sample is {}; give -1, 0 or 1", sample.side));
   }
@@ -27,7 +32,7 @@ void check_sample(const Tool::Sample& sample) {
 }  // namespace
 
 Tool::Tool(std::vector<Sample> samples, const Eigen::Vector3d& axis)
-    : samples_(std::move(samples)), axis_(axis.normalized()) {
+    : samples_(std::move(samples)), axis_(axis.stableNormalized()) {
   if (samples_.empty()) throw Error("tool: it has no samples; give at least one");
   if (samples_.size() > kMostSamples) {
     throw Error(fmt::format("tool: it has {} samples; give a larger spacing, for {} at most",

@@ -17,7 +17,10 @@ constexpr double kPointGyration = 1e-3;  // m, of a point, whose turns meet noth
 constexpr double kFastestSurface = 1;    // m/s, as for a point: what moves faster has jumped
 constexpr double kLeastJump = 0.01;      // of R, as for a point: iterations leave as much open
 constexpr double kFall = 0.5;  // of the stretch, as for a point: the least that is noted as a fall
-constexpr double kShortest = 0.1;  // of length 1: a shorter orientation is none
+// m: the turns of a smaller or larger gyration are those of no hand, and are lost in rounding.
+constexpr double kSmallestGyration = 1e-4;
+constexpr double kLargestGyration = Tool::kLongest;
+constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
 // The tool has not caught up with the hand, as for a point.
 constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
@@ -29,7 +32,9 @@ std::shared_ptr<const Tool> checked(std::shared_ptr<const Tool> tool) {
 
 ToolOptions checked(const ToolOptions& options, const Tool& tool) {
   kRequireProxy.not_negative("stiffness", options.stiffness, "give N/m, 0 or more");
-  kRequireProxy.not_negative("gyration", options.gyration, "give metres, or 0 for the tool's");
+  kRequireProxy(options.gyration == 0 ||
+                    (options.gyration >= kSmallestGyration && options.gyration <= kLargestGyration),
+                "gyration", options.gyration, "give 0.0001 to 10 metres, or 0 for the tool's");
   kRequireProxy(options.iterations >= 2 && options.iterations <= 6, "iterations",
                 options.iterations, "give 2 to 6");
   ToolOptions complete = options;
@@ -43,7 +48,7 @@ ToolOptions checked(const ToolOptions& options, const Tool& tool) {
 bool in_range(const Pose& pose) {
   return pose.position.allFinite() &&
          pose.position.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate &&
-         pose.orientation.coeffs().allFinite() && pose.orientation.norm() > kShortest &&
+         std::abs(pose.orientation.norm() - 1) <= kNotUnit &&
          std::abs(pose.opening) <= Proxy::kLargestCoordinate;
 }
 
@@ -136,8 +141,11 @@ ToolContact ToolProxy::Inside::step(const Field& field, const Pose& given, doubl
   end(field);
   pull(before, hand, dt, changed ? &traits.step : nullptr, contact);
   if (!has(contact.notes, kUnfinished)) hand_ = hand;
-  if (is_finite(contact.wrench) && in_range(pose())) return contact;
+  const bool faulty = has(contact.notes, ContactNote::fault);
+  if (!faulty && is_finite(contact.wrench) && in_range(pose())) return contact;
   fault_ = true;
+  descent_.release(hand);
+  descent_.forget();  // an odometer that is not finite, too
   return faulted();
 }
 

@@ -189,8 +189,13 @@ TEST(ToolProxy, LatchesAFaultOnWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Pose turned_wrong = pose_at({0, 0, 0.005});
   turned_wrong.orientation.coeffs().setZero();
+  Pose turned_far = pose_at({0, 0, 0.005});
+  turned_far.orientation.w() = std::numeric_limits<double>::infinity();
+  Pose turned_long = pose_at({0, 0, 0.005});
+  turned_long.orientation.w() = 1e200;  // finite, but for its square
   for (const auto& [hand, dt] :
        {std::pair(pose_at({0, nan, 0}), kTick), std::pair(turned_wrong, kTick),
+        std::pair(turned_far, kTick), std::pair(turned_long, kTick),
         std::pair(pose_at({0, 0, 2e9}), kTick), std::pair(pose_at({0, 0, 0}), -1.0),
         std::pair(pose_at({0, 0, 0}, Vector3d::Zero(), nan), kTick)}) {
     ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
@@ -204,11 +209,48 @@ TEST(ToolProxy, LatchesAFaultOnWhatIsNotFinite) {
   }
 }
 
+/// Wrong: gradients that are not finite below z = 5 mm. Counts where it is asked.
+class BrokenField final : public Field {
+ public:
+  mutable int not_finite = 0;
+
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    not_finite += x.allFinite() ? 0 : 1;
+    Sample sample{.value = x.z(), .support = 1, .radius = kSupport};
+    sample.gradient = Vector3d(0, 0, x.z() < 5e-3 ? std::numeric_limits<double>::infinity() : 1);
+    return sample;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    not_finite += ball.center.allFinite() ? 0 : 1;
+    return ball.center.z() > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {}; }
+  [[nodiscard]] Traits traits() const noexcept override { return {.resolution = 2e-5}; }
+};
+
+// A field that is wrong holds the tool: nothing that is not finite is asked for or reported.
+TEST(ToolProxy, TakesWhatIsNotFiniteForSolid) {
+  const BrokenField field;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  ToolContact contact;
+  for (int i = 0; i < 200; ++i) {
+    contact = proxy.step(field, pose_at({0, 0, 0.03 - 2e-4 * i}), kTick);
+    EXPECT_TRUE(contact.wrench.force.allFinite() && contact.wrench.torque.allFinite());
+    EXPECT_TRUE(contact.proxy.position.allFinite());
+  }
+  EXPECT_TRUE(has(contact.notes, ContactNote::sweep_truncated));
+  EXPECT_FALSE(has(contact.notes, ContactNote::fault));
+  EXPECT_GT(contact.proxy.position.z(), 0.01);
+  EXPECT_EQ(field.not_finite, 0);
+}
+
 TEST(ToolProxy, ChecksItsOptions) {
   const Tool tool = Tool::box({0.04, 0.06, 0.02}, 5e-3);
   EXPECT_THROW(ToolProxy(nullptr), Error);
   EXPECT_THROW(proxy_of(tool, {.stiffness = -1}), Error);
   EXPECT_THROW(proxy_of(tool, {.gyration = std::numeric_limits<double>::infinity()}), Error);
+  EXPECT_THROW(proxy_of(tool, {.gyration = 1e-300}), Error);
+  EXPECT_THROW(proxy_of(tool, {.gyration = 11}), Error);
   EXPECT_THROW(proxy_of(tool, {.iterations = 7}), Error);
   EXPECT_DOUBLE_EQ(proxy_of(tool).options().gyration, 0.5 * tool.extent());
   const Tool thin({{{0.008, 0, 0}, 0, 0}, {{0, 0, 0}, 0.05, 0}});

@@ -229,6 +229,8 @@ TEST(MeshTool, RefusesWhatIsNoMesh) {
   mesh = cube(0.02);
   mesh.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error_of(make), HasSubstr("not finite"));
+  mesh = cube(21);  // millimetres in the place of metres
+  EXPECT_THAT(error_of(make), HasSubstr("coordinate is 10.5"));
   mesh = cube(10);
   EXPECT_THAT(error_of(make), HasSubstr("give a larger one"));
 }
@@ -237,6 +239,9 @@ TEST(Tool, RefusesSamplesThatAreNone) {
   EXPECT_THAT(error_of([] { return Tool({}); }), HasSubstr("no samples"));
   EXPECT_THAT(error_of([] { return Tool({{Vector3d::Zero(), -1, 0}}); }), HasSubstr("below 0"));
   EXPECT_THAT(error_of([] { return Tool({{Vector3d::Zero(), 0, 2}}); }), HasSubstr("side"));
+  EXPECT_THAT(error_of([] { return Tool({{{0, 1e155, 0}, 0, 0}}); }), HasSubstr("10 at most"));
+  EXPECT_THAT(error_of([] { return Tool::ball(11); }), HasSubstr("11 m out"));
+  EXPECT_DOUBLE_EQ(Tool({{Vector3d::Zero(), 0, 0}}, {0, 1e-300, 0}).axis().y(), 1);
   EXPECT_THAT(error_of([] {
                 return Tool({{Vector3d::Zero(), 0, 0}}, Vector3d::Zero());
               }),

@@ -43,9 +43,13 @@ class Tool {
 
   static constexpr std::size_t kMostSamples = 100'000;  ///< some 10 MB; more is a typing error
 
+  /// m from the handle: nobody holds a longer tool, which may be one in other units.
+  static constexpr double kLongest = 10;
+
   /// `axis` is the direction in which the finger of side +1 opens. Orders the samples anew.
-  /// @throws Error without samples or with more than kMostSamples, for one that is not finite, has
-  /// a radius below 0 or a side other than -1, 0 and 1, and for an axis without a direction.
+  /// @throws Error without samples or with more than kMostSamples, for one that is not finite, is
+  /// farther out than kLongest, has a radius below 0 or a side other than -1, 0 and 1, and for an
+  /// axis without a direction.
   explicit Tool(std::vector<Sample> samples,
                 const Eigen::Vector3d& axis = Eigen::Vector3d::UnitX());
 

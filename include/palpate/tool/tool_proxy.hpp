@@ -14,8 +14,8 @@ namespace palpate {
 
 struct ToolOptions {
   double stiffness = 500;  ///< K of forces and of the grip, N/m
-  /// g, m, above 0: turns have the stiffness K g^2 (N m/rad). 0: the tool's radius of gyration, at
-  /// least 10 mm and at most half of its extent (1 mm for a point).
+  /// g, m, 1e-4 to 10: turns have the stiffness K g^2 (N m/rad). 0: the tool's radius of gyration,
+  /// at least 10 mm and at most half of its extent (1 mm for a point).
   double gyration = 0;
   /// Looks at the surface that a step in contact takes before it settles, 2 to 6: more follow a
   /// fast hand over strong curvature more closely.
@@ -53,7 +53,8 @@ struct ToolContact {
 /// the least motion in the metric diag(K, K g^2) (docs/method.md 3.7).
 ///
 /// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
-/// system. Non-finite input latches a fault: a zero wrench until reset(). More than half a turn
+/// system. Input that is not finite or in range (an orientation whose length is
+/// not about 1) latches a fault: a zero wrench until reset(). More than half a turn
 /// between hand and proxy is taken the short way round. Friction and texture are not rendered.
 class ToolProxy {
  public:
