@@ -9,8 +9,8 @@ namespace palpate {
 namespace {
 
 constexpr double kSolved = 1e-11;  // m, that the solver leaves open: 5e-9 N at 500 N/m
-// Of a motion, that may be left open where normals are opposed: ten times the least that the solver
-// tells them apart by, as long levers make them longer than 1.
+// A share of a motion that may be left open where normals are opposed: ten times the least that the
+// solver tells them apart by, as long levers make them longer than 1.
 constexpr double kOpposed = 1e-5;
 constexpr int kRestores = 4;       // of the looks: the last ones only lead out of the surface
 constexpr double kWidest = 0.375;  // of R: margin within which a surface is nearly flat (judgement)
@@ -62,12 +62,6 @@ void Descent::move_to(const Pose& pose) noexcept {
   pose_ = pose;
 }
 
-// Never farther than to where the step before was outside: to be dragged back over more would be
-// felt as a blow.
-void Descent::go_back() noexcept {
-  if (outside_) move_to(outside_->pose);
-}
-
 void Descent::forget() noexcept {
   gaps_.forget();
   outside_.reset();
@@ -84,6 +78,7 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
   const double radius = gaps_.radius();
   Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius)};
   plane_count_ = 0;
+  // What is older would be felt as a blow.
   if (outside_ && std::exchange(outside_->is_old, true)) outside_.reset();
   bool goes_on = true;
   for (int look = 0; goes_on && look < kMostLooks; ++look) {
@@ -95,7 +90,7 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
   if (!step.finite) contact.notes |= ContactNote::fault;
   if (!goes_on) return;
   contact.notes |= ContactNote::not_converged;
-  if (!step.proved) go_back();
+  if (!step.proved && outside_) move_to(outside_->pose);
 }
 
 // One look and one motion. False: the step is done.
@@ -109,7 +104,7 @@ bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progr
   const Look look = gaps_.look(field, pose_, metric_, step.margin, constraints_);
   if (look.unknown) {  // what is not known is solid: back to where it was not
     contact.notes |= ContactNote::sweep_truncated;
-    go_back();
+    if (outside_) move_to(outside_->pose);
     return false;
   }
   const std::size_t seen = constraints_.all().size();

@@ -86,7 +86,6 @@ class Descent {
   void remember_planes(const LeastMotion& least, std::size_t seen, const Motion& motion) noexcept;
   void remember_touches(const LeastMotion& least) noexcept;
   void move_to(const Pose& pose) noexcept;
-  void go_back() noexcept;
 
   std::shared_ptr<const Tool> tool_;
   Metric metric_;

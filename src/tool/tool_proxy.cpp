@@ -19,7 +19,6 @@ constexpr double kLeastJump = 0.01;      // of R, as for a point: iterations lea
 constexpr double kFall = 0.5;  // of the stretch, as for a point: the least that is noted as a fall
 // m: the turns of a smaller or larger gyration are those of no hand, and are lost in rounding.
 constexpr double kSmallestGyration = 1e-4;
-constexpr double kLargestGyration = Tool::kLongest;
 constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
 // The tool has not caught up with the hand, as for a point.
@@ -33,7 +32,7 @@ std::shared_ptr<const Tool> checked(std::shared_ptr<const Tool> tool) {
 ToolOptions checked(const ToolOptions& options, const Tool& tool) {
   kRequireProxy.not_negative("stiffness", options.stiffness, "give N/m, 0 or more");
   kRequireProxy(options.gyration == 0 ||
-                    (options.gyration >= kSmallestGyration && options.gyration <= kLargestGyration),
+                    (options.gyration >= kSmallestGyration && options.gyration <= Tool::kLongest),
                 "gyration", options.gyration, "give 0.0001 to 10 metres, or 0 for the tool's");
   kRequireProxy(options.iterations >= 2 && options.iterations <= 6, "iterations",
                 options.iterations, "give 2 to 6");
