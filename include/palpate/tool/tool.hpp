@@ -14,9 +14,10 @@ namespace palpate {
 /// Samples of the surface of a rigid tool or of a gripper with two fingers: what a ToolProxy keeps
 /// out of all that is solid. All positions are from the handle, in the tool's axes, in metres.
 ///
-/// `spacing` (m) of the shapes below is how far samples are apart at most; half of the support
-/// radius R of the clouds to be touched lets nothing as large as R between them. Immutable: one
-/// tool serves any number of proxies and threads.
+/// `spacing` (m) of the shapes below is how far samples are apart at most, along edges and in rows;
+/// on a mesh's faces no circle without a sample has a radius above some 1.2 of it. Half of the
+/// support radius R of what is touched lets nothing as large as R between them. Immutable: one tool
+/// serves any number of proxies and threads.
 class Tool {
  public:
   /// A ball of the surface; a point where its radius is 0.

@@ -52,6 +52,11 @@ struct ToolContact {
 /// The god-object of a tool: where the hand is, as far as no sample of the tool enters a solid, by
 /// the least motion in the metric diag(K, K g^2) (docs/method.md 3.7).
 ///
+/// Experimental. Exact on analytic fields (palpate/field/analytic.hpp). Not yet for clouds: a
+/// SceneField serves one point, and holds a tool that is wider than what it gathers for a step.
+/// Balls of samples are at most 0.3 R: a larger one can sink in where only its middle is within R.
+/// Nothing waits for a surface that vanishes: the tool goes to the hand at once.
+///
 /// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
 /// system. Input that is not finite or in range (an orientation whose length is
 /// not about 1) latches a fault: a zero wrench until reset(). More than half a turn
@@ -68,6 +73,10 @@ class ToolProxy {
   /// The first step after construction puts the tool where the hand is; what is solid there pushes
   /// it out, softly: stiffness comes with the hand's motion. Spends at most max_evaluations(). An
   /// opening below 0 is taken for 0: a gripper that is closed on nothing gives no grip.
+  ///
+  /// What was seen of a field holds in the next steps as long as its traits stay and it keeps to
+  /// the side of a surface that it has decided for; reset() comes before another field, which may
+  /// lie where the old one lay.
   [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
 
   /// Where the tool is. At the origin until the first step or reset().
