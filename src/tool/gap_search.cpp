@@ -14,7 +14,7 @@ constexpr double kNothing = -std::numeric_limits<double>::infinity();  // known 
 // A share of a gap, that a sample can move unseen: gaps are of first order, and where a surface
 // curves it is nearer than that (judgement).
 constexpr double kTrusted = 0.6;
-constexpr double kUnseen = 0.5;  // of R: the gap where no point has weight (judgement)
+constexpr double kUnseen = 0.5;  // of R: the distance where no point has weight (judgement)
 // In R: how much larger a ball is asked to be than it has to, and how far the tool moves before one
 // that was not free is asked again. Smaller: more questions; larger: more of them in vain.
 constexpr double kExtra = 0.5;
@@ -161,7 +161,8 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
     radius_ = here.radius;
     radius_known_ = true;
   }
-  sample_bounds_[index] = odometer_ + kTrusted * kUnseen * radius_;
+  const double unseen = kUnseen * radius_ - sample.radius;
+  sample_bounds_[index] = odometer_ + kTrusted * std::max(0.0, unseen);
   const std::optional<double> distance = first_order_distance(here);
   const Eigen::Vector3d normal = here.gradient.normalized();
   const bool finite = std::isfinite(distance.value_or(0)) && normal.allFinite();
