@@ -95,10 +95,47 @@ TEST(ToolInCreases, NeverEntersCreasesAndNeverIsNaN) {
     }
     EXPECT_EQ(not_finite, 0);
     EXPECT_EQ(deep, 0) << deepest / kSupport << " R";
-    EXPECT_GT(touching, ticks / 20);
+    EXPECT_GT(touching, ticks / 10);
     EXPECT_LT(lagging, 20 + ticks / 80);
     EXPECT_LT(unfinished, 10 + ticks / 1000);
     EXPECT_LE(most, proxy.max_evaluations());
+  }
+}
+
+/// A thin sheet z = 0 under which the floor of a hall lies, both of which are exact distances.
+struct Hall {
+  BoxField sheet{{0.12, 0.12, 0.003}};
+  PlaneField floor{{.T_world_shape = Eigen::Isometry3d(Eigen::Translation3d(0, 0, -0.05))}};
+  UnionField all{{&sheet, &floor}};
+};
+
+// A sheet a third of R thick, from above and from below, past its rims and through the gap under
+// it, with fingers that open and close on it.
+TEST(ToolInCreases, NeverEntersAThinSheet) {
+  const Hall hall;
+  const int ticks = effort(25'000);
+  std::uint64_t seed = 80;
+  for (Tool& tool : four_tools()) {
+    ToolProxy proxy = proxy_of(std::move(tool));
+    WanderingHand hand(seed++);
+    int deep = 0;
+    int touching = 0;
+    double deepest = 0;
+    double least_opening = 0;
+    for (int i = 0; i < ticks; ++i) {
+      Pose pose = hand.next();
+      pose.opening = 0.02 * (1 + std::sin(5e-3 * i));
+      pose.position.x() += 0.03;
+      const ToolContact contact = proxy.step(hall.all, pose, kTick);
+      const double depth = depth_of(proxy, hall.all);
+      deepest = std::max(deepest, depth);
+      deep += depth > 0.02 * kSupport ? 1 : 0;
+      touching += contact.touching ? 1 : 0;
+      least_opening = std::min(least_opening, contact.proxy.opening);
+    }
+    EXPECT_EQ(deep, 0) << deepest / kSupport << " R";
+    EXPECT_GT(touching, ticks / 10);
+    EXPECT_GT(least_opening, -1e-9);
   }
 }
 
