@@ -53,8 +53,10 @@ double Descent::farthest(const Motion& motion) const noexcept {
 
 int Descent::most_evaluations(const Tool& tool) noexcept {
   const std::size_t look = tool.samples().size() + tool.nodes().size();
+  // R, the free path, lifted touches, looks, and what the surface is where it is touched.
   return static_cast<int>(1 + tool.roots().size() +
-                          ToolContact::kMostTouches * GapSearch::kMostRises + kMostLooks * look);
+                          ToolContact::kMostTouches * (GapSearch::kMostRises + 1) +
+                          kMostLooks * look);
 }
 
 void Descent::move_to(const Pose& pose) noexcept {

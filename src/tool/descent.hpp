@@ -50,7 +50,7 @@ class Descent {
   [[nodiscard]] const Metric& metric() const noexcept { return metric_; }
   /// The farthest that any sample moves with this, m, at most.
   [[nodiscard]] double farthest(const Motion& motion) const noexcept;
-  /// Field samples and ball tests of a step, at most.
+  /// What a step asks a field, at most.
   [[nodiscard]] static int most_evaluations(const Tool& tool) noexcept;
 
  private:

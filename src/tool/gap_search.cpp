@@ -21,8 +21,10 @@ constexpr double kExtra = 0.5;
 constexpr double kPush = 0.25;       // of R, that a surface which came pushes the tool in one look
 constexpr double kResolutions = 16;  // R where no surface says it: what resolution is a share of
 constexpr double kRiseSteps = 8;     // in R, on a path on which a touch is found again (judgement)
+constexpr double kLeastSteps = 4;    // of these (judgement)
 constexpr double kMostSteps = 64;    // of these: no surface as thick as R / 4 is missed in 16 R
 constexpr int kBisections = 12;      // of one of these: to 3e-5 R
+constexpr double kLongestWay = 1e3;  // m, after which bounds would lose 0.1 pm to rounding
 constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
 
 }  // namespace
@@ -62,6 +64,7 @@ void GapSearch::forget() noexcept {
 void GapSearch::begin(const Field& field, const Pose& pose) noexcept {
   evaluations_ = 0;
   nearest_ = {};
+  if (odometer_ > kLongestWay) forget();
   if (radius_known_) return;
   ++evaluations_;
   const double radius = field.sample(pose.position).radius;
@@ -88,14 +91,13 @@ double GapSearch::rise(const Field& field, const Tool::Sample& sample, const Eig
                        const Eigen::Vector3d& path) noexcept {
   const auto is_free = [&](double share) { return gap(field, sample, x + share * path) > 0; };
   if (!is_free(1)) return 0;
-  const double steps = std::clamp(std::ceil(kRiseSteps * path.norm() / radius_), 4.0, kMostSteps);
-  double free = 1;
-  double solid = 1;
-  while (free == solid && solid > 0) {
-    solid = std::max(0.0, solid - 1 / steps);
-    if (is_free(solid)) free = solid;
-  }
-  if (free == solid) return 0;
+  const int steps = static_cast<int>(
+      std::clamp(std::ceil(kRiseSteps * path.norm() / radius_), kLeastSteps, kMostSteps));
+  int last = steps;  // that is free all the way from the end
+  while (last > 0 && is_free(static_cast<double>(last - 1) / steps)) --last;
+  if (last == 0) return 0;
+  double free = static_cast<double>(last) / steps;
+  double solid = static_cast<double>(last - 1) / steps;
   for (int i = 0; i < kBisections; ++i) {
     const double middle = 0.5 * (free + solid);
     (is_free(middle) ? free : solid) = middle;

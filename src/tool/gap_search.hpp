@@ -60,7 +60,7 @@ class GapSearch {
 
   /// Forgets all gaps: the surface has changed, or the tool was put elsewhere.
   void forget() noexcept;
-  /// Begins a step of the tool on a field.
+  /// Begins a step of the tool on a field. After a kilometre all gaps are forgotten.
   void begin(const Field& field, const Pose& pose) noexcept;
   /// No sample has moved farther than this, m.
   void move(double farthest) noexcept { odometer_ += farthest; }

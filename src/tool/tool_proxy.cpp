@@ -222,7 +222,7 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
 // that, too. A touch's force is still its multiplier.
 void ToolProxy::Inside::report(const Field& field, ToolContact& contact) noexcept {
   contact.proxy = pose();
-  contact.evaluations = descent_.gaps().evaluations();
+  contact.evaluations = descent_.gaps().evaluations() + descent_.touches().count;
   double sum = 0;
   double weighted = 0;
   double most = 0;

@@ -101,6 +101,23 @@ TEST(ToolInNothing, ASurfaceVanishesAndComesBack) {
   }
 }
 
+// Bounds are forgotten after a kilometre; what comes then is met as exactly.
+TEST(ToolInNothing, AToolThatHasComeFarMeetsASurface) {
+  const PlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3), kOptions);
+  for (int i = 0; i < 40; ++i) {
+    (void)proxy.step(plane, pose_at({i % 2 == 0 ? 0 : 50.0, 0, 100}), kTick);
+  }
+  for (double height = 100; height > 0.013; height *= 0.7) {
+    (void)proxy.step(plane, pose_at({0, 0, height}), kTick);
+  }
+  ToolContact contact;
+  for (int i = 0; i < 400; ++i) {
+    contact = proxy.step(plane, pose_at({0, 0, std::max(0.006, 0.012 - 1e-4 * i)}), kTick);
+  }
+  EXPECT_NEAR(contact.wrench.force.z(), 2, 1e-9);
+}
+
 // A step that takes no time moves the tool, too: the same force, nothing that is not finite.
 TEST(ToolInNothing, AStepOfNoTimeIsAStep) {
   const PlaneField plane;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/numbers.hpp"
 #include "contact/test_fields.hpp"
@@ -183,11 +184,13 @@ TEST(ToolProxy, ARigidToolHasNoOpening) {
   }
 }
 
-/// A plane that counts what it is asked outside of a proxy's steps, where its budget is another.
+/// A plane that counts what it is asked, and what of it outside of a proxy's steps, where its
+/// budget is another.
 class SteppedPlaneField final : public Field {
  public:
   mutable int late = 0;
   mutable int surfaces = 0;
+  mutable int asked = 0;
 
   [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
     return counted(), plane_.sample(x);
@@ -202,18 +205,32 @@ class SteppedPlaneField final : public Field {
   [[nodiscard]] Traits traits() const noexcept override { return plane_.traits(); }
   void begin_step() const noexcept override { within_ = true; }
   void end_step(const Vector3d&, const Vector3d&) const noexcept override { within_ = false; }
+  void step_to(double height) {
+    plane_.set_pose(Eigen::Isometry3d(Eigen::Translation3d(0, 0, height)));
+  }
 
  private:
-  void counted() const noexcept { late += within_ ? 0 : 1; }
+  void counted() const noexcept {
+    ++asked;
+    late += within_ ? 0 : 1;
+  }
 
-  PlaneField plane_;
+  PlaneField plane_{{.reanchor_reach = 0.1}};
   mutable bool within_ = false;
 };
 
 TEST(ToolProxy, AsksTheFieldOnlyWithinItsSteps) {
-  const SteppedPlaneField plane;
+  SteppedPlaneField plane;
   ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
-  (void)press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.008}, {0.2, 0.1, 0}));
+  for (int i = 0; i < 1000; ++i) {
+    const double t = kTick * i;
+    plane.asked = 0;
+    if (i % 50 == 0) plane.step_to(1e-3 * (i % 100));
+    const Pose hand = pose_at({0, 0, 0.01 + 0.01 * std::cos(20 * t)}, {0.2 * t, 0.1, 0});
+    const ToolContact contact = proxy.step(plane, hand, kTick);
+    EXPECT_EQ(contact.evaluations, plane.asked);
+    EXPECT_LE(contact.evaluations, proxy.max_evaluations());
+  }
   EXPECT_EQ(plane.late, 0);
   EXPECT_GT(plane.surfaces, 100);
 }

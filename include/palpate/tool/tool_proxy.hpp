@@ -44,7 +44,7 @@ struct ToolContact {
   std::array<Touch, kMostTouches> touches{};
   int touch_count = 0;
   int iterations = 0;   ///< looks at the surface
-  int evaluations = 0;  ///< field samples and ball tests spent
+  int evaluations = 0;  ///< field samples, ball tests and surfaces asked for
   int source = -1;      ///< index of the source that presses most; -1: none
   ContactNote notes = ContactNote::none;
 };
