@@ -223,7 +223,7 @@ void Descent::lift(const Field& field, double reach, ToolContact& contact) noexc
   const double high = std::max(reach, kLongest * 2 * gaps_.radius());
   constraints_.clear();
   for (const Touches::Touch& touch : touches_.span()) {
-    const Tool::Sample& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
+    const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
     const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose_);
     const double rise = gaps_.rise(field, sample, x, high * touch.normal) * high;
     if (rise < kRisen * gaps_.radius()) continue;

@@ -29,25 +29,6 @@ constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
 
 }  // namespace
 
-double ConstraintList::drop_half() noexcept {
-  const auto half = all_.begin() + kCapacity / 2;
-  std::nth_element(all_.begin() + static_cast<std::ptrdiff_t>(kept_), half, all_.end(),
-                   [](const Constraint& a, const Constraint& b) { return a.bound > b.bound; });
-  count_ = kCapacity / 2;
-  return half->bound;
-}
-
-Constraint constraint_on(const Tool& tool, int sample, const Eigen::Vector3d& x,
-                         const Eigen::Vector3d& normal, const Pose& pose,
-                         const Metric& metric) noexcept {
-  const int side = tool.samples()[static_cast<std::size_t>(sample)].side;
-  Constraint constraint;
-  constraint.normal << normal, (x - pose.position).cross(normal) / metric.gyration,
-      0.5 * side * normal.dot(pose.orientation * tool.axis());
-  constraint.sample = sample;
-  return constraint;
-}
-
 GapSearch::GapSearch(std::shared_ptr<const Tool> tool)
     : tool_(std::move(tool)),
       sample_bounds_(tool_->samples().size(), kNothing),
@@ -77,7 +58,7 @@ bool GapSearch::is_free(const Field& field, const Ball& ball) noexcept {
   return field.is_free(ball);
 }
 
-double GapSearch::gap(const Field& field, const Tool::Sample& sample,
+double GapSearch::gap(const Field& field, const Tool::Point& sample,
                       const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   const Sample here = field.sample(x);
@@ -87,7 +68,7 @@ double GapSearch::gap(const Field& field, const Tool::Sample& sample,
   return here.value > 0 || here.support <= 0 ? 1 : -1;
 }
 
-double GapSearch::rise(const Field& field, const Tool::Sample& sample, const Eigen::Vector3d& x,
+double GapSearch::rise(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
                        const Eigen::Vector3d& path) noexcept {
   const auto is_free = [&](double share) { return gap(field, sample, x + share * path) > 0; };
   if (!is_free(1)) return 0;
@@ -156,7 +137,7 @@ bool GapSearch::passes(Walk& walk, std::int32_t index) noexcept {
 
 void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   ++evaluations_;
-  const Tool::Sample& sample = tool_->samples()[index];
+  const Tool::Point& sample = tool_->samples()[index];
   const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, walk.pose);
   const Sample here = walk.field.sample(x);
   if (here.radius > 0) {

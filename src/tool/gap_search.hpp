@@ -1,47 +1,14 @@
 // Which samples of a tool are near the surface, and what keeps them out of it.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "palpate/field/field.hpp"
 #include "palpate/tool/tool.hpp"
-#include "tool/active_set.hpp"
+#include "tool/constraint_list.hpp"
 
 namespace palpate {
-
-/// A list of constraints of fixed capacity.
-class ConstraintList {
- public:
-  void clear() noexcept { count_ = kept_ = 0; }
-  /// What is in it stays until it is cleared.
-  void keep() noexcept { kept_ = count_; }
-  [[nodiscard]] bool full() const noexcept { return count_ == kCapacity; }
-  /// Does nothing when it is full.
-  void add(const Constraint& constraint) noexcept {
-    if (!full()) all_[count_++] = constraint;
-  }
-  /// Drops the half with the smaller bounds, but for what is kept. Returns the largest bound that
-  /// was dropped.
-  double drop_half() noexcept;
-
-  [[nodiscard]] std::span<Constraint> all() noexcept { return {all_.data(), count_}; }
-
- private:
-  static constexpr std::size_t kCapacity = 512;  // samples within a margin; 37 kB (judgement)
-
-  std::array<Constraint, kCapacity> all_;
-  std::size_t count_ = 0;
-  std::size_t kept_ = 0;  // the first ones
-};
-
-/// The constraint that keeps a sample of the tool, in the world at x, on the side of a surface's
-/// normal; its bound is still 0.
-[[nodiscard]] Constraint constraint_on(const Tool& tool, int sample, const Eigen::Vector3d& x,
-                                       const Eigen::Vector3d& normal, const Pose& pose,
-                                       const Metric& metric) noexcept;
 
 /// What one look at the surface found.
 struct Look {
@@ -71,12 +38,12 @@ class GapSearch {
                           ConstraintList& constraints) noexcept;
 
   /// The gap of one sample at x (m, world); 1 in the free, -1 in the solid where nothing is known.
-  [[nodiscard]] double gap(const Field& field, const Tool::Sample& sample,
+  [[nodiscard]] double gap(const Field& field, const Tool::Point& sample,
                            const Eigen::Vector3d& x) noexcept;
   /// The share of `path` (m) after which a sample at x (m, world) is free; it was solid a little
   /// before. 0: no such place. Takes kMostRises evaluations at most.
-  [[nodiscard]] double rise(const Field& field, const Tool::Sample& sample,
-                            const Eigen::Vector3d& x, const Eigen::Vector3d& path) noexcept;
+  [[nodiscard]] double rise(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
+                            const Eigen::Vector3d& path) noexcept;
   static constexpr int kMostRises = 64 + 1 + 12;  ///< steps, their end, and halvings of one
 
   [[nodiscard]] bool is_free(const Field& field, const Ball& ball) noexcept;

@@ -137,7 +137,7 @@ class Thinned {
     }
   }
 
-  [[nodiscard]] std::vector<Tool::Sample>& samples() { return samples_; }
+  [[nodiscard]] std::vector<Tool::Point>& samples() { return samples_; }
 
  private:
   using Cell = std::array<double, 3>;  // whole numbers
@@ -162,7 +162,7 @@ class Thinned {
   double spacing_;
   double apart_;  // m
   std::map<Cell, std::vector<Vector3d>> cells_;
-  std::vector<Tool::Sample> samples_;
+  std::vector<Tool::Point> samples_;
 };
 
 // Lines across a face, as far apart as their points, from its longest edge to the corner beyond.

@@ -13,7 +13,7 @@ namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-using Samples = std::vector<Tool::Sample>;
+using Samples = std::vector<Tool::Point>;
 
 constexpr Requirement kRequireTool{"tool"};  // the name that errors begin with
 constexpr double kDense = 0.28;       // radii between a stylus's balls: sqrt(1 - 0.14^2) is 0.99

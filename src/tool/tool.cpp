@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;  // samples in a ball that is not divided (judgement)
 
-void check_sample(const Tool::Sample& sample) {
+void check_sample(const Tool::Point& sample) {
   if (!sample.position.allFinite() || !std::isfinite(sample.radius) || sample.radius < 0) {
     throw Error(
         "tool: a sample is not finite or has a radius below 0; give positions and radii in metres");
@@ -31,7 +31,7 @@ void check_sample(const Tool::Sample& sample) {
 
 }  // namespace
 
-Tool::Tool(std::vector<Sample> samples, const Eigen::Vector3d& axis)
+Tool::Tool(std::vector<Point> samples, const Eigen::Vector3d& axis)
     : samples_(std::move(samples)), axis_(axis.stableNormalized()) {
   if (samples_.empty()) throw Error("tool: it has no samples; give at least one");
   if (samples_.size() > kMostSamples) {
@@ -42,14 +42,14 @@ Tool::Tool(std::vector<Sample> samples, const Eigen::Vector3d& axis)
     throw Error("tool: the axis has no direction; give the one in which the fingers open");
   }
   double squares = 0;
-  for (const Sample& sample : samples_) {
+  for (const Point& sample : samples_) {
     check_sample(sample);
     extent_ = std::max(extent_, sample.position.norm() + sample.radius);
     squares += sample.position.squaredNorm();
   }
   gyration_ = std::sqrt(squares / static_cast<double>(samples_.size()));
   std::stable_sort(samples_.begin(), samples_.end(),
-                   [](const Sample& a, const Sample& b) { return a.side < b.side; });
+                   [](const Point& a, const Point& b) { return a.side < b.side; });
   const auto count = static_cast<std::uint32_t>(samples_.size());
   for (std::uint32_t begin = 0, end = 0; begin < count; begin = end) {
     while (end < count && samples_[end].side == samples_[begin].side) ++end;
@@ -60,9 +60,9 @@ Tool::Tool(std::vector<Sample> samples, const Eigen::Vector3d& axis)
 std::int32_t Tool::add_node(std::uint32_t begin, std::uint32_t end) {
   const std::span part = std::span(samples_).subspan(begin, end - begin);
   Box box;
-  for (const Sample& sample : part) box.extend(sample.position);
+  for (const Point& sample : part) box.extend(sample.position);
   Node node{.center = box.center(), .side = part[0].side, .begin = begin, .end = end};
-  for (const Sample& sample : part) {
+  for (const Point& sample : part) {
     node.radius = std::max(node.radius, (sample.position - node.center).norm() + sample.radius);
   }
   const std::size_t index = nodes_.size();
@@ -72,7 +72,7 @@ std::int32_t Tool::add_node(std::uint32_t begin, std::uint32_t end) {
   box.size().maxCoeff(&longest);
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(part.begin(), part.begin() + (middle - begin), part.end(),
-                   [longest](const Sample& a, const Sample& b) {
+                   [longest](const Point& a, const Point& b) {
                      return a.position[longest] < b.position[longest];
                    });
   nodes_[index].left = add_node(begin, middle);

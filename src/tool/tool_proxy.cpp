@@ -183,7 +183,7 @@ void ToolProxy::Inside::end(const Field& field) noexcept {
   for (const Touches::Touch& touch : descent_.touches().span()) {
     if (touch.multiplier <= most) continue;
     most = touch.multiplier;
-    const Tool::Sample& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
+    const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
     x = tool_->in_world(sample.position, sample.side, pose());
     normal = touch.normal;
   }
@@ -227,7 +227,7 @@ void ToolProxy::Inside::report(const Field& field, ToolContact& contact) noexcep
   double weighted = 0;
   double most = 0;
   for (const Touches::Touch& touch : descent_.touches().span()) {
-    const Tool::Sample& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
+    const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
     const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose());
     const Surface surface = field.surface(x);
     sum += touch.multiplier;

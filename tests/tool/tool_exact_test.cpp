@@ -91,7 +91,7 @@ TEST(ToolOnPlane, MoreSamplesThanConstraintsLoseLittle) {
 double energy_turned(const Tool& tool, const Pose& hand, const Vector3d& w) {
   const Eigen::Quaterniond orientation = turned(hand.orientation, w);
   double lowest = 0;
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     lowest = std::min(lowest, (orientation * each.position).z());
   }
   const double rise = std::max(0.0, -lowest - hand.position.z());
@@ -171,7 +171,7 @@ TEST(ToolInABowl, ADeepHandIsHeldAtItsClosestPoint) {
 TEST(ToolOverAnEdge, AnAngleIsHeldByBothLegs) {
   const BoxField block({0.1, 0.1, 0.1},
                        {.T_world_shape = Eigen::Isometry3d(Eigen::Translation3d(-0.05, 0, -0.05))});
-  std::vector<Tool::Sample> samples;
+  std::vector<Tool::Point> samples;
   for (int i = 1; i <= 8; ++i) {
     for (const double y : {-0.01, 0.0, 0.01}) {
       samples.push_back({{-5e-3 * i, y, 0}, 0, 0});  // on top, 5 to 40 mm from the edge

@@ -50,7 +50,7 @@ constexpr double kPegLength = 0.04;  // m
 constexpr double kInHole = -0.03;    // m, where the peg's middle is
 
 ToolProxy peg() {
-  std::vector<Tool::Sample> samples;
+  std::vector<Tool::Point> samples;
   for (int i = 0; i < 720; ++i) {
     const double angle = std::numbers::pi * i / 360;
     for (const double z : {-0.5, -0.25, 0.0, 0.25, 0.5}) {

@@ -59,7 +59,7 @@ inline std::vector<Tool> four_tools() {
 /// The deepest that a sample is in the surface, m; below 0: none is.
 inline double depth_of(const ToolProxy& proxy, const Field& field) {
   double depth = -1;
-  for (const Tool::Sample& each : proxy.tool().samples()) {
+  for (const Tool::Point& each : proxy.tool().samples()) {
     const Eigen::Vector3d x = proxy.tool().in_world(each.position, each.side, proxy.pose());
     depth = std::max(depth, each.radius - field.sample(x).value);
   }

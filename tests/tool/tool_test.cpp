@@ -22,7 +22,7 @@ constexpr double kSpacing = 2e-3;  // m
 
 double nearest(const Tool& tool, const Vector3d& x) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     least = std::min(least, (each.position - x).norm() - each.radius);
   }
   return least;
@@ -41,7 +41,7 @@ double height_over_box(const Vector3d& x, const Vector3d& size) {
 }
 
 void expect_box(const Tool& tool, const Vector3d& size, const Vector3d& center, double gap) {
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     EXPECT_NEAR(height_over_box(each.position - center, size), 0, 1e-12);
   }
   Random random(1);
@@ -83,7 +83,7 @@ TEST(Tool, CylinderIsSampledAllOver) {
     const double rho = radius * std::sqrt(random.uniform());
     EXPECT_LT(nearest(tool, rho * out + length / 2 * Vector3d::UnitZ()), kSpacing);
   }
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     const double side = each.position.head<2>().norm() - radius;
     const double end = std::abs(each.position.z()) - length / 2;
     EXPECT_NEAR(std::max(side, end), 0, 1e-12);
@@ -116,7 +116,7 @@ TEST(Tool, GripperMovesItsFingersApart) {
   pose.orientation = Eigen::AngleAxisd(std::numbers::pi / 2, Vector3d::UnitZ());
   pose.opening = 0.02;
   double least = 1;  // distance of inner faces from the middle
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     const Vector3d x = tool.in_world(each.position, each.side, pose) - pose.position;
     EXPECT_GT(each.side * x.y(), 0);  // the tool's x is the world's y
     least = std::min(least, std::abs(x.y()));
@@ -128,7 +128,7 @@ TEST(Tool, GripperMovesItsFingersApart) {
 void expect_tree(const Tool& tool, std::int32_t index, std::set<std::uint32_t>& leaves) {
   const Tool::Node& node = tool.nodes()[static_cast<std::size_t>(index)];
   for (std::uint32_t i = node.begin; i < node.end; ++i) {
-    const Tool::Sample& sample = tool.samples()[i];
+    const Tool::Point& sample = tool.samples()[i];
     EXPECT_LE((sample.position - node.center).norm() + sample.radius, node.radius + 1e-15);
     EXPECT_EQ(sample.side, node.side);
     const bool first = node.left >= 0 || leaves.insert(i).second;
@@ -193,7 +193,7 @@ TEST(MeshTool, SeparateTrianglesAreTheSameSurface) {
   const Tool tool = Tool::mesh(soup.vertices, soup.triangles, kSpacing);
   expect_box(tool, Vector3d::Constant(0.02), Vector3d::Zero(), kSpacing);
   int in_corner = 0;
-  for (const Tool::Sample& each : tool.samples()) {
+  for (const Tool::Point& each : tool.samples()) {
     in_corner += each.position == mesh.vertices[7] ? 1 : 0;
   }
   EXPECT_EQ(in_corner, 1);

@@ -21,7 +21,7 @@ namespace palpate {
 class Tool {
  public:
   /// A ball of the surface; a point where its radius is 0.
-  struct Sample {
+  struct Point {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, at an opening of 0
     double radius = 0;                                   ///< m
     int side = 0;  ///< of its finger: +1 and -1 move along the axis and against it by half of the
@@ -51,8 +51,7 @@ class Tool {
   /// @throws Error without samples or with more than kMostSamples, for one that is not finite, is
   /// farther out than kLongest, has a radius below 0 or a side other than -1, 0 and 1, and for an
   /// axis without a direction.
-  explicit Tool(std::vector<Sample> samples,
-                const Eigen::Vector3d& axis = Eigen::Vector3d::UnitX());
+  explicit Tool(std::vector<Point> samples, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitX());
 
   /// One ball around the handle: the proxy of three degrees of freedom with its tool radius.
   /// This and the following throw Error for lengths (m) that are not finite and above 0.
@@ -80,7 +79,7 @@ class Tool {
   /// @throws Error that names what is wrong, and how to write it.
   [[nodiscard]] static Tool from_text(std::string_view text, double spacing);
 
-  [[nodiscard]] std::span<const Sample> samples() const noexcept { return samples_; }
+  [[nodiscard]] std::span<const Point> samples() const noexcept { return samples_; }
   /// A binary tree of balls for each side, children after their parents.
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   /// The nodes that hold all samples of a side.
@@ -106,7 +105,7 @@ class Tool {
  private:
   std::int32_t add_node(std::uint32_t begin, std::uint32_t end);
 
-  std::vector<Sample> samples_;
+  std::vector<Point> samples_;
   std::vector<Node> nodes_;
   std::vector<std::int32_t> roots_;
   Eigen::Vector3d axis_;
