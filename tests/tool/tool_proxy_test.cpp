@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/numbers.hpp"
 #include "contact/test_fields.hpp"
@@ -50,6 +51,8 @@ TEST(ToolProxy, APlaneThatStepsTakesABoxAlong) {
   (void)press(proxy, plane, pose_at({0, 0, 0.05}), hand);
   int lost = 0;
   int lifted = 0;
+  double off = 0;       // N
+  double stiffest = 0;  // N/m
   double deepest = 0;
   for (int i = 0; i < 300; ++i) {
     const double height = 0.015 * (random.uniform() - 0.5);
@@ -59,8 +62,15 @@ TEST(ToolProxy, APlaneThatStepsTakesABoxAlong) {
       lost += contact.touching && contact.touch_count > 0 ? 0 : 1;
       lifted += has(contact.notes, ContactNote::reanchored) ? 1 : 0;
       deepest = std::max(deepest, depth_of(proxy, plane));
+      // It lies flat: the way from the hand is known, the stiffness is what is paid for.
+      const double stretch = height + 0.01 - hand.position.z();
+      const double force = contact.wrench.force.z();
+      off = std::max(off, std::abs(force - contact.stiffness * stretch));
+      stiffest = std::max(stiffest, contact.stiffness);
     }
   }
+  EXPECT_LT(off, 0.02);
+  EXPECT_LE(stiffest, 500 + 1e-9);
   EXPECT_EQ(lost, 0);
   EXPECT_LT(deepest, 0.02 * kSupport);
   EXPECT_GT(lifted, 100);
@@ -233,6 +243,36 @@ TEST(ToolProxy, AsksTheFieldOnlyWithinItsSteps) {
   }
   EXPECT_EQ(plane.late, 0);
   EXPECT_GT(plane.surfaces, 100);
+}
+
+// A tetrahedron of a mesh, tip down: its tip is what touches, and bears what a stick would.
+TEST(ToolProxy, AMeshTouchesWithItsCorner) {
+  const PlaneField plane;
+  const std::vector<Vector3d> vertices{
+      {0, 0, -0.02}, {0.01, 0, 0.01}, {-0.01, 0.01, 0.01}, {-0.01, -0.01, 0.01}};
+  const std::vector<Tool::Triangle> faces{{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  ToolProxy proxy = proxy_of(Tool::mesh(vertices, faces, 4e-3), kOptions);
+  const ToolContact contact = press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.017}));
+  ASSERT_EQ(contact.touch_count, 1);
+  EXPECT_LT((contact.touches[0].position).norm(), 1e-9);
+  EXPECT_LT((contact.wrench.force - Vector3d(0, 0, kStiffness * 3e-3)).norm(), 1e-7);
+  EXPECT_LT(contact.wrench.torque.norm(), 1e-9);
+}
+
+// The same after reset() into a solid, which was touched before.
+TEST(ToolProxy, ComesOutOfWhatItIsPutInto) {
+  const PlaneField plane;
+  ToolProxy proxy = proxy_of(Tool::box({0.04, 0.06, 0.02}, 5e-3));
+  const Pose hand = pose_at({0, 0, 0.002}, {0.05, 0, 0});
+  (void)press(proxy, plane, pose_at({0, 0, 0.05}), pose_at({0, 0, 0.005}));
+  proxy.reset(hand);
+  EXPECT_EQ(proxy.pose().position, hand.position);
+  double largest = 0;
+  for (int i = 0; i < 100; ++i) {
+    largest = std::max(largest, proxy.step(plane, hand, kTick).wrench.force.norm());
+  }
+  EXPECT_LT(depth_of(proxy, plane), 0.02 * kSupport);
+  EXPECT_LT(largest, 0.1);
 }
 
 // Where the tool begins in a solid it comes out, and no force steps up.
