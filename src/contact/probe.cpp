@@ -64,7 +64,7 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
   Sample sample = field_.sample(x);
   if (sample.radius > 0) radius_ = sample.radius;
-  if (sample.support <= 0 && sample.value <= 0) sample.value = radius_;  // no points here
+  if (is_nothing(sample.value, sample.support)) sample.value = radius_;  // no points here
   if (texture_.amplitude > 0) {
     const Relief relief = relief_at(texture_, x);
     sample.value -= relief.height;

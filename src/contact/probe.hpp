@@ -86,6 +86,11 @@ struct SurfacePoint {
   double radius = 0;                                   ///< R here, m
 };
 
+/// Does a sample that is not free say so only because there are no points here?
+[[nodiscard]] constexpr bool is_nothing(double value, double support) noexcept {
+  return support <= 0 && value <= 0;
+}
+
 /// The first-order signed distance phi = f / |grad f| at a sample; empty where there is no surface
 /// to speak of.
 [[nodiscard]] std::optional<double> first_order_distance(const Sample& sample) noexcept;

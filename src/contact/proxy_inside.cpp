@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/limit.hpp"
 #include "contact/probe.hpp"
 
 namespace palpate {
@@ -12,11 +13,6 @@ namespace {
 
 constexpr double kLeastTime = 1e-9;    // s; friction divides by the time of a step
 constexpr double kTextureStep = 0.25;  // of the wavelength, so that no sub-step skips a groove
-// The proxy has not caught up with the hand.
-constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
-constexpr double kFastest = 1;  // m/s: a surface that moves faster has jumped (judgement)
-constexpr double kFall = 0.5;   // of the stretch, the least that is noted as a fall (judgement)
-constexpr double kLeastFall = 0.01;  // of R: what iterations leave open is no jump
 
 bool in_range(const Eigen::Vector3d& position) {
   return position.allFinite() && position.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate;
@@ -70,8 +66,8 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
   contact.touching = touch_.is_held();
   contact.evaluations = probe.evaluations();
   const double jump = unexplained_jump(before, hip, dt);
-  if (held && jump > kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
-  if (changed && jump > std::max(probe.traits().step, kFastest * dt)) {
+  if (held && jump > Limit::kFall * (before - hand_).norm()) contact.notes |= ContactNote::fell;
+  if (changed && jump > std::max(probe.traits().step, Limit::kFastest * dt)) {
     if (held) spring_.leave(before, tank.stiffness());
     take_over(held ? tank : spring_.tank(), hip, contact);
   } else if (!held && touch_.touching && !first && !changed) {
@@ -81,7 +77,7 @@ Contact Proxy::Inside::step(const Field& field, const Eigen::Vector3d& hip, doub
     }
   }
   spring_.add_fading(hip, dt, contact);
-  if (!has(contact.notes, kUnfinished)) hand_ = hip;
+  if (!has(contact.notes, Limit::kUnfinished)) hand_ = hip;
   if (contact.force.allFinite() && in_range(position_)) return contact;
   fault_ = true;
   release(hip);
@@ -94,7 +90,7 @@ double Proxy::Inside::unexplained_jump(const Eigen::Vector3d& before, const Eige
                                        double dt) const noexcept {
   const double explained = 2 * (hip - hand_).norm() + touch_.surface.velocity.norm() * dt;
   const double jump = ((touch_.waiting ? hip : position_) - before).norm() - explained;
-  return jump > kLeastFall * radius_ ? jump : 0;
+  return jump > Limit::kLeastFall * radius_ ? jump : 0;
 }
 
 // Lets the contact that there is now go on with the tank of `before`.
@@ -118,7 +114,7 @@ void Proxy::Inside::follow(Probe& probe, const Eigen::Vector3d& hip, Contact& co
 double Proxy::Inside::initial_stiffness(const Eigen::Vector3d& position,
                                         const Eigen::Vector3d& hip) const noexcept {
   const double stretch = (position - hip).norm();
-  const double moved = (hip - hand_).norm() + kLeastFall * radius_;
+  const double moved = (hip - hand_).norm() + Limit::kLeastFall * radius_;
   return spring_.wanted(touch_.softened(options_)) * (stretch > moved ? moved / stretch : 1);
 }
 
@@ -173,7 +169,7 @@ void Proxy::Inside::hold(Probe& probe, const Eigen::Vector3d& hip, double dt,
   contact.iterations = motion.iterations;
   if (!settle(motion, contact)) return;
   // What goes farther than the hand explains was moved by a surface that folds.
-  const double most = 2 * (hip - hand_).norm() + kLeastFall * radius_;
+  const double most = 2 * (hip - hand_).norm() + Limit::kLeastFall * radius_;
   if (motion.leapt || (position_ - at->position).norm() <= most) touch_.carry_side(at->normal);
   touch_.surface = probe.field().surface(position_);
   pull(hip, motion.dissipated, dt, contact);

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/limit.hpp"
+
 namespace palpate {
 namespace {
 
-constexpr double kGone = 0.002;       // of the stiffness: 3 mN of 1.5 N
-constexpr double kMuchSofter = 0.95;  // of the wanted stiffness; less is felt (judgement)
-constexpr double kAwayTime = 1;       // s in free air, after which a hand is let go (judgement)
-constexpr double kFreeing = 0.5;      // s, in which its spring fades (judgement)
+constexpr double kAwayTime = 1;   // s in free air, after which a hand is let go (judgement)
+constexpr double kFreeing = 0.5;  // s, in which its spring fades (judgement)
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void FadingSpring::take(const Eigen::Vector3d& anchor, double stiffness) noexcep
   const double both = stiffness_ + stiffness;
   if (both > 0) anchor_ += stiffness / both * (anchor - anchor_);
   stiffness_ = both;
-  gone_ = kGone * both;
+  gone_ = Limit::kGone * both;
 }
 
 double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
@@ -100,7 +100,7 @@ void Spring::pull(double full, const Eigen::Vector3d& stretch, double dissipated
 void Spring::pull(double full, const Eigen::Vector3d& stretch, Contact& contact) const noexcept {
   contact.stiffness = tank_.stiffness();
   contact.force = contact.stiffness * stretch;
-  if (contact.stiffness < kMuchSofter * wanted(full)) contact.notes |= ContactNote::softer;
+  if (contact.stiffness < Limit::kMuchSofter * wanted(full)) contact.notes |= ContactNote::softer;
 }
 
 void Spring::add_fading(const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept {

@@ -65,7 +65,7 @@ double GapSearch::gap(const Field& field, const Tool::Point& sample,
   if (const std::optional<double> distance = first_order_distance(here)) {
     return *distance - sample.radius;
   }
-  return here.value > 0 || here.support <= 0 ? 1 : -1;
+  return here.value > 0 || is_nothing(here.value, here.support) ? 1 : -1;
 }
 
 double GapSearch::rise(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
@@ -150,7 +150,7 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   const Eigen::Vector3d normal = here.gradient.normalized();
   const bool finite = std::isfinite(distance.value_or(0)) && normal.allFinite();
   if (!distance || !finite) {  // a field that is not finite is wrong, and solid
-    if (finite && (here.value > 0 || here.support <= 0)) return;
+    if (finite && (here.value > 0 || is_nothing(here.value, here.support))) return;
     walk.found.unknown = true;
     sample_bounds_[index] = kNothing;
     return;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/requirement.hpp"
+#include "contact/limit.hpp"
 #include "tool/descent.hpp"
 #include "tool/tool_spring.hpp"
 
@@ -14,15 +15,9 @@ namespace {
 constexpr Requirement kRequireProxy{"tool proxy"};  // the name that errors begin with
 constexpr double kLeastGyration = 0.01;  // m: a tool as slim is turned with the fingers (judgement)
 constexpr double kPointGyration = 1e-3;  // m, of a point, whose turns meet nothing
-constexpr double kFastestSurface = 1;    // m/s, as for a point: what moves faster has jumped
-constexpr double kLeastJump = 0.01;      // of R, as for a point: iterations leave as much open
-constexpr double kFall = 0.5;  // of the stretch, as for a point: the least that is noted as a fall
 // m: the turns of a smaller or larger gyration are those of no hand, and are lost in rounding.
 constexpr double kSmallestGyration = 1e-4;
 constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
-
-// The tool has not caught up with the hand, as for a point.
-constexpr ContactNote kUnfinished = ContactNote::sweep_truncated | ContactNote::not_converged;
 
 std::shared_ptr<const Tool> checked(std::shared_ptr<const Tool> tool) {
   if (!tool) throw Error("tool proxy: it has no tool; give one");
@@ -139,7 +134,7 @@ ToolContact ToolProxy::Inside::step(const Field& field, const Pose& given, doubl
   report(field, contact);
   end(field);
   pull(before, hand, dt, changed ? &traits.step : nullptr, contact);
-  if (!has(contact.notes, kUnfinished)) hand_ = hand;
+  if (!has(contact.notes, Limit::kUnfinished)) hand_ = hand;
   const bool faulty = has(contact.notes, ContactNote::fault);
   if (!faulty && is_finite(contact.wrench) && in_range(pose())) return contact;
   fault_ = true;
@@ -197,11 +192,11 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
   const bool held = spring_.touching();
   const bool at_hand = metric.between(hand, pose()).isZero(0);
   const double hand_moved = metric.between(hand_, hand).norm();
-  const double open = kLeastJump * descent_.gaps().radius();
+  const double open = Limit::kLeastFall * descent_.gaps().radius();
   const double jump = metric.between(before, pose()).norm() - 2 * hand_moved;
   const bool far = held && jump > open;
   const bool lifted = has(contact.notes, ContactNote::reanchored);
-  if (far && !lifted && jump > kFall * metric.between(hand_, before).norm()) {
+  if (far && !lifted && jump > Limit::kFall * metric.between(hand_, before).norm()) {
     contact.notes |= ContactNote::fell;
   }
   spring_.pull({.hand = hand,
@@ -213,7 +208,7 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
                 // A tool that lags behind a hand which has let go is still held: else what it meets
                 // next would begin as soft as the spring is stretched.
                 .touching = descent_.touches().count > 0 || (held && !at_hand),
-                .jumped = far && step != nullptr && jump > std::max(*step, kFastestSurface * dt)},
+                .jumped = far && step != nullptr && jump > std::max(*step, Limit::kFastest * dt)},
                metric, contact);
   for (ToolContact::Touch& touch : contact.touches) touch.force *= spring_.stiffness();
 }

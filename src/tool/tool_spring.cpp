@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/limit.hpp"
+
 namespace palpate {
 namespace {
-
-constexpr double kFadedAway = 0.002;  // of the stiffness, as for a point: 3 mN of 1.5 N
-constexpr double kSofter = 0.95;      // of the wanted stiffness, as for a point; less is felt
 
 void add(const Motion& stretch, double stiffness, const Metric& metric, ToolContact& contact) {
   contact.wrench.force += stiffness * stretch.head<3>();
@@ -34,7 +33,7 @@ void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& conta
   touching_ = contact.touching = step.touching;
   if (touching_) {
     add(stretch, tank_.follow(wanted, length, 0, step.dt), metric, contact);
-    if (tank_.stiffness() < kSofter * wanted) contact.notes |= ContactNote::softer;
+    if (tank_.stiffness() < Limit::kMuchSofter * wanted) contact.notes |= ContactNote::softer;
   }
   if (fading_ > 0) add_fading(step, metric, contact);
 }
@@ -46,7 +45,7 @@ void ToolSpring::leave(const Pose& anchor, const Metric& metric) noexcept {
     anchor_ = metric.moved(anchor_, stiffness() / both * metric.between(anchor_, anchor));
   }
   fading_ = both;
-  gone_ = kFadedAway * both;
+  gone_ = Limit::kGone * both;
 }
 
 void ToolSpring::add_fading(const Step& step, const Metric& metric, ToolContact& contact) noexcept {
