@@ -32,7 +32,7 @@ REFERENCE = {"tests/apps/golden": "program", "python/palpate/__init__.pyi": "pyt
 def pages():
     """Where each document stands in the site: what is in docs/ as there, the rest beside it."""
     found = {path: path.relative_to(ROOT / "docs") for path in (ROOT / "docs").rglob("*.md")}
-    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "bench/README.md", "bench/RESULTS.md", "web/README.md"):
+    for name in ("CHANGELOG.md", "CONTRIBUTING.md", "bench/README.md", "bench/RESULTS.md", "bench/RIVALS.md", "web/README.md"):
         found[ROOT / name] = pathlib.Path(name)
     for note in (ROOT / "bench" / "notes").glob("*.md"):
         found[note] = note.relative_to(ROOT)
@@ -217,12 +217,18 @@ def main():
     os.environ["PATH"] = f"{PROGRAM.parent}:{os.environ['PATH']}"
     (out / "pictures").mkdir(parents=True)
     where = pages()
+    index = ROOT / "docs" / "index.md"
+    menu = re.findall(r"\]\(([^)#]+\.md)\)", relinked(index.read_text(encoding="utf-8"), index, where, out))
     with tempfile.TemporaryDirectory() as folder:
         desk = make_desk(folder)
         for path, page in where.items():
             text = relinked(path.read_text(encoding="utf-8"), path, where, out)
             text = blocks.FENCE.sub(lambda found: shown(found, desk, out / "pictures", page.stem), text)
-            write(out / page, trees(text) if page.name == "index.md" else text)
+            if page.name == "index.md":
+                text = trees(text)
+            elif page.as_posix() not in menu:
+                text = f"---\norphan: true\n---\n\n{text}"  # links lead to it, the menu does not
+            write(out / page, text)
     for name, parts in (("program", program_reference()), ("python", python_reference()), ("cpp", cpp_reference(out))):
         write(out / "reference" / f"{name}.md", "\n".join(parts))
 

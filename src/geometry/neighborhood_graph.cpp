@@ -33,13 +33,13 @@ NeighborRow NeighborhoodGraph::find_row(const Block& part, Surroundings& surroun
 }
 
 void NeighborhoodGraph::keep_block(std::size_t b, Search& search) {
-  auto& [around, rows] = search;
+  Kept& rows = search.rows;
   const std::size_t most = kMostAPoint * blocks_[b].size();
   rows.clear();
-  find_leaves(blocks_[b], around);
+  find_leaves(blocks_[b], search.around);
   for_each_part(blocks_[b], [&](const Block& part) {
     if (rows.neighbors.size() > most) return;
-    rows.push_back(find_row(make_block(*grid_, part.begin, part.end), around).neighbors);
+    rows.push_back(find_row(make_block(*grid_, part.begin, part.end), search.around).neighbors);
   });
   if (rows.neighbors.size() > most) rows.clear();
   kept_[b] = rows;
