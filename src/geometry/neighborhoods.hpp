@@ -125,8 +125,8 @@ template <class Pick>
   return pick_in_cells(grid, values, [](float a, float b) { return b < a ? b : a; });
 }
 
-/// Calls visit(part) for the parts of a block: simd::kQueries points, fewer in the last. Their boxes
-/// are not set.
+/// Calls visit(part) for the parts of a block: simd::kQueries points, fewer in the last. Their
+/// boxes are not set.
 template <class Visit>
 void for_each_part(const Block& block, const Visit& visit) {
   for (std::uint32_t first = block.begin; first < block.end; first += simd::kQueries) {

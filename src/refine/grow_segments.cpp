@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "geometry/signed_sets.hpp"
 #include "geometry/near_pairs.hpp"
+#include "geometry/signed_sets.hpp"
 #include "refine/cannot_link_sets.hpp"
 #include "refine/segments.hpp"
 
