@@ -30,8 +30,7 @@ struct Surfels {
   const PrepareOptions& options;
   Sampling sampling = {};
   Radii radii = {};
-  detail::NeighborhoodGraph graph =
-      {};  ///< of the sampling's points, from the first fits until all are assembled
+  detail::NeighborhoodGraph graph = {};  ///< of the sampling's points, until they are assembled
   PointFits fits = {};
   WeightSums sums = {};
   Weights weights = {};
