@@ -9,8 +9,9 @@
 #              between processes; and long cases of a quarter of a minute
 #   core       the core alone: builds, and passes its tests
 #   bare       the program without any optional library
-#   tab        the page of a tab: its program in Node, the page in a browser
-#   web        that, and in Node the tests of what it is made of, hostile files under sanitizers, forces bit for bit
+#   tab        the program of a tab: builds with its page, and passes its tests in Node
+#   web        that, its page in a browser, in Node the tests of what it is made of, hostile files under sanitizers, and
+#              forces bit for bit
 #   debug      every test and the benches in a Debug build
 #   threads    every test under TSan
 #   long       every test under ASan + UBSan, the Python module among them; in a release build every test with all
@@ -78,7 +79,7 @@ check_bare() {
 }
 
 # 77: there is no compiler for it here.
-check_tab() { scripts/tab.sh --test || [ $? -eq 77 ]; }
+check_tab() { scripts/tab.sh --module || [ $? -eq 77 ]; }
 
 check_web() { scripts/tab.sh || [ $? -eq 77 ]; }
 
@@ -154,7 +155,7 @@ parts=("$@")
 if [ $# -eq 0 ]; then parts=("${all[@]}"); fi
 for part in "${parts[@]}"; do
   if ! declare -F "check_$part" >/dev/null; then
-    sed -n '2,24s/^# \{0,1\}//p' "$0"
+    sed -n '2,25s/^# \{0,1\}//p' "$0"
     [[ "$part" == -h || "$part" == --help ]] || fail "no part is called '$part'"
     exit
   fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds a tab's program as WebAssembly, the page of a tab in build/web/site, and build/web/palpate-tab, which puts it into
 # other pages; tests them and what they are made of, hostile files under sanitizers, and that forces are those of a native
-# build of portable bits, bit for bit. --test: the page and its module alone. --site: builds alone. --serve: builds, and
-# serves the page on http://127.0.0.1:8430/.
+# build of portable bits, bit for bit. --test: the page and its module alone. --module: the module alone. --site: builds
+# alone. --serve: builds, and serves the page on http://127.0.0.1:8430/.
 # shellcheck source=scripts/lib.sh
 source "$(dirname "$0")/lib.sh"
 # shellcheck source=scripts/emscripten.sh
@@ -39,7 +39,7 @@ build_site() {
 }
 
 case "${1:-}" in
-  "" | --test | --site | --serve) ;;
+  "" | --test | --module | --site | --serve) ;;
   *)
     sed -n '2,5s/^# //p' "$0"
     exit
@@ -67,4 +67,5 @@ if [ $# -eq 0 ]; then
 else
   test_preset web -R '^tab/'
 fi
+if [ "${1:-}" = --module ]; then exit; fi
 PALPATE_SITE=$PWD/build/web/site tests/page/check.sh tab web "$PWD/build/web/pictures" build/web/site || [ $? -eq 77 ]
