@@ -65,6 +65,24 @@ struct Creases {
   UnionField all;
 };
 
+/// How deep a tool was in a field, and in how many ticks it touched.
+struct Depths {
+  void see(const ToolProxy& proxy, const Field& field, const ToolContact& contact) {
+    const double depth = depth_of(proxy, field);
+    deepest = std::max(deepest, depth);
+    deep += depth > 0.02 * kSupport ? 1 : 0;
+    touching += contact.touching ? 1 : 0;
+  }
+  void expect_outside(int ticks) const {
+    EXPECT_EQ(deep, 0) << deepest / kSupport << " R";
+    EXPECT_GT(touching, ticks / 10);
+  }
+
+  int deep = 0;
+  int touching = 0;
+  double deepest = 0;
+};
+
 TEST(ToolInCreases, NeverEntersCreasesAndNeverIsNaN) {
   const Creases scene;
   const int ticks = effort(25'000);
@@ -72,30 +90,24 @@ TEST(ToolInCreases, NeverEntersCreasesAndNeverIsNaN) {
   for (Tool& tool : four_tools()) {
     ToolProxy proxy = proxy_of(std::move(tool));
     WanderingHand hand(seed++);
+    Depths depths;
     int not_finite = 0;
-    int deep = 0;
-    int touching = 0;
     int lagging = 0;
     int unfinished = 0;
     int most = 0;
-    double deepest = 0;
     for (int i = 0; i < ticks; ++i) {
       const ToolContact contact = proxy.step(scene.all, hand.next(), kTick);
       const Wrench& wrench = contact.wrench;
       const bool finite = wrench.force.allFinite() && wrench.torque.allFinite() &&
                           std::isfinite(wrench.grip) && !has(contact.notes, ContactNote::fault);
       not_finite += finite ? 0 : 1;
-      const double depth = depth_of(proxy, scene.all);
-      deepest = std::max(deepest, depth);
-      deep += depth > 0.02 * kSupport ? 1 : 0;
-      touching += contact.touching ? 1 : 0;
+      depths.see(proxy, scene.all, contact);
       lagging += has(contact.notes, ContactNote::sweep_truncated) ? 1 : 0;
       unfinished += has(contact.notes, ContactNote::not_converged) ? 1 : 0;
       most = std::max(most, contact.evaluations);
     }
     EXPECT_EQ(not_finite, 0);
-    EXPECT_EQ(deep, 0) << deepest / kSupport << " R";
-    EXPECT_GT(touching, ticks / 10);
+    depths.expect_outside(ticks);
     EXPECT_LT(lagging, 20 + ticks / 80);
     EXPECT_LT(unfinished, 10 + ticks / 1000);
     EXPECT_LE(most, proxy.max_evaluations());
@@ -118,23 +130,17 @@ TEST(ToolInCreases, NeverEntersAThinSheet) {
   for (Tool& tool : four_tools()) {
     ToolProxy proxy = proxy_of(std::move(tool));
     WanderingHand hand(seed++);
-    int deep = 0;
-    int touching = 0;
-    double deepest = 0;
+    Depths depths;
     double least_opening = 0;
     for (int i = 0; i < ticks; ++i) {
       Pose pose = hand.next();
       pose.opening = 0.02 * (1 + std::sin(5e-3 * i));
       pose.position.x() += 0.03;
       const ToolContact contact = proxy.step(hall.all, pose, kTick);
-      const double depth = depth_of(proxy, hall.all);
-      deepest = std::max(deepest, depth);
-      deep += depth > 0.02 * kSupport ? 1 : 0;
-      touching += contact.touching ? 1 : 0;
+      depths.see(proxy, hall.all, contact);
       least_opening = std::min(least_opening, contact.proxy.opening);
     }
-    EXPECT_EQ(deep, 0) << deepest / kSupport << " R";
-    EXPECT_GT(touching, ticks / 10);
+    depths.expect_outside(ticks);
     EXPECT_GT(least_opening, -1e-9);
   }
 }
