@@ -79,6 +79,7 @@ class LasHeaderParser {
       wrong(kHeaderSize, fmt::format("a header of {} bytes, but points from byte {}", header_.size,
                                      header_.points_offset));
     }
+    need(header_.size);
   }
 
   void read_transform() {

@@ -73,6 +73,9 @@ TEST(Las, SaysHowManyPointsOfACutFileAreThere) {
   EXPECT_THAT(refusal(bytes.substr(0, bytes.size() - 1)), HasSubstr("after 2 of 3 points"));
   EXPECT_THAT(refusal(bytes.substr(0, 200)), HasSubstr("inside its LAS header"));
   EXPECT_THAT(refusal(las_bytes(4, 6, {}).substr(0, 300)), HasSubstr("inside its LAS header"));
+  std::string long_header = las_bytes(3, 3, {}).substr(0, 232);  // waveforms are at byte 227
+  overwrite<std::uint16_t>(long_header, 94, 235);
+  EXPECT_THAT(refusal(long_header), HasSubstr("inside its LAS header of 235 bytes"));
 }
 
 TEST(Las, NamesTheByteOfWhatIsWrong) {
