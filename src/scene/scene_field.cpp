@@ -3,18 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <deque>
-#include <limits>
-#include <span>
 #include <string>
 #include <utility>
 
 #include "field/evaluate.hpp"
+#include "scene/followed_sources.hpp"
 #include "scene/patch_cache.hpp"
-#include "scene/source_inside.hpp"
-#include "scene/source_view.hpp"
 
 namespace palpate {
 namespace {
@@ -27,97 +22,36 @@ constexpr double kWideMargin = 0.62;  // R; judgement
 constexpr double kReserve = 0.1;      // R
 constexpr double kToolShare = 0.3;    // R; the largest tool radius that counts in full (judgement)
 constexpr double kFinest = 0.25;      // mean R; the least radius that sweeps follow (judgement)
-
-// A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
-constexpr double kFastestCloud = 0.5;
 constexpr double kFelt = 2;  // R around a tool; normals beside rims need neighbours (judgement)
 }  // namespace
 
-static_assert(Scene::kMaxSources <= simd::kMaxSources);
-static_assert(Scene::kMaxSources * Snapshot::kMaxLayers <= kMostLayers);
-
 struct SceneField::State {
-  /// A source as one field follows it.
-  struct FollowedSource {
-    FollowedSource(Source::Inside& source, const SourceOptions::SoftMaterial& its_soft,
-                   const std::string& name)
-        : view(source.handoff, source.slot.seams->least_radius(source.slot.number), name),
-          board(&source.reaches),
-          soft(its_soft) {}
-
-    SourceView view;
-    ReachTable* board;
-    SourceOptions::SoftMaterial soft;
-    const Snapshot* shown = nullptr;  // of the view
-  };
-
   State(Scene& scene, const FieldOptions& options, const std::string& name, double scale)
-      : surface(options), fields(scene.fields_), reach(scale) {
-    for (std::size_t i = 0; i < scene.size(); ++i) {
-      const Source& source = scene.source(i);
-      sources.emplace_back(*source.inside_, source.options().soft, name);
-    }
-    ++*fields;
-  }
-  ~State() {
-    for (const FollowedSource& source : sources) source.board->clear(source.view.reader());
-    --*fields;
-  }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+      : surface(options), followed(scene, name, scale) {}
 
-  /// One source, confident of it, no materials, no motion: every surface is the same.
-  [[nodiscard]] bool plain() const noexcept {
-    return layers.plain_points && sources.size() == 1 && sources.front().view.presence() == 1;
-  }
-
-  [[nodiscard]] bool same_snapshots() noexcept;
-  void list_layers() noexcept;
-  void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
+  /// m, of the points around the proxy, or of all.
   [[nodiscard]] double radius() const noexcept {
     return patches.near().points() > 0 ? patches.near().columns().mean_radius
-                                       : layers.typical_radius();
+                                       : followed.layers().typical_radius();
   }
   /// How far a patch away from the path reaches beyond what it is gathered for, m.
   [[nodiscard]] double margin() const noexcept {
-    return (layers.moving ? kWideMargin : kMargin) * radius();
+    return (followed.layers().moving ? kWideMargin : kMargin) * radius();
   }
+  void gather_path(const Vector3d& hip, const Vector3d& proxy) noexcept;
   [[nodiscard]] FieldNote standing_notes() const noexcept;
 
   ImplicitSurface surface;
-  std::shared_ptr<std::atomic<int>> fields;  // of the scene
-  std::deque<FollowedSource> sources;
-  ToolReach reach;
-  ActiveLayers layers;
-  double step = 0;  // how far surfaces may have stepped since the last tick, m
-  double now = 0;
+  FollowedSources followed;
   FieldNote notes = FieldNote::none;
   std::uint64_t revision = 0;
   std::uint32_t stride = 1;  // of the near patch
   PatchCache patches{surface};
 };
 
-/// Are the views' snapshots those of the last call? A new one never has the old one's address.
-bool SceneField::State::same_snapshots() noexcept {
-  bool same = true;
-  for (FollowedSource& source : sources) {
-    const Snapshot* const newest = source.view.current();
-    if (std::exchange(source.shown, newest) == newest) continue;
-    same = false;
-    if (newest) step = std::max(step, kFastestCloud * time_stepped(*newest, layers.active()));
-  }
-  return same;
-}
-
-void SceneField::State::list_layers() noexcept {
-  layers.clear();
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    layers.add(sources[s].view, static_cast<int>(s), surface.options);
-  }
-}
-
 /// Notes that hold whatever is sampled.
 FieldNote SceneField::State::standing_notes() const noexcept {
+  const ActiveLayers& layers = followed.layers();
   FieldNote found = layers.count > 0 ? FieldNote::none : FieldNote::no_surface;
   const Patch& near = patches.near();
   if (near.thinned()) found = found | FieldNote::thinned;
@@ -138,7 +72,7 @@ void SceneField::State::gather_path(const Vector3d& hip, const Vector3d& proxy) 
   const double stretch = std::min(length, r);
   const Vector3d end = length > 0 ? Vector3d(proxy + offset * (stretch / length)) : proxy;
   const std::array balls{Ball{proxy, kReserve * r}, Ball{end, kReserve * r}};
-  const bool wide = std::ranges::any_of(layers.active(), moves);
+  const bool wide = std::ranges::any_of(followed.layers().active(), moves);
   const double extra = 0.5 * stretch + (wide ? kWideMargin : kMargin) * r;
   if (!patches.near_covers(balls, extra)) patches.gather_near(0.5 * (proxy + end), extra);
 }
@@ -151,43 +85,31 @@ SceneField::~SceneField() = default;
 
 void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
   State& state = *state_;
-  if (std::isfinite(now)) state.now = now;
-  bool changed = false;
-  state.step = 0;
-  for (State::FollowedSource& source : state.sources)
-    changed = source.view.advance(state.now) || changed;
-  if (changed) {
-    const bool same = state.same_snapshots();
-    state.list_layers();
-    state.patches.set_layers(state.layers.active(), static_cast<int>(state.sources.size()), same);
+  FollowedSources& followed = state.followed;
+  if (followed.advance(now, options_)) {
+    state.patches.set_layers(followed.layers().active(), followed.sources(), followed.same());
     ++state.revision;
   }
   state.patches.begin_update();
   if (hip.allFinite() && proxy.allFinite()) {
     if (options_.nearest_radius)
-      state.patches.take_nearest_radius(proxy, state.layers.typical_radius());
+      state.patches.take_nearest_radius(proxy, followed.layers().typical_radius());
     state.patches.set_tool(proxy);
     state.gather_path(hip, proxy);
     state.patches.face_near();
-    const double felt = kFelt * state.radius();
-    const Reach ball = state.reach.update(state.now, hip, proxy, state.layers.frame_interval, felt);
-    for (const State::FollowedSource& source : state.sources) {
-      source.board->write(source.view.reader(), ball);
-    }
+    followed.report(hip, proxy, kFelt * state.radius());
     const std::uint32_t stride = state.patches.near().selection().stride();
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
-  for (const State::FollowedSource& source : state.sources) {
-    if (source.view.misses({proxy, state.radius()}))
-      state.notes = state.notes | FieldNote::not_loaded;
-  }
+  if (followed.misses({proxy, state.radius()})) state.notes = state.notes | FieldNote::not_loaded;
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 
 Sample SceneField::sample(const Vector3d& x) const noexcept {
   const State& state = *state_;
-  if (state.layers.count == 0 || !x.allFinite()) return {.value = 1};  // free, how far unknown
+  if (state.followed.layers().count == 0 || !x.allFinite())
+    return {.value = 1};  // free, how far unknown
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
   if (patch) return evaluate(state.surface, *patch, x);
   return {.value = -state.radius(), .support = 1, .radius = state.radius()};  // solid where unknown
@@ -195,7 +117,7 @@ Sample SceneField::sample(const Vector3d& x) const noexcept {
 
 bool SceneField::is_free(const Ball& ball) const noexcept {
   const State& state = *state_;
-  if (state.layers.count == 0) return true;
+  if (state.followed.layers().count == 0) return true;
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   const bool small = ball.radius <= 0.5 * kMargin * state.radius();
   if (!small && !state.patches.covers(ball)) return state.patches.walk_is_free(ball);
@@ -207,7 +129,7 @@ void SceneField::change(const FieldOptions& checked) noexcept {
   if (checked == options_) return;  // nothing to gather again
   options_ = checked;
   state_->surface.change(checked);
-  state_->list_layers();
+  state_->followed.list(options_);
   state_->patches.forget();
   ++state_->revision;
 }
@@ -224,17 +146,10 @@ void SceneField::end_step(const Vector3d& proxy, const Vector3d& normal) const n
 
 Surface SceneField::surface(const Vector3d& x) const noexcept {
   const State& state = *state_;
-  if (state.layers.count == 0 || !x.allFinite()) return {};
-  if (state.plain()) return {.source = 0};
+  if (state.followed.layers().count == 0 || !x.allFinite()) return {};
+  if (state.followed.plain()) return {.source = 0};
   const Patch* const patch = state.patches.patch_for({x, 0}, state.margin());
-  if (!patch) return {};
-  std::array<double, Scene::kMaxSources> present{};
-  const auto presence = [](const State::FollowedSource& source) { return source.view.presence(); };
-  std::ranges::transform(state.sources, present.begin(), presence);
-  const auto presences = std::span(present).first(state.sources.size());
-  const PatchSurface mean = mean_surface(state.surface, *patch, x, presences);
-  if (mean.source < 0) return {};
-  return felt_surface(mean, state.sources[static_cast<std::size_t>(mean.source)].soft);
+  return patch ? state.followed.surface(state.surface, *patch, x) : Surface{};
 }
 
 Field::Traits SceneField::traits() const noexcept {
@@ -243,19 +158,19 @@ Field::Traits SceneField::traits() const noexcept {
   // One finely sampled spot must not make sweeps fine everywhere.
   const double smallest =
       std::max(state.patches.near().points() > 0 ? state.patches.near().columns().smallest_radius
-                                                 : state.layers.typical_radius(),
+                                                 : state.followed.layers().typical_radius(),
                kFinest * state.radius());
   return {.resolution = metaball ? 0.002 * smallest : smallest / 16,
           .revision = state.revision,
-          .reanchor_reach = kFastestCloud * state.layers.cloud_duration,
-          .step = state.step};
+          .reanchor_reach = kFastestCloud * state.followed.layers().cloud_duration,
+          .step = state.followed.step()};
 }
 
 SceneField::Found SceneField::found() const noexcept {
   Found found;
-  for (std::size_t i = 0; i < state_->sources.size(); ++i) {
-    found.publications[i] = state_->sources[i].view.taken();
-    found.least_radii[i] = state_->sources[i].view.least_radius();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state_->followed.sources()); ++i) {
+    found.publications[i] = state_->followed.view(i).taken();
+    found.least_radii[i] = state_->followed.view(i).least_radius();
   }
   return found;
 }

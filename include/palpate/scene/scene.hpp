@@ -36,7 +36,7 @@ class Scene {
   [[nodiscard]] Source::State state(std::size_t i) const;
 
  private:
-  friend class SceneField;
+  friend class FollowedSources;
 
   std::deque<Source> sources_;
   std::shared_ptr<Seams> seams_;

@@ -243,7 +243,7 @@ class Source {
  private:
   friend class OnDemand;
   friend class Scene;
-  friend class SceneField;
+  friend class FollowedSources;
   friend class SourceTrace;  // of recordings and replays
   friend struct Streaming;   // of what is pushed
 
