@@ -1,15 +1,14 @@
 // Ends contacts whose surface is gone, and lets go of hands that nothing should hold.
 
+#include "contact/limit.hpp"
 #include "contact/probe.hpp"
 #include "contact/proxy_inside.hpp"
 
 namespace palpate {
 namespace {
 
-constexpr double kWaits = 2;     // of R: a hand that moves farther ends the wait (judgement)
-constexpr double kHardest = 10;  // N in free air: desktop devices sustain less (judgement)
-constexpr double kFar = 10;      // of R, from the proxy (judgement)
-constexpr double kFast = 0.1;    // of R a step: the reserve of a patch (SceneField)
+constexpr double kWaits = 2;   // of R: a hand that moves farther ends the wait (judgement)
+constexpr double kFast = 0.1;  // of R a step: the reserve of a patch (SceneField)
 
 }  // namespace
 
@@ -62,8 +61,8 @@ void Proxy::Inside::free_hand(Probe& probe, const Eigen::Vector3d& before,
     contact = {.iterations = contact.iterations, .notes = contact.notes | ContactNote::freed};
   }
   const double stretch = (hip - position_).norm();
-  const bool hard =
-      touch_.touching && stretch > kFar * radius_ && options_.stiffness * stretch > kHardest;
+  const bool hard = touch_.touching && stretch > Limit::kFar * radius_ &&
+                    options_.stiffness * stretch > Limit::kHardest;
   if (!spring_.hold_away(hard && probe.is_free({hip, 0}), dt)) return;
   contact.notes |= ContactNote::freed;
   if (spring_.stiffness() <= kFaded * options_.stiffness) release(hip);

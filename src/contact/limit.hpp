@@ -12,7 +12,11 @@ struct Limit {
   static constexpr double kFastest =
       1;                                ///< m/s: a surface that moves faster has jumped (judgement)
   static constexpr double kFall = 0.5;  ///< of the stretch, the least that is noted (judgement)
-  static constexpr double kLeastFall = 0.01;   ///< of R: what iterations leave open is no jump
+  static constexpr double kLeastFall = 0.01;  ///< of R: what iterations leave open is no jump
+  static constexpr double kHardest =
+      10;  ///< N in free air: desktop devices sustain less (judgement)
+  static constexpr double kFar =
+      10;  ///< of R, from the proxy, for which a hand is away (judgement)
   static constexpr double kGone = 0.002;       ///< of the stiffness that fades: 3 mN of 1.5 N
   static constexpr double kMuchSofter = 0.95;  ///< of the wanted one; less is felt (judgement)
 };

@@ -7,12 +7,6 @@
 #include "contact/limit.hpp"
 
 namespace palpate {
-namespace {
-
-constexpr double kAwayTime = 1;   // s in free air, after which a hand is let go (judgement)
-constexpr double kFreeing = 0.5;  // s, in which its spring fades (judgement)
-
-}  // namespace
 
 void EnergyTank::restart(double stiffness) noexcept {
   stiffness_ = stiffness;
@@ -67,15 +61,9 @@ double FadingSpring::fade(const Eigen::Vector3d& hip, double dt) noexcept {
   return energy;
 }
 
-bool Spring::hold_away(bool away, double dt) noexcept {
-  away_ = away ? away_ + dt : 0;
-  return away_ >= kAwayTime;
-}
-
 double Spring::wanted(double full) const noexcept {
   if (is_lost()) return 0;
-  const double left = std::clamp(1 - (away_ - kAwayTime) / kFreeing, 0.0, 1.0);
-  return std::max(0.0, left * full - fading_.stiffness());
+  return std::max(0.0, away_.left() * full - fading_.stiffness());
 }
 
 void Spring::go_on(const EnergyTank& before, double stiffness, double full,

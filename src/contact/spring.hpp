@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "palpate/contact/proxy.hpp"
 
@@ -69,6 +70,26 @@ class FadingSpring {
   double gone_ = 0;  // stiffness at which it ends
 };
 
+/// Lets go of a hand that is held hard in free air for long: its spring fades, then it is free.
+class AwayClock {
+ public:
+  /// `away`: it is held so in this step of `dt` (s), too. True: it is to be let go.
+  bool count(bool away, double dt) noexcept {
+    away_ = away ? away_ + dt : 0;
+    return away_ >= kAwayTime;
+  }
+  /// The share of its stiffness that a spring has left.
+  [[nodiscard]] double left() const noexcept {
+    return std::clamp(1 - (away_ - kAwayTime) / kFreeing, 0.0, 1.0);
+  }
+
+ private:
+  static constexpr double kAwayTime = 1;   // s, after which a hand is let go (judgement)
+  static constexpr double kFreeing = 0.5;  // s, in which its spring fades (judgement)
+
+  double away_ = 0;  // s that the hand has been held so
+};
+
 /// The spring between proxy and hand: a tank pays for its stiffness, what earlier contacts left
 /// fades beside it, and two clocks take it away where nothing should hold the hand. Real-time.
 class Spring {
@@ -77,7 +98,10 @@ class Spring {
   void reset() noexcept { *this = {}; }
 
   /// The proxy moves freely, or a contact begins: both clocks stand at 0.
-  void rest() noexcept { lost_ = away_ = 0; }
+  void rest() noexcept {
+    lost_ = 0;
+    away_ = {};
+  }
 
   /// The contact's surface was found in this step.
   void find() noexcept { lost_ = 0; }
@@ -85,9 +109,8 @@ class Spring {
   void lose(double dt) noexcept { lost_ += dt; }
   [[nodiscard]] bool is_lost() const noexcept { return lost_ > kKeepLost; }
 
-  /// Counts for how long a hand is held hard in free air; `away`: it is, in this step of `dt` (s),
-  /// too. True: it is to be let go.
-  [[nodiscard]] bool hold_away(bool away, double dt) noexcept;
+  /// AwayClock::count()
+  [[nodiscard]] bool hold_away(bool away, double dt) noexcept { return away_.count(away, dt); }
 
   /// The stiffness (N/m) that a contact comes to whose surface allows `full`.
   [[nodiscard]] double wanted(double full) const noexcept;
@@ -132,7 +155,7 @@ class Spring {
   EnergyTank tank_;
   FadingSpring fading_;  // of contacts that a change of the surface ended
   double lost_ = 0;      // s since the surface was lost
-  double away_ = 0;      // s that the hand has been in free air, far from the proxy
+  AwayClock away_;
 };
 
 }  // namespace palpate

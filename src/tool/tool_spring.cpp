@@ -23,7 +23,7 @@ void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& conta
   const Motion stretch = metric.between(step.hand, step.now);
   const double length = stretch.norm();
   if (step.jumped) leave(step.before, metric);
-  const double wanted = std::max(0.0, step.full - fading_);
+  const double wanted = std::max(0.0, away_.left() * step.full - fading_);
   const double begun = wanted * (length > step.moved ? step.moved / length : 1);
   if (step.jumped) {
     tank_.take_over(begun);

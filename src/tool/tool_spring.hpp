@@ -28,6 +28,9 @@ class ToolSpring {
   /// Sets wrench, stiffness, touching and ContactNote::softer.
   void pull(const Step& step, const Metric& metric, ToolContact& contact) noexcept;
 
+  /// AwayClock::count()
+  [[nodiscard]] bool hold_away(bool away, double dt) noexcept { return away_.count(away, dt); }
+
   /// Did a surface hold the tool in the last step?
   [[nodiscard]] bool touching() const noexcept { return touching_; }
   /// N/m, without what fades.
@@ -38,6 +41,7 @@ class ToolSpring {
   void add_fading(const Step& step, const Metric& metric, ToolContact& contact) noexcept;
 
   EnergyTank tank_;
+  AwayClock away_;
   Pose anchor_;            // of what fades
   double fading_ = 0;      // its stiffness, N/m
   double gone_ = 0;        // stiffness at which it ends, N/m
