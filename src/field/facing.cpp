@@ -13,10 +13,13 @@ using Eigen::Vector3f;
 constexpr int kPairs = 2048;  // compared in one call, to bound its time; judgement
 
 /// Forgets the sign of a component without weight at the proxy, or that a free proxy is behind, and
-/// the label of a segment that has moved away.
+/// the label of a segment that has moved away. The next position of a tool may be elsewhere, so it
+/// forgets what nothing speaks for.
 void let_go(SegmentTable& table, const Stance& stance) noexcept {
   for (SegmentTable::Component& component : table.components) {
-    if (!component.near || (component.is_absent() && !stance.touches())) component.sign = 0;
+    const bool behind = component.is_absent() && !stance.touches();
+    const bool unknown = component.assumed && stance.spread > 0;
+    if (!component.near || behind || unknown) component.sign = 0;
   }
   for (SegmentTable::Segment& segment : table.segments) {
     if (!segment.near) segment.label = SegmentTable::kUndecided;
@@ -24,6 +27,42 @@ void let_go(SegmentTable& table, const Stance& stance) noexcept {
 }
 
 }  // namespace
+
+void AgreedSides::begin_update(double passed) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    Side side = sides_[k];
+    side.unconfirmed += passed;
+    if (side.unconfirmed <= kKept) sides_[kept++] = side;
+  }
+  count_ = kept;
+}
+
+AgreedSides::Side* AgreedSides::find(const Component& component) noexcept {
+  // Points that were seen from one side alone are never turned.
+  if (component.is_one_sided()) return nullptr;
+  const auto all = std::span(sides_).first(count_);
+  const auto found = std::ranges::find(all, component.key, &Side::component);
+  return found == all.end() ? nullptr : &*found;
+}
+
+void AgreedSides::turn(std::span<Component> components) noexcept {
+  for (Component& component : components) {
+    if (const Side* side = find(component)) component.sign = side->sign;
+  }
+}
+
+void AgreedSides::confirm(std::span<const Component> components) noexcept {
+  for (const Component& component : components) {
+    const bool decided = component.sign != 0 && !component.assumed;
+    if (component.is_one_sided() || !decided || !component.near) continue;
+    if (Side* side = find(component)) {
+      if (side->sign == component.sign) side->unconfirmed = 0;
+    } else if (count_ < sides_.size()) {
+      sides_[count_++] = {component.key, component.sign, 0};
+    }
+  }
+}
 
 Facing::Facing(std::size_t capacity) : view_(capacity) {
   references_.reserve(2 * capacity);
@@ -95,7 +134,7 @@ bool Facing::is_settled(std::span<const ActiveLayer> layers) const noexcept {
 
 void Facing::look(const Points& points, const Stance& stance) noexcept {
   pairs_ = kPairs;
-  view_.list(points.layers, *points.selection, points.rise, stance.proxy);
+  view_.list(points.layers, *points.selection, points.rise, stance);
   if (view_.points.empty()) return;
   if (!std::exchange(follows_, false)) let_go(view_.table, stance);
   view_.look(stance, (stance.proxy - remembered_from_).norm(), was_behind_);
@@ -106,7 +145,9 @@ void Facing::look(const Points& points, const Stance& stance) noexcept {
   const auto older = static_cast<std::ptrdiff_t>(remembered_.size());
   const bool vanished = view_.has_lost_one();
   list_references(stance.proxy, vanished);
+  if (stance.agreed) stance.agreed->turn(view_.table.components);
   decide_signs(stance.touches() || vanished);
+  if (stance.agreed) confirm(*stance.agreed);
   decide_labels();
   if (vanished) references_.erase(references_.begin(), references_.begin() + older);
   std::swap(references_, remembered_);

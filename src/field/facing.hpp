@@ -13,6 +13,37 @@
 
 namespace palpate {
 
+/// The sides of components on which all parts of a rigid tool are: it is on one side of each
+/// surface, however many of its parts look at it. Real-time.
+class AgreedSides {
+ public:
+  using Component = SegmentTable::Component;
+
+  /// s in which nobody confirms a side, after which it is forgotten: the pauses in which a hand
+  /// that slides lifts off (judgement).
+  static constexpr double kKept = 0.02;
+
+  /// `passed`: s since the last update.
+  void begin_update(double passed) noexcept;
+  /// Gives components the signs that are agreed.
+  void turn(std::span<Component> components) noexcept;
+  /// A part has decided these; those that are near it are confirmed. The first sign of a component
+  /// counts.
+  void confirm(std::span<const Component> components) noexcept;
+  void forget() noexcept { count_ = 0; }
+
+ private:
+  struct Side {
+    SegmentTable::Key component;
+    int sign = 0;
+    double unconfirmed = 0;  // s
+  };
+  [[nodiscard]] Side* find(const Component& component) noexcept;
+
+  std::array<Side, SegmentTable::kMost> sides_;
+  std::size_t count_ = 0;
+};
+
 /// Decides which side of each segment near the tool is free, and how the segments meet as seen from
 /// there. A decision stands as long as any of the segment's points has weight at the proxy:
 /// meanwhile the field depends only on where it is evaluated. Real-time but for construction;
@@ -45,6 +76,9 @@ class Facing {
 
   /// Forgets what is decided and what was seen.
   void forget() noexcept;
+
+  /// Confirms the sides that are decided here.
+  void confirm(AgreedSides& agreed) const noexcept { agreed.confirm(view_.table.components); }
 
   /// Copies decisions from `other`, if it has any. They hold for the next face() even if no point
   /// is near.

@@ -125,7 +125,10 @@ void Facing::decide_signs(bool continued) noexcept {
     const bool inherits = continued && !component.is_one_sided();
     const double vote = !inherits ? 0 : component.outward && beside != 0 ? beside : votes_on(k);
     const double evidence = std::abs(vote) > kLeastVote ? vote : component.seen;
-    if (evidence != 0) component.sign = evidence < 0 ? -1 : 1;
+    if (evidence != 0) {
+      component.sign = evidence < 0 ? -1 : 1;
+      component.assumed = false;
+    }
   }
 }
 
@@ -225,9 +228,11 @@ void Facing::decide_labels() noexcept {
     if (!next) return;
     Component& component = view_.table.components[next->component];
     // Nothing of the component is seen: what is decided beside it gives its sign.
-    const bool turned =
-        component.sign == 0 && !component.is_one_sided() && votes_on(next->component) < 0;
-    if (component.sign == 0) component.sign = turned ? -1 : 1;
+    if (component.sign == 0) {
+      const double vote = component.is_one_sided() ? 0 : votes_on(next->component);
+      component.sign = vote < 0 ? -1 : 1;
+      component.assumed = vote == 0;
+    }
     next->label = label_of(*next);
     add_references(*next);
   }

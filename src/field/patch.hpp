@@ -46,7 +46,10 @@ class Patch {
              const Stance* stance = nullptr) noexcept;
 
   /// Covers nothing until the next gather.
-  void clear() noexcept { points_.ball.radius = -1; }
+  void clear() noexcept {
+    points_.ball.radius = -1;
+    outdated_ = false;  // there is nothing to renew
+  }
 
   [[nodiscard]] bool covers(const Ball& ball) const noexcept { return !outdated_ && reaches(ball); }
   /// Would it cover the ball, once renewed?

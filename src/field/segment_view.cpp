@@ -38,6 +38,7 @@ std::uint32_t add_component(std::vector<Component>& components, Component compon
   for (const Component& old : before.components) {
     if (old.key != component.key) continue;
     component.sign = old.sign;
+    component.assumed = old.assumed;
     if (old.weighs) component.seen = old.seen;
   }
   components.push_back(component);
@@ -52,7 +53,8 @@ bool is_decided(const Segment& segment, const Component& component) noexcept {
 }
 
 void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std::uint32_t> indices,
-                const Vector3d& proxy) noexcept {
+                const Stance& stance) noexcept {
+  const auto spread = static_cast<float>(stance.spread);
   const SurfacePoints& surface = *layer.points;
   const SurfacePoints::Segments& own = surface.segments;
   const std::uint32_t none = surface.one_sided() ? SegmentView::kUncertain : SegmentView::kNone;
@@ -69,7 +71,7 @@ void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std
     view.segment_of_point.push_back(slot == SegmentView::kNone ? none : slot);
     if (slot == SegmentView::kNone) continue;
     Point point{};
-    point.position = position_now(layer, i, proxy).cast<float>();
+    point.position = position_now(layer, i, stance.proxy).cast<float>();
     point.normal = normal_now(layer, i).cast<float>();
     point.confidence = static_cast<float>(confidence);
     point.radius = static_cast<float>(radius_now(layer, i));
@@ -80,9 +82,10 @@ void list_layer(SegmentView& view, const ActiveLayer& layer, std::span<const std
     const float distance = point.position.norm();
     Component& component = view.table.components[s.component];
     // A component that all points share keeps its side until free space.
-    component.near |= own.empty() || component.is_one_sided() || distance <= kHolds * point.radius;
+    component.near |=
+        own.empty() || component.is_one_sided() || distance <= kHolds * point.radius + spread;
     component.weighs |= distance <= point.radius;
-    if (own.empty() || distance <= kMeets * point.radius) s.near = true;
+    if (own.empty() || distance <= kMeets * point.radius + spread) s.near = true;
     ++s.count;
   }
 }
@@ -197,14 +200,14 @@ SegmentView::SegmentView(std::size_t capacity) {
 }
 
 void SegmentView::list(std::span<const ActiveLayer> layers, const Selection& chosen,
-                       const Rise& height, const Vector3d& proxy) noexcept {
+                       const Rise& height, const Stance& stance) noexcept {
   rise = height;
   std::swap(before, table);
   table.clear();
   points.clear();
   segment_of_point.clear();
   for (std::size_t k = 0; k < layers.size(); ++k) {
-    list_layer(*this, layers[k], chosen.indices(chosen.runs()[k]), proxy);
+    list_layer(*this, layers[k], chosen.indices(chosen.runs()[k]), stance);
   }
   float radii = 0;
   for (const Point& point : points) radii += point.radius;

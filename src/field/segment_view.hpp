@@ -15,10 +15,15 @@
 
 namespace palpate {
 
+class AgreedSides;
+
 /// The position of a proxy, in free space or on the surface, and its contact normal.
 struct Stance {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();   ///< m, world
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the contact; zero: it touches nothing
+  double spread = 0;  ///< m: so far around the proxy its tool has samples; what they may touch
+                      ///< stays as it is decided
+  AgreedSides* agreed = nullptr;  ///< stands above what is seen, and learns what is decided
 
   [[nodiscard]] bool touches() const noexcept { return !normal.isZero(0); }
 };
@@ -70,6 +75,7 @@ struct SegmentTable {
     int sign = 0;            // 0: not decided
     bool outward = false;    // does evidence turn its normals outward?
     bool uncertain = false;  // was it seen in one view that does not show its side?
+    bool assumed = false;    // is its sign one that nothing speaks for?
     bool near = false;       // has one of its points weight at the proxy, or nearly?
     bool weighs = false;     // has one of them weight there?
     double seen = 0;         // what speaks for the side of its normals, less what speaks against it
@@ -147,7 +153,7 @@ struct SegmentView {
 
   /// Lists what the proxy is among, with what is decided of it by now.
   void list(std::span<const ActiveLayer> layers, const Selection& chosen, const Rise& height,
-            const Eigen::Vector3d& proxy) noexcept;
+            const Stance& stance) noexcept;
   /// Sums what speaks for the sides that the tool sees. `travel`, m: of the proxy since the last
   /// call; `from_behind`: it was behind what was seen from one side only.
   void look(const Stance& stance, double travel, bool from_behind) noexcept;

@@ -125,6 +125,29 @@ TEST(Facing, AProxyThatWentAroundAnEdgeSeesTheOtherSide) {
   EXPECT_LT(turned_up(patch), 0);
 }
 
+// The other parts of a tool are above it: a part that looks from below is where they are.
+TEST(Facing, WhatPartsOfAToolAgreeOnStandsAboveWhatOneSees) {
+  AgreedSides agreed;
+  const std::unique_ptr<SurfacePoints> sheet = sheet_at(0, 1);
+  const auto up = [&](const Vector3d& from, AgreedSides* with) {
+    Patch patch(2048);
+    const Stance stance{from, Vector3d::Zero(), 0, with};
+    patch.gather(std::vector<ActiveLayer>{{.points = sheet.get()}}, 1, {0, 0, 0}, 2e-3,
+                 {.stance = &stance});
+    return patch.columns().normal[2][0];
+  };
+  EXPECT_GT(up({0, 0, 4e-3}, &agreed), 0);
+  EXPECT_LT(up({0, 0, -4e-3}, nullptr), 0);
+  EXPECT_GT(up({0, 0, -4e-3}, &agreed), 0);
+  agreed.begin_update(0.9 * AgreedSides::kKept);
+  EXPECT_GT(up({0, 0, -4e-3}, &agreed), 0);  // which confirms it
+  agreed.begin_update(0.9 * AgreedSides::kKept);
+  EXPECT_GT(up({0, 0, -4e-3}, &agreed), 0);
+  agreed.begin_update(1.1 * AgreedSides::kKept);
+  EXPECT_LT(up({0, 0, -4e-3}, &agreed), 0);
+  EXPECT_LT(up({0, 0, 4e-3}, &agreed), 0);
+}
+
 TEST(Facing, WhatAToolBeginsToTouchTurnsItsFlanksOutward) {
   std::vector<test::TestPoint> flanks;  // of a wall 3 mm thick, whose rim has no normals
   for (int j = -10; j <= 10; ++j) {
