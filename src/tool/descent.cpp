@@ -53,9 +53,9 @@ double Descent::farthest(const Motion& motion) const noexcept {
 
 int Descent::most_evaluations(const Tool& tool) noexcept {
   const std::size_t look = tool.samples().size() + tool.nodes().size();
-  // R, the free path, lifted touches, looks, and what the surface is where it is touched.
-  return static_cast<int>(1 + tool.roots().size() +
-                          ToolContact::kMostTouches * (GapSearch::kMostRises + 1) +
+  // R, the free path, lifted touches, looks, the hand's air, and what is touched.
+  return static_cast<int>(1 + tool.roots().size() + tool.nodes().size() +
+                          ToolContact::kMostTouches * (GapSearch::kMostRises + 2) +
                           kMostLooks * look);
 }
 
@@ -64,8 +64,13 @@ void Descent::move_to(const Pose& pose) noexcept {
   pose_ = pose;
 }
 
-void Descent::forget() noexcept {
-  gaps_.forget();
+void Descent::shift(double moved) noexcept {
+  moves_ = std::isfinite(moved);
+  if (moves_) {
+    gaps_.move(moved);
+  } else {
+    gaps_.forget();
+  }
   outside_.reset();
 }
 
@@ -75,10 +80,11 @@ void Descent::release(const Pose& pose) noexcept {
   outside_ = {pose};
 }
 
-void Descent::follow(const Field& field, const Pose& hand, double moved,
+void Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
                      ToolContact& contact) noexcept {
   const double radius = gaps_.radius();
-  Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius)};
+  Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius),
+                .moves = std::exchange(moves_, false)};
   plane_count_ = 0;
   // What is older would be felt as a blow.
   if (outside_ && std::exchange(outside_->is_old, true)) outside_.reset();
@@ -87,7 +93,7 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
     ++contact.iterations;
     const bool restores = step.settles || look + kRestores >= kMostLooks;
     if (restores && !step.settles && !step.whole) contact.notes |= ContactNote::sweep_truncated;
-    goes_on = iterate(field, hand, restores, step, contact) && step.finite;
+    goes_on = iterate(surface, hand, restores, step, contact) && step.finite;
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
   if (!goes_on) return;
@@ -96,14 +102,14 @@ void Descent::follow(const Field& field, const Pose& hand, double moved,
 }
 
 // One look and one motion. False: the step is done.
-bool Descent::iterate(const Field& field, const Pose& hand, bool restores, Progress& step,
+bool Descent::iterate(const ToolSurface& surface, const Pose& hand, bool restores, Progress& step,
                       ToolContact& contact) noexcept {
   constraints_.clear();
   if (tool_->opens()) {  // fingers do not pass through each other
     constraints_.add({.normal = Motion::Unit(6), .bound = -pose_.opening});
     constraints_.keep();
   }
-  const Look look = gaps_.look(field, pose_, metric_, step.margin, constraints_);
+  const Look look = gaps_.look(surface, pose_, metric_, step.margin, constraints_);
   if (look.unknown) {  // what is not known is solid: back to where it was not
     contact.notes |= ContactNote::sweep_truncated;
     if (outside_) move_to(outside_->pose);
@@ -186,6 +192,10 @@ bool Descent::goes_on(const LeastMotion& pull, double far, const Look& look,
     return true;
   }
   if (still) return false;
+  // The first order leaves open the square of so short a motion, and the next step looks again at a
+  // surface that moves on.
+  const bool small = step.moves && step.whole && far < kRestored * radius;
+  if (small && pull.count > 0 && look.deepest > -kDeep * radius) return false;
   if (step.whole && pull.count == 0) return !step.proved && !constraints_.all().empty();
   if (pull.count > 0) ++step.held;
   if (!step.whole || step.held < iterations_) return true;
@@ -219,12 +229,18 @@ void Descent::remember_touches(const LeastMotion& least) noexcept {
   }
 }
 
-void Descent::lift(const Field& field, double reach, ToolContact& contact) noexcept {
+void Descent::lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept {
   const double high = std::max(reach, kLongest * 2 * gaps_.radius());
   constraints_.clear();
+  surface.place(pose_);
   for (const Touches::Touch& touch : touches_.span()) {
     const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
     const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose_);
+    const Field& field = surface.group(surface.group_of(touch.sample));
+    // Where surfaces are not expected farther above, one that a sample still sees is where looks
+    // lead.
+    const bool near = reach <= kLongest * gaps_.radius();
+    if (near && gaps_.sees_still(field, sample, x, touch.normal)) continue;
     const double rise = gaps_.rise(field, sample, x, high * touch.normal) * high;
     if (rise < kRisen * gaps_.radius()) continue;
     Constraint constraint = constraint_on(*tool_, touch.sample, x, touch.normal, pose_, metric_);

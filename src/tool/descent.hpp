@@ -33,16 +33,17 @@ class Descent {
   /// `iterations`: looks in contact before it settles.
   Descent(std::shared_ptr<const Tool> tool, const Metric& metric, int iterations);
 
-  /// Forgets what was known of the surface: it has changed.
-  void forget() noexcept;
+  /// The surface has moved by this at most, m; infinite: what was known of it is forgotten.
+  void shift(double moved) noexcept;
   /// The tool is free to be there.
   void release(const Pose& pose) noexcept;
   /// The surface has changed: lifts the tool, which touches it, to where each touch finds it again
   /// within `reach` (m) above.
-  void lift(const Field& field, double reach, ToolContact& contact) noexcept;
+  void lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept;
   /// Goes where the hand is, as far as the surface lets it; `moved`: how far any sample of the hand
   /// has moved since the last step, m, at most.
-  void follow(const Field& field, const Pose& hand, double moved, ToolContact& contact) noexcept;
+  void follow(const ToolSurface& surface, const Pose& hand, double moved,
+              ToolContact& contact) noexcept;
 
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
   [[nodiscard]] const Touches& touches() const noexcept { return touches_; }
@@ -67,6 +68,7 @@ class Descent {
     Motion pull = Motion::Zero();    // that it is the allowed share of
     double margin = 0;               // m, of the next look
     int held = 0;                    // looks with something active
+    bool moves = false;              // does the surface move on?
     bool settles = false;
     bool finite = true;    // the last motion is
     bool whole = true;     // the last motion was not shortened
@@ -74,8 +76,8 @@ class Descent {
     bool creased = false;  // it led into a face that the look before did not show
   };
 
-  [[nodiscard]] bool iterate(const Field& field, const Pose& hand, bool restores, Progress& step,
-                             ToolContact& contact) noexcept;
+  [[nodiscard]] bool iterate(const ToolSurface& surface, const Pose& hand, bool restores,
+                             Progress& step, ToolContact& contact) noexcept;
   [[nodiscard]] LeastMotion solve(const Motion& wanted) noexcept;
   [[nodiscard]] bool restore(const Look& look, Progress& step) noexcept;
   double move(const LeastMotion& least, std::size_t seen, const Look& look,
@@ -95,6 +97,7 @@ class Descent {
   Touches touches_;
   ConstraintList constraints_;
   std::optional<Outside> outside_;  // the last one
+  bool moves_ = false;              // has the surface moved on since the last step?
   // Planes that were active in this step, with bounds for motions from where the tool is now.
   std::array<Constraint, kMostLooks * ToolContact::kMostTouches> planes_;
   std::size_t plane_count_ = 0;

@@ -19,6 +19,7 @@ constexpr double kUnseen = 0.5;  // of R: the distance where no point has weight
 // that was not free is asked again. Smaller: more questions; larger: more of them in vain.
 constexpr double kExtra = 0.5;
 constexpr double kPush = 0.25;       // of R, that a surface which came pushes the tool in one look
+constexpr double kSameFace = 0.5;    // cosine: within 60 degrees, as of a point (method.md 3.4)
 constexpr double kResolutions = 16;  // R where no surface says it: what resolution is a share of
 constexpr double kRiseSteps = 8;     // in R, on a path on which a touch is found again (judgement)
 constexpr double kLeastSteps = 4;    // of these (judgement)
@@ -42,20 +43,32 @@ void GapSearch::forget() noexcept {
   odometer_ = 0;
 }
 
-void GapSearch::begin(const Field& field, const Pose& pose) noexcept {
+void GapSearch::begin(const ToolSurface& surface, const Pose& pose) noexcept {
   evaluations_ = 0;
-  nearest_ = {};
+  nearest_.fill({});
   if (odometer_ > kLongestWay) forget();
   if (radius_known_) return;
   ++evaluations_;
-  const double radius = field.sample(pose.position).radius;
+  const double radius = surface.whole().sample(pose.position).radius;
   radius_known_ = radius > 0;
-  radius_ = radius_known_ ? radius : kResolutions * field.traits().resolution;
+  radius_ = radius_known_ ? radius : kResolutions * surface.whole().traits().resolution;
 }
 
 bool GapSearch::is_free(const Field& field, const Ball& ball) noexcept {
   ++evaluations_;
   return field.is_free(ball);
+}
+
+bool GapSearch::is_free_at(const Field& field, const Pose& pose) noexcept {
+  return std::ranges::all_of(tool_->roots(),
+                             [&](std::int32_t root) { return is_free_below(field, pose, root); });
+}
+
+bool GapSearch::is_free_below(const Field& field, const Pose& pose, std::int32_t index) noexcept {
+  const Tool::Node& node = tool_->nodes()[static_cast<std::size_t>(index)];
+  if (is_free(field, {tool_->in_world(node.center, node.side, pose), node.radius})) return true;
+  return node.left >= 0 && is_free_below(field, pose, node.left) &&
+         is_free_below(field, pose, node.right);
 }
 
 double GapSearch::gap(const Field& field, const Tool::Point& sample,
@@ -66,6 +79,15 @@ double GapSearch::gap(const Field& field, const Tool::Point& sample,
     return *distance - sample.radius;
   }
   return here.value > 0 || is_nothing(here.value, here.support) ? 1 : -1;
+}
+
+bool GapSearch::sees_still(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
+                           const Eigen::Vector3d& normal) noexcept {
+  ++evaluations_;
+  const Sample here = field.sample(x);
+  const std::optional<double> distance = first_order_distance(here);
+  return distance && *distance - sample.radius > -kPush * radius_ &&
+         here.gradient.normalized().dot(normal) > kSameFace;
 }
 
 double GapSearch::rise(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
@@ -86,10 +108,11 @@ double GapSearch::rise(const Field& field, const Tool::Point& sample, const Eige
   return free;
 }
 
-Look GapSearch::look(const Field& field, const Pose& pose, const Metric& metric, double margin,
-                     ConstraintList& constraints) noexcept {
-  Walk walk{field, pose, metric, constraints, {.margin = margin}};
-  nearest_ = {};
+Look GapSearch::look(const ToolSurface& surface, const Pose& pose, const Metric& metric,
+                     double margin, ConstraintList& constraints) noexcept {
+  Walk walk{surface, pose, metric, constraints, {.margin = margin}};
+  nearest_.fill({});
+  surface.place(pose);
   walk.found.clearance = std::numeric_limits<double>::infinity();
   for (const std::int32_t root : tool_->roots()) {
     visit(walk, root);
@@ -97,6 +120,14 @@ Look GapSearch::look(const Field& field, const Pose& pose, const Metric& metric,
     walk.found.clearance = std::min(walk.found.clearance, bound - odometer_);
   }
   return walk.found;
+}
+
+// The field of the group that holds all samples of the node, or of them all.
+const Field& GapSearch::field_of(const ToolSurface& surface,
+                                 const Tool::Node& node) const noexcept {
+  const int group = surface.group_of(static_cast<int>(node.begin));
+  const bool all = group == surface.group_of(static_cast<int>(node.end) - 1);
+  return all ? surface.group(group) : surface.whole();
 }
 
 void GapSearch::visit(Walk& walk, std::int32_t index) noexcept {
@@ -126,7 +157,7 @@ bool GapSearch::passes(Walk& walk, std::int32_t index) noexcept {
   const Tool::Node& node = tool_->nodes()[at];
   const double free = walk.found.margin + kExtra * radius_;
   const Eigen::Vector3d center = tool_->in_world(node.center, node.side, walk.pose);
-  const bool is = is_free(walk.field, {center, node.radius + free});
+  const bool is = is_free(field_of(walk.surface, node), {center, node.radius + free});
   if (is) {
     node_bounds_[at] = odometer_ + free;
   } else {
@@ -139,13 +170,14 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   ++evaluations_;
   const Tool::Point& sample = tool_->samples()[index];
   const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, walk.pose);
-  const Sample here = walk.field.sample(x);
+  const int group = walk.surface.group_of(static_cast<int>(index));
+  const Sample here = walk.surface.group(group).sample(x);
   if (here.radius > 0) {
     radius_ = here.radius;
     radius_known_ = true;
   }
-  const double unseen = kUnseen * radius_ - sample.radius;
-  sample_bounds_[index] = odometer_ + kTrusted * std::max(0.0, unseen);
+  const double unseen = std::max(0.0, kUnseen * radius_ - sample.radius);
+  sample_bounds_[index] = odometer_ + kTrusted * unseen;
   const std::optional<double> distance = first_order_distance(here);
   const Eigen::Vector3d normal = here.gradient.normalized();
   const bool finite = std::isfinite(distance.value_or(0)) && normal.allFinite();
@@ -157,9 +189,12 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   }
   if (here.averted) return;
   const double gap = *distance - sample.radius;
-  sample_bounds_[index] = odometer_ + kTrusted * gap;
+  // Where weights begin the field is flat, and says no distance: 14 mm were trusted of 3.
+  const double trusted = here.support < 1 ? std::min(gap, unseen) : gap;
+  sample_bounds_[index] = odometer_ + kTrusted * trusted;
   walk.found.deepest = std::min(walk.found.deepest, gap);
-  if (nearest_.normal.isZero(0) || gap < nearest_.gap) nearest_ = {gap, x, normal};
+  Nearest& nearest = nearest_[static_cast<std::size_t>(group)];
+  if (nearest.normal.isZero(0) || gap < nearest.gap) nearest = {gap, x, normal};
   if (gap >= walk.found.margin) return;
   constrain(walk, constraint_on(*tool_, static_cast<int>(index), x, normal, walk.pose, walk.metric),
             gap);

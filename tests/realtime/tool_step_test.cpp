@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "palpate/field/analytic.hpp"
+#include "palpate/tool/tool_field.hpp"
 #include "palpate/tool/tool_proxy.hpp"
 #include "realtime/watch.hpp"
+#include "support/depth_frames.hpp"
 #include "support/rates.hpp"
 
 namespace palpate::realtime {
@@ -82,6 +84,39 @@ TEST_F(ToolStep, KeepsTheContractWithMoreSamplesThanConstraints) {
     (void)step(proxy, floor, hand);
   }
   EXPECT_GT(touching_, 150);
+}
+
+// A gripper on what a camera sees: a table and a ball that comes and goes, for half a second not
+// seen at all.
+TEST_F(ToolStep, KeepsTheContractOnAStream) {
+  SourceOptions options;
+  options.T_world_sensor = test::looking_down();
+  Scene scene;
+  Source& camera = scene.add("camera", options);
+  const auto tool = std::make_shared<const Tool>(Tool::gripper({6e-3, 12e-3, 30e-3}, 4e-3));
+  ToolField field(scene, tool);
+  ToolProxy proxy(tool);
+  for (int i = 0; i < 3000; ++i) {
+    const double now = 1e-3 * i;
+    if (i % 33 == 0 && (i < 1500 || i > 2000)) {
+      const double height = 0.02 * std::sin(4 * now);
+      const auto seen = [&](double x, double y) {
+        return x * x + y * y < 0.01 ? 0.46 - height : 0.5;
+      };
+      camera.push(test::frame_of(test::small_camera(), now, seen, 3e-4, 1u + i),
+                  [=] { return now; });
+    }
+    const Pose hand = hand_at(i);
+    Watch watch;
+    field.update(now, hand, proxy.pose());
+    const ToolContact contact = proxy.step(field, hand, test::kTick);
+    const Findings found = watch.stop();
+    ASSERT_EQ(found.total(), 0) << found;
+    touching_ += contact.touching ? 1 : 0;
+  }
+  EXPECT_GT(touching_, 500);
+  EXPECT_LT(touching_, 2900);
+  EXPECT_GT(field.gathers(), 100u);
 }
 
 TEST_F(ToolStep, KeepsTheContractOnFaults) {

@@ -9,6 +9,7 @@
 #include "palpate/field/field.hpp"
 #include "palpate/geometry/pose.hpp"
 #include "palpate/tool/tool.hpp"
+#include "palpate/tool/tool_surface.hpp"
 
 namespace palpate {
 
@@ -52,8 +53,8 @@ struct ToolContact {
 /// The god-object of a tool: where the hand is, as far as no sample of the tool enters a solid, by
 /// the least motion in the metric diag(K, K g^2) (docs/method.md 3.7).
 ///
-/// Experimental. Exact on analytic fields (palpate/field/analytic.hpp). Not yet for clouds: a
-/// SceneField serves one point, and holds a tool that is wider than what it gathers for a step.
+/// Experimental. Exact on analytic fields (palpate/field/analytic.hpp); on clouds by a ToolField.
+/// Any other field serves one point: a SceneField holds a tool that is wider than what it gathers.
 /// Balls of samples are at most 0.3 R: a larger one can sink in where only its middle is within R.
 /// Nothing waits for a surface that vanishes: the tool goes to the hand at once.
 ///
@@ -74,10 +75,18 @@ class ToolProxy {
   /// it out, softly: stiffness comes with the hand's motion. Spends at most max_evaluations(). An
   /// opening below 0 is taken for 0: a gripper that is closed on nothing gives no grip.
   ///
+  /// A surface that knows the samples of another tool is a fault, too.
+  ///
   /// What was seen of a field holds in the next steps as long as its traits stay and it keeps to
   /// the side of a surface that it has decided for; reset() comes before another field, which may
   /// lie where the old one lay.
+  [[nodiscard]] ToolContact step(const ToolSurface& surface, const Pose& hand, double dt) noexcept;
+  /// The same of a field that serves all samples alike.
   [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
+
+  /// Another stiffness of forces and turns from the next step on, N/m, finite and not below 0; in
+  /// contact it changes as the energy tank allows (docs/method.md 3.5).
+  void change(double stiffness) noexcept;
 
   /// Where the tool is. At the origin until the first step or reset().
   [[nodiscard]] const Pose& pose() const noexcept;
