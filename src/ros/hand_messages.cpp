@@ -14,6 +14,7 @@ namespace palpate::ros {
 namespace {
 
 using namespace message;
+using message::Pose;
 using Eigen::Vector3d;
 
 constexpr int kButtons = 8;

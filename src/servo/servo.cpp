@@ -8,9 +8,7 @@
 #include <mutex>
 
 #include "base/latest.hpp"
-#include "base/requirement.hpp"
-#include "palpate/servo/z_width.hpp"
-#include "servo/passivity.hpp"
+#include "servo/held_tool.hpp"
 #include "servo/servo_inside.hpp"
 #include "servo/step_trace.hpp"
 
@@ -19,29 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kButtons = 32;  // bits of DeviceState::buttons
-
 // Duration of the first step, s, for a device without a stated rate: 1 kHz is usual (judgement).
 constexpr double kFirstStep = 1e-3;
-
-ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
-  Requirement{"device"}(device.maximum_force >= 0, "maximum_force (N)", device.maximum_force,
-                        "give what it can hold, 0 for none");
-  const int button = options.clutch_button.value_or(0);
-  Requirement{"servo"}(button >= 0 && button < kButtons, "clutch_button", button,
-                       "give a button from 0 to 31");
-  options.guard = guard_for(device, options.guard);
-  return options;
-}
-
-// Stiffness limit in the world, N/m: the hand's limit divided by the magnification.
-double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
-  const GuardOptions& guard = options.guard;
-  if (!guard.on) return std::numeric_limits<double>::infinity();
-  double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
-  if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
-  return felt / options.workspace.scale;
-}
 
 ProxyOptions softened(ProxyOptions proxy, double limit) {
   proxy.stiffness = std::min(proxy.stiffness, limit);
@@ -60,7 +37,7 @@ Guard::Fault fault_of(const ServoState& state) noexcept {
 
 }  // namespace
 
-// A proxy on surfaces that are no stiffer than the hand's device bears.
+// A point on surfaces that are no stiffer than the hand's device bears.
 struct LimitedProxy {
   LimitedProxy(const ProxyOptions& options, double its_limit)
       : limit(its_limit), is_softened(options.stiffness > limit), proxy(softened(options, limit)) {}
@@ -73,27 +50,38 @@ struct LimitedProxy {
   double limit;      // of the stiffness, N/m
   bool is_softened;  // a stiffer surface is requested
   Proxy proxy;
+  std::optional<SceneField> field;  // none: a tool is held in its place
 };
 
 struct Servo::Inside {
   Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
       : device(its_device),
         options(options_for(device.info(), its_options)),
-        field(scene, options.field, "a field", options.workspace.scale),
         limited(options.proxy, stiffness_limit_of(device.info(), options)),
         guard(in_world(options.guard, options.workspace.scale)),
-        requests(options) {}
+        requests(options) {
+    if (options.tool) {
+      tool = std::make_unique<HeldTool>(scene, options, limited.limit);
+    } else {
+      limited.field.emplace(scene, options.field, "a field", options.workspace.scale);
+    }
+  }
 
   void step(const DeviceState& read, double now) noexcept;
   void apply_pending() noexcept;
   void place_tool(const DeviceState& read) noexcept;
+  void touch_with_point() noexcept;
+  void touch_with_tool() noexcept;
+  [[nodiscard]] Pose pose() const noexcept {
+    return {state.hip, state.orientation, options.workspace.scale * state.gripper};
+  }
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Vector3d guarded() noexcept;
 
   Device& device;
   ServoOptions options;
-  SceneField field;
-  LimitedProxy limited;
+  LimitedProxy limited;            // a point
+  std::unique_ptr<HeldTool> tool;  // in its place
   Guard guard;
   Clutch clutch;
   Vector3d hand = Vector3d::Zero();  // where it is without the clutch, m, world
@@ -139,21 +127,38 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   if (options.traces != nullptr && options.traces->accepts()) options.traces->prefetch();
   apply_pending();
   place_tool(read);
-  field.update(now, state.hip, state.step > 0 ? limited.proxy.position() : state.hip);
-  state.contact = limited.proxy.step(field, state.hip, state.dt);
+  if (tool) {
+    touch_with_tool();
+  } else {
+    touch_with_point();
+  }
   state.force = guarded();
   state.guard = guard.state();
+  ++state.step;
+}
+
+void Servo::Inside::touch_with_point() noexcept {
+  SceneField& field = *limited.field;
+  field.update(state.time, state.hip, state.step > 0 ? limited.proxy.position() : state.hip);
+  state.contact = limited.proxy.step(field, state.hip, state.dt);
   state.field_notes = field.notes();
   if (options.traces != nullptr) basis.found = field.found();
   state.patch_points = field.patch_points();
-  ++state.step;
+}
+
+void Servo::Inside::touch_with_tool() noexcept {
+  state.contact = tool->step(state.time, pose(), state.dt);
+  state.field_notes = tool->notes();
+  state.tool = tool->pose();
+  state.wrench = tool->wrench();
 }
 
 // The tool rests where the proxy is: nothing is stretched when the clutch is let go.
 void Servo::Inside::place_tool(const DeviceState& read) noexcept {
   const Workspace& workspace = options.workspace;
   state.clutched = is_clutched(read.buttons);
-  state.hip = clutch.tool(hand, state.clutched, limited.proxy.position());
+  const Vector3d rest = tool ? tool->pose().position : limited.proxy.position();
+  state.hip = clutch.tool(hand, state.clutched, rest);
   state.shift = clutch.shift();
   state.velocity = workspace.velocity_to_world(read.velocity);
   state.orientation = workspace.orientation_to_world(read.orientation);
@@ -173,10 +178,15 @@ void Servo::Inside::apply_pending() noexcept {
   if (basis.reset || !received) {
     clutch = {};
     limited.proxy.reset(hand);
+    if (tool)
+      tool->reset({hand, options.workspace.orientation_to_world(basis.device.orientation),
+                   options.workspace.scale * basis.device.gripper});
     guard.reset();
   }
   if (basis.contact) limited.change(*basis.contact);
-  if (basis.field) field.change(*basis.field);
+  if (basis.contact && tool) tool->change(limited.proxy.options().stiffness);
+  if (basis.field && tool) tool->change(*basis.field);
+  if (basis.field && limited.field) limited.field->change(*basis.field);
 }
 
 Vector3d Servo::Inside::guarded() noexcept {
@@ -276,6 +286,7 @@ void Servo::add_force(const Vector3d& force) {
 
 void Servo::set_field(const FieldOptions& field) {
   check(field);
+  if (inside_->tool) ToolField::check(field);
   const std::lock_guard lock(inside_->requests.mutex);
   inside_->requests.field.set(field);
 }

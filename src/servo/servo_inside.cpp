@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/requirement.hpp"
+#include "palpate/servo/z_width.hpp"
 #include "servo/passivity.hpp"
 
 namespace palpate {
@@ -25,6 +27,8 @@ std::size_t bin_of(double duration) noexcept {
 double middle_of(std::size_t bin) noexcept {
   return kShortest * std::exp2((static_cast<double>(bin) + 0.5) / Durations::kPerOctave);
 }
+
+constexpr int kButtons = 32;  // bits of DeviceState::buttons
 
 }  // namespace
 
@@ -106,6 +110,24 @@ std::vector<Eigen::Vector3f> RecentForces::since(std::uint64_t& seen) const {
   forces.erase(forces.begin(), forces.begin() + static_cast<std::ptrdiff_t>(lost));
   seen = end;
   return forces;
+}
+
+ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
+  Requirement{"device"}(device.maximum_force >= 0, "maximum_force (N)", device.maximum_force,
+                        "give what it can hold, 0 for none");
+  const int button = options.clutch_button.value_or(0);
+  Requirement{"servo"}(button >= 0 && button < kButtons, "clutch_button", button,
+                       "give a button from 0 to 31");
+  options.guard = guard_for(device, options.guard);
+  return options;
+}
+
+double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
+  const GuardOptions& guard = options.guard;
+  if (!guard.on) return std::numeric_limits<double>::infinity();
+  double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
+  if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
+  return felt / options.workspace.scale;
 }
 
 GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {

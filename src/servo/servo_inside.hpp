@@ -146,4 +146,11 @@ struct Requests {
   std::atomic<bool> reset{false};
 };
 
+/// The options with a guard that is fitted to the device.
+/// @throws Error for a clutch that is no button, and a maximum force below 0.
+[[nodiscard]] ServoOptions options_for(const DeviceInfo& device, ServoOptions options);
+
+/// Stiffness limit in the world, N/m: the hand's limit divided by the magnification.
+[[nodiscard]] double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options);
+
 }  // namespace palpate

@@ -53,7 +53,8 @@ void members(auto f, Workspace& o) {
   f({"T_world_device", "scale"}, pose, scale);
 }
 void members(auto f, ServoOptions& o) {
-  auto& [field, proxy, guard, workspace, clutch, steps, traces] = o;
+  // Steps of a tool that turns are not recorded.
+  auto& [field, proxy, tool, gyration, guard, workspace, clutch, steps, traces] = o;
   f({"field", "proxy", "guard", "workspace", "clutch_button"}, field, proxy, guard, workspace,
     clutch);
 }

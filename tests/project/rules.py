@@ -31,12 +31,12 @@ FLOORS = CORE | {
     "bag": {"base", "geometry", "depth", "io", "message"},
     "dds": {"base", "message"},
     "align": {"base", "geometry", "field"},
-    "tool": {"base", "geometry", "field", "contact"},
+    "tool": {"base", "geometry", "field", "contact", "prepare", "scene"},
     "sim": {"base", "geometry", "depth", "io", "field"},  # and the camera that it is: see ALLOWED
     "sensor": {"base", "geometry", "depth", "io", "message", "bag", "dds", "field", "prepare",
                "scene", "sim"},
     "device": {"base", "geometry", "io", "message", "dds", "field", "contact", "prepare", "scene"},
-    "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "device"},
+    "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "tool", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
                "servo"},
     "session": {"base", "geometry", "io", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
@@ -46,7 +46,7 @@ FLOORS = CORE | {
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",
              "scene", "stream", "sensor", "device", "servo", "ros", "viewer", "session"},
-    "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "sensor", "device", "servo"},
+    "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "tool", "sensor", "device", "servo"},
 }
 # The files of two floors from the first step on: what stands in one line sees what stands above it.
 STEPS = {

@@ -16,6 +16,7 @@
 #include "palpate/device/device.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/servo/guard.hpp"
+#include "palpate/tool/tool.hpp"
 
 namespace palpate {
 
@@ -106,7 +107,9 @@ struct ServoState {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();               ///< of the hand, m/s
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the tool
   double gripper = 0;                                               ///< its opening at the hand, m
-  Contact contact;                                  ///< its force is the proxy's own
+  Contact contact;  ///< its force is the proxy's own
+  Pose tool;      ///< where ServoOptions::tool is, outside of the surface; its handle is the proxy
+  Wrench wrench;  ///< of the tool's proxy; torque and grip go to no device
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
   Guard::State guard;
   FieldNote field_notes = FieldNote::none;
@@ -158,6 +161,11 @@ struct StepDurations {
 struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
+  /// What the hand holds; null: a point. Experimental. A device that measures its orientation turns
+  /// it, but feels the force alone; friction and texture are not rendered, and its steps cannot be
+  /// traced.
+  std::shared_ptr<const Tool> tool = {};
+  double gyration = 0;      ///< ToolOptions::gyration
   GuardOptions guard = {};  ///< at the hand; fitted to the device by guard_for()
   Workspace workspace = {};
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
@@ -174,7 +182,7 @@ struct ContactSettings {
 };
 
 /// Renders a scene to one hand: SceneField, Proxy and Guard between a device's position and its
-/// force. In palpate::live.
+/// force; of a tool ToolField and ToolProxy. In palpate::live.
 ///
 /// Owns no thread: a device's callback or a ServoThread calls tick(), or the owner of a loop calls
 /// step() and show(). One thread steps; functions marked "any thread" may be called meanwhile.

@@ -1,0 +1,160 @@
+// A servo whose hand holds a tool that turns: forces at the handle, and what a wrist may get.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "palpate/base/error.hpp"
+#include "servo/servo_rig.hpp"
+#include "servo/step_trace.hpp"
+
+namespace palpate {
+namespace {
+
+using Eigen::Vector3d;
+using test::FreeDevice;
+
+ServoOptions holding(const char* tool, ServoOptions options = {}) {
+  options.tool = std::make_shared<const Tool>(Tool::from_text(tool, 4e-3));
+  options.proxy.stiffness = 500;
+  return options;
+}
+
+/// A hand with a wrist, one millisecond after the other.
+class HandWithAWrist : public testing::Test {
+ protected:
+  // `turn`: of the tool about y when it is taken, rad.
+  void hold(const ServoOptions& options, double turn = 0) {
+    device_.state().orientation = Eigen::AngleAxisd(turn_ = turn, Vector3d::UnitY());
+    device_.info().has_orientation = true;
+    device_.info().maximum_force = 10;
+    servo_ = std::make_unique<Servo>(device_, scene_, options);
+  }
+
+  // A step with the handle at a height, and the tool turned about y, rad. Adds up what the hand is
+  // given by the force, and takes from it what the wrist, which feels no torque, would have to do.
+  const ServoState& tick(double z, double turn) {
+    const Vector3d before = device_.state().position;
+    const double turned = turn_;
+    device_.state().position = {-0.04, 0, z};
+    device_.state().velocity = (device_.state().position - before) / 1e-3;
+    device_.state().orientation = Eigen::AngleAxisd(turn_ = turn, Vector3d::UnitY());
+    const Vector3d force = servo_->state().force;
+    const ServoState& state = servo_->tick(now_ += 1e-3);
+    given_ += 0.5 * (force + state.force).dot(device_.state().position - before);
+    wrist_ += 0.5 * (torque_ + state.wrench.torque.y()) * (turn - turned);
+    torque_ = state.wrench.torque.y();
+    return state;
+  }
+  // From one height and turn to others.
+  const ServoState& go(double z, double turn, int steps) {
+    const double from = device_.state().position.z();
+    const double turned = turn_;
+    for (int i = 1; i < steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      tick(from + share * (z - from), turned + share * (turn - turned));
+    }
+    return tick(z, turn);
+  }
+
+  Scene scene_;
+  Source& sheet_ = test::add_sheet(scene_);
+  FreeDevice device_{Vector3d(-0.04, 0, 0.06)};
+  std::unique_ptr<Servo> servo_;
+  double now_ = 0;
+  double turn_ = 0;
+  double torque_ = 0;
+  double given_ = 0;  // J
+  double wrist_ = 0;
+};
+
+TEST_F(HandWithAWrist, PressesABoxOntoASheet) {
+  hold(holding("box:20x30x10"));
+  go(0.06, 0, 10);
+  const ServoState& state = go(2e-3, 0, 600);
+  for (int i = 0; i < 300; ++i) tick(2e-3, 0);
+  EXPECT_NEAR(state.force.z(), 1.5, 5e-3);
+  EXPECT_TRUE(state.contact.touching);
+  EXPECT_NEAR(state.contact.normal.z(), 1, 1e-3);
+  EXPECT_NEAR(state.tool.position.z(), 5e-3, 1e-4);
+  EXPECT_NEAR(state.contact.proxy.z(), 5e-3, 1e-4);
+  EXPECT_LT(state.wrench.torque.norm(), 1e-3);
+  EXPECT_EQ(state.guard.fault, Guard::Fault::none);
+}
+
+// The tip of a stylus that lies along x is pressed down by the wrist alone: the handle rises, and
+// with it the hand, which a force pushes up.
+TEST_F(HandWithAWrist, ALeverLiftsTheHand) {
+  hold(holding("capsule:80x2"), -M_PI / 2);
+  go(0.02, -M_PI / 2, 200);
+  const ServoState& state = go(0.02, -M_PI / 2 + 0.5, 300);
+  EXPECT_TRUE(state.contact.touching);
+  EXPECT_GT(state.force.z(), 0.2);
+  EXPECT_GT(std::abs(state.wrench.torque.y()), 1e-3);
+}
+
+// A wrist that saws over a sheet at 3 Hz: the force gives the hand what the wrist would have had to
+// do against the torque, and no more. The guard's ledger knows that, and lets it pass.
+TEST_F(HandWithAWrist, ThatSawsIsGivenNoMoreThanItWouldDo) {
+  hold(holding("capsule:80x2"), -M_PI / 2);
+  go(0.03, -M_PI / 2, 200);
+  double height = 0.03;
+  double speed = 0;
+  given_ = wrist_ = 0;
+  double highest = -1;
+  for (int i = 0; i < 6000; ++i) {
+    const double turn = -M_PI / 2 + 0.5 * std::sin(2 * M_PI * 3 * 1e-3 * i);
+    // 0.1 kg that weighs 0.5 N, with a damper of 1 N s/m.
+    const double force = servo_->state().force.z();
+    speed += 1e-3 * (force - 0.5 - 1.0 * speed) / 0.1;
+    height += 1e-3 * speed;
+    const ServoState& state = tick(height, turn);
+    highest = std::max(highest, state.guard.energy);
+  }
+  EXPECT_GT(given_, 0.02);
+  EXPECT_LE(given_ + wrist_, 1e-3);
+  EXPECT_LT(highest, 2e-3);
+  EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::none);
+}
+
+TEST_F(HandWithAWrist, TakesTheHandsStiffnessAndFieldWhileItRuns) {
+  hold(holding("ball:4", test::first_links()));
+  go(0.06, 0, 10);
+  go(1e-3, 0, 300);
+  ContactSettings contact = servo_->contact();
+  contact.stiffness = 250;
+  servo_->set_contact(contact);
+  go(1e-3, 0, 300);
+  EXPECT_NEAR(servo_->state().force.z(), 250 * 3e-3, 0.02);
+  servo_->set_field({.kind = FieldOptions::Kind::metaball});
+  go(1e-3, 0, 300);
+  EXPECT_TRUE(servo_->state().contact.touching);
+  EXPECT_THROW(servo_->set_field({.tool_radius = 1e-3}), Error);
+}
+
+TEST_F(HandWithAWrist, RestsWhereItIsWhileTheClutchIsHeld) {
+  ServoOptions options = holding("box:20x30x10");
+  options.clutch_button = 0;
+  hold(options);
+  go(0.06, 0, 10);
+  go(3e-3, 0, 300);
+  device_.state().buttons = 1;
+  const ServoState& held = go(-0.04, 0, 300);
+  EXPECT_NEAR(held.tool.position.z(), 5e-3, 1e-4);
+  EXPECT_LT(held.force.norm(), 1e-6);
+  device_.state().buttons = 0;
+  EXPECT_LT(go(-0.039, 0, 10).force.norm(), 0.05);
+}
+
+TEST_F(HandWithAWrist, RefusesToBeTraced) {
+  Ring<StepTrace> traces(16);
+  ServoOptions options = holding("ball:4");
+  options.traces = &traces;
+  EXPECT_THROW(Servo(device_, scene_, options), Error);
+  options.traces = nullptr;
+  options.field.tool_radius = 1e-3;
+  EXPECT_THROW(Servo(device_, scene_, options), Error);
+}
+
+}  // namespace
+}  // namespace palpate
