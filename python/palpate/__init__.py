@@ -2,7 +2,7 @@
 
 from ._palpate import (
     AnyField, Box, Camera, CloudStream, Contact, DepthCamera, Error, Field, Frame, Plane, PointCloud, PrepareReport,
-    Prepared, Proxy, Rollout, Scene, Servo, Source, SourceState, Sphere, SurfacePoints, Torus, list_cameras, list_devices,
+    Prepared, Proxy, Rollout, Scene, Servo, Source, SourceState, Sphere, SurfacePoints, Tool, ToolContact, ToolProxy, Torus, list_cameras, list_devices,
     note_names, open_camera, prepare, read_cloud, rollout, synthetic_cloud, write_cloud,
 )
 from .plot import plot

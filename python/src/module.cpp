@@ -25,7 +25,7 @@ void refuse_pickling(const py::module_& module, const char* type, const char* re
 
 void refuse_pickling(const py::module_& module) {
   const char* const remake = "make it again in each process, of arrays or files";
-  for (const char* type : {"AnyField", "Proxy", "Scene", "Source", "Servo", "DepthCamera"}) {
+  for (const char* type : {"AnyField", "Proxy", "Scene", "Source", "Servo", "DepthCamera", "ToolProxy", "Tool"}) {
     refuse_pickling(module, type, remake);
   }
   refuse_pickling(module, "PointCloud",
@@ -33,7 +33,7 @@ void refuse_pickling(const py::module_& module) {
   refuse_pickling(module, "SurfacePoints", "pickle its arrays, or prepare() the cloud again");
   refuse_pickling(module, "Prepared", "pickle the arrays of its points, or prepare() again");
   refuse_pickling(module, "Rollout", "pickle its columns()");
-  for (const char* type : {"Contact", "PrepareReport", "SourceState", "Frame"}) {
+  for (const char* type : {"Contact", "ToolContact", "PrepareReport", "SourceState", "Frame"}) {
     refuse_pickling(module, type, "pickle the properties that you need");
   }
 }
@@ -52,6 +52,7 @@ PYBIND11_MODULE(_palpate, module) {
   python::define_cameras(module);
   python::define_fields(module);
   python::define_proxy(module);
+  python::define_tools(module);
   python::define_servo(module);
   python::define_keywords(module);
   python::refuse_pickling(module);

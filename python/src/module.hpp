@@ -11,6 +11,7 @@ void define_scene(pybind11::module_& module);
 void define_cameras(pybind11::module_& module);
 void define_fields(pybind11::module_& module);
 void define_proxy(pybind11::module_& module);
+void define_tools(pybind11::module_& module);
 void define_servo(pybind11::module_& module);
 
 }  // namespace palpate::python
