@@ -9,8 +9,9 @@
 
 namespace palpate::detail {
 
-/// Disjoint sets whose members have a sign relative to their set's root, which is its lowest
-/// member. Threads may use one object together as long as each keeps to members of its own.
+/// Disjoint sets whose members have a sign relative to their set's root: its lowest member where
+/// join() alone was called. Threads may use one object together as long as each keeps to members of
+/// its own.
 class SignedSets {
  public:
   explicit SignedSets(std::size_t count) : parent_(count), sign_(count, 1) {
@@ -38,9 +39,16 @@ class SignedSets {
     const auto [root_b, sign_b] = find(b);
     if (root_a == root_b) return;
     const auto [low, high] = std::minmax(root_a, root_b);
-    parent_[high] = low;
-    sign_[high] = static_cast<std::int8_t>(sign * sign_a * sign_b);
+    attach(high, low, sign * sign_a * sign_b);
   }
+
+  /// Joins the sets of two different roots, of which the second becomes that of both.
+  void attach(std::uint32_t root, std::uint32_t to, int sign) {
+    parent_[root] = to;
+    sign_[root] = static_cast<std::int8_t>(sign);
+  }
+
+  [[nodiscard]] std::size_t size() const { return parent_.size(); }
 
  private:
   std::vector<std::uint32_t> parent_;

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "geometry/near_pairs.hpp"
-#include "geometry/signed_sets.hpp"
-#include "refine/cannot_link_sets.hpp"
 #include "refine/segments.hpp"
+#include "refine/signed_graph.hpp"
 
 namespace palpate {
 namespace {
@@ -18,7 +16,10 @@ using Eigen::Vector3f;
 
 // When two points continue each other's segment; judgement (docs/preparation.md, Segments).
 constexpr float kPairReach = 1.6f;  // spacings
-constexpr float kTurn = 0.28f;  // rad (16 degrees) that normals of one segment may turn, or more
+// Angle that normals of one segment may turn, or more, rad (16 degrees). Points of a block that
+// turn no more are joined as they come, for time; measured: with half of it for these or with no
+// limit more signs are wrong (bench/notes/2026-11-30-one-signed-graph.md).
+constexpr float kTurn = 0.28f;
 constexpr float kTolerance =
     0.15f;  // spacings; a point may be off by three of these, or of the noise
 
@@ -26,106 +27,81 @@ constexpr std::uint32_t kFewestOnSegment = 8;  // points of a segment; fewer pro
 // Factor on the confidence of points of smaller segments; judgement.
 constexpr float kTrustOfFew = 0.1f;
 
-// Points whose normals turn by no more than this are joined as they come, for time; measured: with
-// half of it signs are the same, with twice of it twice as many are wrong (docs/preparation.md).
-constexpr float kParallel = 0.5f * kTurn;  // rad
-
-struct Pair {
-  std::uint32_t a;
-  std::uint32_t b;
-  int sign;
-  float skew;  // 1 - cosine of the angle between the normals
-};
-
-/// Pairs of points of a block that wait until those with parallel normals in it are joined.
-struct Later {
-  std::vector<Pair> parallel;  // across blocks
-  std::vector<Pair> turning;   // continue each other, and are not parallel
-  std::vector<Pair> stacked;   // cannot link: one lies over the other
-};
-
-/// Joins points that continue each other's segments: those with parallel normals within each block
-/// on its own, all others afterwards, the most parallel first. So signs spread from normal to
-/// normal where they turn the least (Hoppe et al., Surface reconstruction from unorganized points,
-/// 1992). Where no signs agree all around, as beside a fold that is too thin to separate its sides,
-/// they separate where normals turn the most.
+/// Contracts a signed graph of points. An edge is for the sign of two normals whose points continue
+/// each other's segments, and against it where they lie over each other: the two sides of a blade
+/// continue each other at its edge, where they are too near to be separated, but are not one
+/// segment. Where no signs agree all around, as beside a fold that is too thin to separate its
+/// sides, segments part where the fewest points continue each other.
 class SegmentGrowing {
  public:
   /// `assigned`: of each point the one whose fit it has; kUnassigned: it is on no segment.
   SegmentGrowing(const SegmentInput& input, const PointFits& own,
                  const std::vector<std::uint32_t>& assigned)
-      : input_(input), own_(own), assigned_(assigned), sets_(input.grid().size()) {
+      : input_(input), own_(own), assigned_(assigned), sets_(input.grid().size() + 1) {
     curvatures_.reserve(assigned.size());
     for (std::uint32_t i = 0; i < assigned.size(); ++i) {
       curvatures_.push_back(fitted_curvature(input, own, i));
     }
   }
 
-  detail::SignedSets& run() {
-    std::vector<Later> later(input_.graph.blocks());
+  SignedGraph run() {
+    std::vector<std::vector<SignedEdge>> edges(input_.graph.blocks());
     input_.graph.for_each_block<detail::NearPairs>([&](const auto& rows, auto& pairs) {
       const auto reach = [this](std::uint32_t i) { return kPairReach * input_.spacings[i]; };
       rows.each([&](const detail::NeighborRow& row) {
         pairs.each(input_.grid(), row, reach, [&](std::uint32_t i, std::uint32_t j) {
-          meet(i, j, rows.block(), later[rows.number()]);
+          meet(i, j, rows.block(), edges[rows.number()]);
         });
       });
     });
-    join(later);
-    return sets_;
+    SignedGraph graph(std::move(sets_));
+    for (const auto& of_block : edges) {
+      for (const SignedEdge& edge : of_block) graph.add(edge);
+    }
+    graph.contract();
+    return graph;
   }
 
  private:
-  void join(const std::vector<Later>& later) {
-    CannotLinkSets constrained(sets_, input_.grid().size());
-    for (const Later& block : later) {
-      for (const Pair& pair : block.stacked) constrained.add_cannot_link(pair.a, pair.b, pair.sign);
-    }
-    for (const Later& block : later) {
-      for (const Pair& pair : block.parallel) constrained.join(pair.a, pair.b, pair.sign);
-    }
-    std::vector<Pair> turning;
-    for (const Later& block : later) {
-      std::ranges::copy_if(block.turning, std::back_inserter(turning), [this](const Pair& pair) {
-        return sets_.find(pair.a).first != sets_.find(pair.b).first;
-      });
-    }
-    std::ranges::stable_sort(turning, {}, &Pair::skew);
-    for (const Pair& pair : turning) constrained.join(pair.a, pair.b, pair.sign);
-  }
-
-  /// Joins i and j, which are near each other, if they lie on one segment. Compares their assigned
-  /// planes: at a sharp rim, where two sides meet, these are as far apart as the sides are.
-  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block, Later& later) {
+  /// What i and j, which are near each other, say of each other. Compares their assigned planes: at
+  /// a sharp rim, where two sides meet, these are as far apart as the sides are.
+  void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
+            std::vector<SignedEdge>& edges) {
     if (i == j || assigned_[i] == kUnassigned || assigned_[j] == kUnassigned) return;
+    const auto near = [&] {
+      return (input_.grid().points()[j] - input_.grid().points()[i]).norm();
+    };
+    if (i > j && near() <= kPairReach * input_.spacings[j]) return;  // they meet from j
     const bool inside = j >= block.begin && j < block.end;
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
     const std::uint32_t a = assigned_[i];
     const std::uint32_t b = assigned_[j];
     const Vector3f offset = input_.grid().points()[b] - input_.grid().points()[a];
-    const float length = offset.norm();
-    const float near = (input_.grid().points()[j] - input_.grid().points()[i]).norm();
-    const float curvature = std::min(curvatures_[a], curvatures_[b]);
-    const float turn = std::max(kTurn, kTurnMargin * curvature * length);
+    const float curved = kTurnMargin * std::min(curvatures_[a], curvatures_[b]) * offset.norm();
+    const float turn = std::max(kTurn, curved);
     const float cosine = own_.normals[i].dot(own_.normals[j]);
     if (std::abs(cosine) < 1 - 0.5f * turn * turn) return;
     const float off =
         std::max(std::abs(own_.normals[a].dot(offset)), std::abs(own_.normals[b].dot(offset)));
+    const int sign = cosine < 0 ? -1 : 1;
+    if (off > segment_tolerance(input_, a, b) && off > arc(a, b, curved, near())) {
+      const bool over = a == i && b == j && lie_over(i, j, offset);
+      if (over) edges.push_back({i, j, EdgeWeight::cannot_link(sign)});
+    } else if (inside && std::abs(cosine) >= 1 - 0.5f * kTurn * kTurn) {
+      sets_.join(i, j, sign);
+    } else {
+      edges.push_back({i, j, EdgeWeight(sign)});
+    }
+  }
+
+  /// How far points `near` each other may be off each other's planes, those of a and b, on an arc
+  /// that turns by `curved` (rad) between these at most, m.
+  [[nodiscard]] float arc(std::uint32_t a, std::uint32_t b, float curved, float near) const {
     // An arc's normals turn by twice as much as it leaves their planes.
     const float turned =
         std::sqrt(std::max(0.f, 2 - 2 * std::abs(own_.normals[a].dot(own_.normals[b]))));
-    const float arc_turn = std::min(kTurnMargin * curvature * length, turned + kTurn);
-    const float arc = kChord * std::max(kTurn * near, arc_turn * length);
-    const Pair pair{i, j, cosine < 0 ? -1 : 1, 1 - std::abs(cosine)};
-    if (off > std::max(segment_tolerance(input_, a, b), arc)) {
-      if (a == i && b == j && lie_over(i, j, offset)) later.stacked.push_back(pair);
-    } else if (pair.skew > 0.5f * kParallel * kParallel) {
-      later.turning.push_back(pair);
-    } else if (inside) {
-      sets_.join(i, j, pair.sign);
-    } else {
-      later.parallel.push_back(pair);
-    }
+    const float length = (input_.grid().points()[b] - input_.grid().points()[a]).norm();
+    return kChord * std::max(kTurn * near, std::min(curved, turned + kTurn) * length);
   }
 
   /// Does each lie over the other's plane rather than beside the other?
@@ -164,18 +140,17 @@ GrownSegments grow_segments(const SegmentInput& input, PointFits& own) {
   Snapped snapped = snap_to_planes(input, own);
   result.confident = std::move(snapped.confident);
   result.second_planes = std::move(snapped.second_planes);
-  SegmentGrowing growing(input, own, snapped.assigned);
-  detail::SignedSets& sets = growing.run();
+  SignedGraph graph = SegmentGrowing(input, own, snapped.assigned).run();
   const std::size_t count = input.grid().size();
   std::vector<std::uint32_t>& segment = result.segments.segment;
   segment.assign(count, SurfacePoints::Segments::kNone);
   std::vector<std::uint32_t> sizes;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (snapped.assigned[i] == kUnassigned) continue;
-    const auto [root, sign] = sets.find(i);
+    const auto [root, sign] = graph.find(i);
     if (sign < 0) own.normals[i] = -own.normals[i];
-    if (root == i) {  // before all others of its segment
-      segment[i] = static_cast<std::uint32_t>(sizes.size());
+    if (segment[root] == SurfacePoints::Segments::kNone) {
+      segment[root] = static_cast<std::uint32_t>(sizes.size());
       sizes.push_back(0);
     }
     ++sizes[segment[i] = segment[root]];

@@ -39,7 +39,7 @@ class Outlook {
           GrownSegments& grown)
       : input_(input), own_(own), viewer_(eye), grown_(grown), segments_(grown.segments) {}
 
-  void look(const detail::NeighborhoodGraph::BlockRows& rows, std::vector<SegmentVote>& votes) {
+  void look(const detail::NeighborhoodGraph::BlockRows& rows, std::vector<SignedEdge>& votes) {
     rows.each([&](const detail::NeighborRow& row) {
       if (!alone(row)) look_from(row, votes);
     });
@@ -61,7 +61,7 @@ class Outlook {
     });
   }
 
-  void look_from(const detail::NeighborRow& row, std::vector<SegmentVote>& votes) {
+  void look_from(const detail::NeighborRow& row, std::vector<SignedEdge>& votes) {
     const auto [first, count, neighbors] = row;
     simd::Eyes eyes = {};
     eyes.squared_slope = kSafe * kGapSlope * kGapSlope;
@@ -130,7 +130,7 @@ class Outlook {
 
   /// The nearest points of the nearest other segments.
   void vote(std::uint32_t i, std::vector<std::pair<float, std::uint32_t>>& others,
-            std::vector<SegmentVote>& votes) {
+            std::vector<SignedEdge>& votes) {
     std::sort(others.begin(), others.end());
     std::array<std::pair<std::uint32_t, int>, kVoteSegments> voted{};
     std::size_t count = 0;
@@ -142,10 +142,9 @@ class Outlook {
       if (k == count) voted[count++] = {segment, 0};
       if (voted[k].second++ >= kVotesEach) continue;
       const Vector3f offset = input_.grid().points()[j] - input_.grid().points()[i];
-      const auto [a, b] = std::minmax(segments_.segment[i], segment);
-      votes.push_back(
-          {a, b,
-           agreement(own_.normals[i], own_.normals[j], offset, segment_tolerance(input_, i, j))});
+      const double a =
+          agreement(own_.normals[i], own_.normals[j], offset, segment_tolerance(input_, i, j));
+      votes.push_back({segments_.segment[i], segment, EdgeWeight(a * std::abs(a))});
     }
   }
 
@@ -166,19 +165,16 @@ float look_reach(bool seen) {
   return seen ? kGapReach : kVoteReach;
 }
 
-std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
-                                     const std::optional<Vector3f>& eye, GrownSegments& grown) {
+std::vector<SignedEdge> look_around(const SegmentInput& input, const PointFits& own,
+                                    const std::optional<Vector3f>& eye, GrownSegments& grown) {
   if (eye) grown.hidden.assign(input.grid().size(), 0);
-  std::vector<std::vector<SegmentVote>> votes(input.graph.blocks());
+  std::vector<std::vector<SignedEdge>> votes(input.graph.blocks());
   input.graph.for_each_block<std::optional<Outlook>>([&](const auto& rows, auto& outlook) {
     if (!outlook) outlook.emplace(input, own, eye, grown);
     outlook->look(rows, votes[rows.number()]);
   });
-  std::vector<SegmentVote> all;
+  std::vector<SignedEdge> all;
   for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
-  std::stable_sort(all.begin(), all.end(), [](const SegmentVote& x, const SegmentVote& y) {
-    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-  });
   return all;
 }
 

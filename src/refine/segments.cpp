@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "refine/segment_clusters.hpp"
+#include "refine/signed_graph.hpp"
 
 namespace palpate {
 namespace {
@@ -13,9 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// |sum of evidence| over the sum of its sizes.
-constexpr double kCoherent = 0.5;  // three quarters agree; judgement
-constexpr double kAgree = 0.96;    // it is certain: 98 % agree; judgement
+// |sum of evidence| over the sum of its sizes, where it is certain: 98 % agree; judgement.
+constexpr double kAgree = 0.96;
 
 constexpr double kMostHidden = 0.5;  // share of a segment's points; judgement
 
@@ -23,32 +22,16 @@ constexpr double kOpen = 0.3;  // |sum a n| / sum a of open components, at least
 // Sine of the lean that gives an open component an upper side; judgement.
 constexpr double kUpright = 0.2;
 
-/// Prior evidence for which side of a segment or component is free, relative to its normals.
-struct Evidence {
-  double signs = 0;  // sum of votes
-  double all = 0;    // sum of their sizes
-
-  void add(double vote) {
-    signs += vote;
-    all += std::abs(vote);
-  }
-  /// The sign that at least (1 + share) / 2 of the votes have; 0: neither.
-  [[nodiscard]] int sign(double share) const {
-    if (!(all > 0) || std::abs(signs) < share * all) return 0;
-    return signs < 0 ? -1 : 1;
-  }
-};
-
 /// For each segment: given normals where nearly all agree, else what the eye sees of it.
-std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& prior,
-                                  const PointFits& own, const GrownSegments& grown) {
+std::vector<EdgeWeight> evidence_of(const SegmentInput& input, const PriorSigns& prior,
+                                    const PointFits& own, const GrownSegments& grown) {
   const SurfacePoints::Segments& segments = grown.segments;
   struct Counts {
     double points = 0;
     double hidden = 0;
   };
-  std::vector<Evidence> given(segments.component.size());
-  std::vector<Evidence> seen(segments.component.size());
+  std::vector<EdgeWeight> given(segments.component.size());
+  std::vector<EdgeWeight> seen(segments.component.size());
   std::vector<Counts> counts(segments.component.size());
   for (std::uint32_t i = 0; i < segments.segment.size(); ++i) {
     const std::uint32_t segment = segments.segment[i];
@@ -56,7 +39,7 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& p
     ++counts[segment].points;
     if (!prior.given.empty() && prior.given[i].allFinite()) {
       const float cosine = prior.given[i].dot(own.normals[i]);
-      if (cosine != 0) given[segment].add(cosine < 0 ? -1 : 1);
+      if (cosine != 0) given[segment] += EdgeWeight(cosine < 0 ? -1 : 1);
     }
     if (prior.eye) {
       const Vector3f offset = *prior.eye - input.grid().points()[i];
@@ -64,33 +47,15 @@ std::vector<Evidence> evidence_of(const SegmentInput& input, const PriorSigns& p
       if (grown.hidden[i] != 0) {
         ++counts[segment].hidden;
       } else {
-        seen[segment].add(static_cast<double>(cosine));
+        seen[segment] += EdgeWeight(static_cast<double>(cosine));
       }
     }
   }
   for (std::uint32_t k = 0; k < seen.size(); ++k) {
     if (counts[k].hidden > kMostHidden * counts[k].points) seen[k] = {};
-    if (given[k].sign(kAgree) != 0 || !(seen[k].all > 0)) seen[k] = given[k];
+    if (given[k].sign(kAgree) != 0 || !(seen[k].size > 0)) seen[k] = given[k];
   }
   return seen;
-}
-
-/// The signed edges between segments, the strongest first.
-std::vector<SignedEdge> edges_of(const std::vector<SegmentVote>& votes) {
-  std::vector<SignedEdge> edges;
-  for (std::size_t k = 0; k < votes.size();) {
-    SignedEdge edge{votes[k].a, votes[k].b, {}};
-    for (; k < votes.size() && votes[k].a == edge.a && votes[k].b == edge.b; ++k) {
-      const auto v = static_cast<double>(votes[k].value);
-      edge.votes.value += v * std::abs(v);
-      edge.votes.squares += v * v;
-    }
-    edges.push_back(edge);
-  }
-  std::stable_sort(edges.begin(), edges.end(), [](const SignedEdge& x, const SignedEdge& y) {
-    return std::abs(x.votes.value) > std::abs(y.votes.value);
-  });
-  return edges;
 }
 
 /// Sums over the points of one component.
@@ -112,7 +77,7 @@ struct Side {
 /// component that does not close, such as terrain, a wall or one view of a scene, has no outside:
 /// evidence that mostly agrees decides or, without any, the mean normal is to point up (+z) or, if
 /// it lies, away from the centre of all points.
-Side side_of(const ComponentSums& component, const Evidence& evidence,
+Side side_of(const ComponentSums& component, const EdgeWeight& evidence,
              const Vector3d& center_of_all) {
   if (const int sign = evidence.sign(kAgree); sign != 0) return {sign, true};
   if (!(component.area > 0)) return {};
@@ -159,48 +124,39 @@ void turn(const std::vector<int>& sign_of_segment, const SurfacePoints::Segments
   }
 }
 
-/// Joins segments in clusters, along the strongest edges first. An edge that contradicts the
-/// evidence of both of its sides is passed over. `evidence`: becomes that of the clusters, at their
-/// roots.
-SegmentClusters join_clusters(const std::vector<SignedEdge>& edges,
-                              std::vector<Evidence>& evidence) {
-  SegmentClusters clusters(edges, evidence.size());
-  for (const SignedEdge& edge : edges) {
-    const std::uint32_t root_a = clusters.find(edge.a).first;
-    const std::uint32_t root_b = clusters.find(edge.b).first;
-    const int sign = clusters.sign_between(root_a, root_b);
-    if (sign == 0) continue;
-    const int both = evidence[root_a].sign(kCoherent) * evidence[root_b].sign(kCoherent);
-    if (both != 0 && both != sign) continue;
-    Evidence& whole = evidence[std::min(root_a, root_b)];
-    const Evidence& other = evidence[std::max(root_a, root_b)];
-    whole.signs += sign * other.signs;
-    whole.all += other.all;
-    clusters.join(root_a, root_b, sign);
-  }
-  return clusters;
+/// Clusters of segments by the `votes` of their points and the `evidence` for their sides.
+SignedGraph join_segments(const std::vector<SignedEdge>& votes,
+                          const std::vector<EdgeWeight>& evidence) {
+  const auto free_side = static_cast<std::uint32_t>(evidence.size());
+  SignedGraph graph{detail::SignedSets(evidence.size() + 1)};
+  for (const SignedEdge& vote : votes) graph.add(vote);
+  for (std::uint32_t k = 0; k < free_side; ++k) graph.add({k, free_side, evidence[k]});
+  graph.contract();
+  return graph;
 }
 
 /// Makes components of clusters of segments and turns their normals to the free side.
-void join_components(const SegmentInput& input, const std::vector<SignedEdge>& edges,
-                     std::vector<Evidence> evidence, const std::optional<Vector3d>& middle,
-                     PointFits& own, SurfacePoints::Segments& segments) {
-  SegmentClusters clusters = join_clusters(edges, evidence);
+void join_components(const SegmentInput& input, SignedGraph& graph,
+                     const std::optional<Vector3d>& middle, PointFits& own,
+                     SurfacePoints::Segments& segments) {
   std::vector<int> signs;
   std::vector<std::uint32_t> roots;  // of the components
-  for (std::uint32_t k = 0; k < segments.component.size(); ++k) {
-    const auto [root, sign] = clusters.find(k);
-    if (root == k) roots.push_back(k);
-    segments.component[k] =
-        root == k ? static_cast<std::uint32_t>(roots.size()) - 1 : segments.component[root];
-    signs.push_back(sign);
+  std::vector<std::uint32_t> of_root(segments.component.size(), SurfacePoints::Segments::kNone);
+  for (std::uint32_t k = 0; k < of_root.size(); ++k) {
+    const std::uint32_t root = graph.find(k).first;
+    if (of_root[root] == SurfacePoints::Segments::kNone) {
+      of_root[root] = static_cast<std::uint32_t>(roots.size());
+      roots.push_back(root);
+    }
+    segments.component[k] = of_root[root];
+    signs.push_back(graph.find(k).second);
   }
   ComponentSums all;
   const std::vector<ComponentSums> sums = sums_of_components(input, own, segments, signs, all);
   const Vector3d own_middle = all.area > 0 ? Vector3d(all.moment / all.area) : all.moment;
   std::vector<Side> sides;
   for (std::uint32_t k = 0; k < roots.size(); ++k) {
-    sides.push_back(side_of(sums[k], evidence[roots[k]], middle.value_or(own_middle)));
+    sides.push_back(side_of(sums[k], graph.side(roots[k]), middle.value_or(own_middle)));
     segments.known.push_back(sides.back().decided ? 1 : 0);
   }
   for (std::uint32_t k = 0; k < signs.size(); ++k) signs[k] *= sides[segments.component[k]].sign;
@@ -213,10 +169,10 @@ SurfacePoints::Segments make_segments(const SegmentInput& input, const PriorSign
                                       PointFits& own, std::vector<SecondPlane>& second_planes) {
   GrownSegments grown = grow_segments(input, own);
   second_planes = std::move(grown.second_planes);
-  const std::vector<SegmentVote> votes = look_around(input, own, prior.eye, grown);
-  const std::vector<Evidence> evidence = evidence_of(input, prior, own, grown);
+  const std::vector<SignedEdge> votes = look_around(input, own, prior.eye, grown);
+  SignedGraph graph = join_segments(votes, evidence_of(input, prior, own, grown));
   SurfacePoints::Segments segments = std::move(grown.segments);
-  join_components(input, edges_of(votes), evidence, prior.middle, own, segments);
+  join_components(input, graph, prior.middle, own, segments);
   segments.residual = own.residuals;
   return segments;
 }

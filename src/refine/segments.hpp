@@ -16,6 +16,7 @@
 #include "prepare/orientation.hpp"
 #include "prepare/point_fits.hpp"
 #include "prepare/surfels.hpp"
+#include "refine/signed_graph.hpp"
 
 namespace palpate {
 
@@ -62,22 +63,14 @@ struct GrownSegments {
 /// How far the points i and j may be off each other's plane when they lie on one segment, m.
 [[nodiscard]] float segment_tolerance(const SegmentInput& input, std::uint32_t i, std::uint32_t j);
 
-/// The vote of a pair of points on two segments: should their normals keep (> 0) or change (< 0)
-/// their relative sign? -1 ... 1.
-struct SegmentVote {
-  std::uint32_t a = 0;  ///< segments, a < b
-  std::uint32_t b = 0;
-  float value = 0;
-};
-
 /// How far look_around() looks, in R. `seen`: is there a viewpoint?
 [[nodiscard]] float look_reach(bool seen);
 
-/// Returns the votes on pairs of segments, in the order of their numbers. Where there is an eye,
-/// notes which points another segment hides from it.
-[[nodiscard]] std::vector<SegmentVote> look_around(const SegmentInput& input, const PointFits& own,
-                                                   const std::optional<Eigen::Vector3f>& eye,
-                                                   GrownSegments& grown);
+/// Returns edges between segments by what pairs of their points say, a |a| of how far they agree
+/// (-1 ... 1). Where there is an eye, notes which points another segment hides from it.
+[[nodiscard]] std::vector<SignedEdge> look_around(const SegmentInput& input, const PointFits& own,
+                                                  const std::optional<Eigen::Vector3f>& eye,
+                                                  GrownSegments& grown);
 
 inline constexpr std::uint32_t kUnassigned = ~std::uint32_t{0};  ///< no point: above every index
 

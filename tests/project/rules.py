@@ -53,7 +53,7 @@ STEPS = {
     "prepare": [{"description", "stopwatch", "point_fits", "places", "height_groups"},
                 {"given_normals", "lines", "segment_fit"}, {"place"}, {"noise"}, {"sampling"}, {"limit_radii"},
                 {"radii"}, {"plane_fits"}, {"weights"}, {"surfels"}, {"orientation"}, {"assemble"}, {"prepare"}],
-    "refine": [{"cluster_edges", "holes"}, {"segment_clusters", "cannot_link_sets"}, {"outliers"}, {"gaps"}, {"segments"},
+    "refine": [{"signed_graph", "holes"}, {"outliers"}, {"gaps"}, {"segments"},
                {"snapping"}, {"grow_segments", "look_around"}, {"second_planes"}, {"refinements"}],
 }
 # The rooms of the program, from the top down: what stands in one line sees what stands below it.

@@ -117,16 +117,14 @@ TEST(Votes, KeepNormalsThatLeaveAnEdgeOnOneSideAndTurnOthers) {
       const bool wall = std::abs(n.x()) > 0.9f;
       n = wall ? Vector3f(turned, 0, 0) : Vector3f::UnitZ();
     }
-    const std::vector<SegmentVote> votes = look_around(fitted.input(), fitted.own, {}, grown);
+    const std::vector<SignedEdge> votes = look_around(fitted.input(), fitted.own, {}, grown);
     ASSERT_FALSE(votes.empty());
-    float sum = 0;
-    float squares = 0;
-    for (const SegmentVote& vote : votes) {
-      EXPECT_EQ(std::pair(vote.a, vote.b), std::pair(0u, 1u));
-      sum += vote.value * std::abs(vote.value);
-      squares += vote.value * vote.value;
+    EdgeWeight all;
+    for (const SignedEdge& vote : votes) {
+      EXPECT_EQ(vote.a + vote.b, 1u);
+      all += vote.weight;
     }
-    EXPECT_GT(turned * sum, 0.9f * squares);
+    EXPECT_GT(turned * all.sum, 0.9 * all.size);
   }
 }
 
