@@ -25,7 +25,8 @@ void refuse_pickling(const py::module_& module, const char* type, const char* re
 
 void refuse_pickling(const py::module_& module) {
   const char* const remake = "make it again in each process, of arrays or files";
-  for (const char* type : {"AnyField", "Proxy", "Scene", "Source", "Servo", "DepthCamera", "ToolProxy", "Tool"}) {
+  for (const char* type :
+       {"AnyField", "Proxy", "Scene", "Source", "Servo", "DepthCamera", "ToolProxy", "Tool"}) {
     refuse_pickling(module, type, remake);
   }
   refuse_pickling(module, "PointCloud",

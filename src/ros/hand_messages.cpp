@@ -14,8 +14,8 @@ namespace palpate::ros {
 namespace {
 
 using namespace message;
-using message::Pose;
 using Eigen::Vector3d;
+using message::Pose;
 
 constexpr int kButtons = 8;
 // visualization_msgs/Marker's types.
