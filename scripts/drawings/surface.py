@@ -208,7 +208,7 @@ def normal_and_confidence(points, center, reach):
 
 
 def agree(points, normals, radii, eye):
-    """Turns normals until neighbours agree, the most parallel first, and the point next to the eye faces it (2.7, 5.6)."""
+    """Turns normals until neighbours agree, the most parallel first, and the point next to the eye faces it (2.7; signs without refinements, 5.6)."""
     start = min(range(len(points)), key=lambda i: length(minus(points[i], eye)))
     facing = normals[start] if dot(normals[start], minus(eye, points[start])) > 0 else [-x for x in normals[start]]
     turned, waiting = {}, {start: (1.0, facing)}

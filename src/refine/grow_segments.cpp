@@ -17,8 +17,8 @@ using Eigen::Vector3f;
 // When two points continue each other's segment; judgement (docs/preparation.md, Segments).
 constexpr float kPairReach = 1.6f;  // spacings
 // Angle that normals of one segment may turn, or more, rad (16 degrees). Points of a block that
-// turn no more are joined as they come, for time; measured: with half of it for these or with no
-// limit more signs are wrong (bench/notes/2026-11-30-one-signed-graph.md).
+// turn by half of it at most are joined as they come, for time: a half-twisted band whose rows turn
+// by 9 degrees parts at the twist, wherever the borders of blocks are (tests).
 constexpr float kTurn = 0.28f;
 constexpr float kTolerance =
     0.15f;  // spacings; a point may be off by three of these, or of the noise
@@ -55,8 +55,9 @@ class SegmentGrowing {
       });
     });
     SignedGraph graph(std::move(sets_));
-    for (const auto& of_block : edges) {
+    for (auto& of_block : edges) {
       for (const SignedEdge& edge : of_block) graph.add(edge);
+      of_block = {};
     }
     graph.contract();
     return graph;
@@ -68,10 +69,9 @@ class SegmentGrowing {
   void meet(std::uint32_t i, std::uint32_t j, const detail::Block& block,
             std::vector<SignedEdge>& edges) {
     if (i == j || assigned_[i] == kUnassigned || assigned_[j] == kUnassigned) return;
-    const auto near = [&] {
-      return (input_.grid().points()[j] - input_.grid().points()[i]).norm();
-    };
-    if (i > j && near() <= kPairReach * input_.spacings[j]) return;  // they meet from j
+    const float squared = (input_.grid().points()[j] - input_.grid().points()[i]).squaredNorm();
+    const float reach = kPairReach * input_.spacings[j];
+    if (i > j && squared <= reach * reach) return;  // they meet from j
     const bool inside = j >= block.begin && j < block.end;
     if (inside && sets_.find(i).first == sets_.find(j).first) return;
     const std::uint32_t a = assigned_[i];
@@ -84,10 +84,10 @@ class SegmentGrowing {
     const float off =
         std::max(std::abs(own_.normals[a].dot(offset)), std::abs(own_.normals[b].dot(offset)));
     const int sign = cosine < 0 ? -1 : 1;
-    if (off > segment_tolerance(input_, a, b) && off > arc(a, b, curved, near())) {
+    if (off > segment_tolerance(input_, a, b) && off > arc(a, b, curved, std::sqrt(squared))) {
       const bool over = a == i && b == j && lie_over(i, j, offset);
       if (over) edges.push_back({i, j, EdgeWeight::cannot_link(sign)});
-    } else if (inside && std::abs(cosine) >= 1 - 0.5f * kTurn * kTurn) {
+    } else if (inside && std::abs(cosine) >= 1 - 0.125f * kTurn * kTurn) {
       sets_.join(i, j, sign);
     } else {
       edges.push_back({i, j, EdgeWeight(sign)});

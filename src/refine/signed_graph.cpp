@@ -90,10 +90,15 @@ void SignedGraph::contract() {
     const auto edge = edges_[a].find(b);
     if (edge == edges_[a].end() || gain_of(edge->second) != gain) continue;  // not any more
     const int sign = edge->second.sum < 0 ? -1 : 1;
-    if (side(a).sign(kCoherent) * side(b).sign(kCoherent) == -sign) continue;
+    const int side_a = side(a).sign(kCoherent);
+    const int side_b = side(b).sign(kCoherent);
+    if (side_a * side_b == -sign) continue;
     const Edges changed = join(a, b, sign);
     const std::uint32_t root = find(a).first;
-    for (const auto& [other, weight] : changed) offer(root, other, weight);
+    // What its side kept apart may be joined now that it has another.
+    const int before = root == a ? side_a : side_b;
+    const bool freed = before != 0 && side(root).sign(kCoherent) != before;
+    for (const auto& [other, weight] : freed ? edges_[root] : changed) offer(root, other, weight);
   }
 }
 

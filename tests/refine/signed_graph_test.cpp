@@ -50,6 +50,19 @@ TEST(SignedGraph, JoinsWhatThreeQuartersSpeakFor) {
   }
 }
 
+// Sides kept 0 and 1 apart until 2 came to 0, whose side is undecided since then.
+TEST(SignedGraph, JoinsWhatASideKeptApartOnceItIsUndecided) {
+  constexpr std::uint32_t kFree = 3;
+  SignedGraph graph = contracted(3, {{0, kFree, EdgeWeight(2)},
+                                     {1, kFree, EdgeWeight(4)},
+                                     {0, 1, EdgeWeight(-40)},
+                                     {2, kFree, EdgeWeight(2)},
+                                     {2, kFree, EdgeWeight(-3)},
+                                     {0, 2, EdgeWeight(6)}});
+  EXPECT_EQ(sign_of(graph, 0, 2), 1);
+  EXPECT_EQ(sign_of(graph, 0, 1), -1);
+}
+
 TEST(SignedGraph, TakesACannotLinkForOneSignAloneAndAsAPair) {
   for (const int sign : {1, -1}) {
     const SignedEdge over{0, 1, EdgeWeight::cannot_link(sign)};
@@ -204,7 +217,7 @@ void expect_outward(const std::vector<Vector3f>& blade, double least) {
     if (z * points.normals[i].z() > 0) ++outward;
   }
   EXPECT_GT(all, 1000);
-  EXPECT_GT(outward, 0.98 * all);
+  EXPECT_GT(outward, 0.99 * all);
 }
 
 TEST(SignedGraph, LeavesTheSidesOfABladeApartWhoseEdgeIsThinnerThanItsPointsAreApart) {
