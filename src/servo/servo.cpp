@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "base/latest.hpp"
+#include "palpate/base/error.hpp"
 #include "servo/held_tool.hpp"
 #include "servo/servo_inside.hpp"
 #include "servo/step_trace.hpp"

@@ -21,11 +21,6 @@ constexpr double kSmallestGyration = 1e-4;
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
-std::shared_ptr<const Tool> checked(std::shared_ptr<const Tool> tool) {
-  if (!tool) throw Error("tool proxy: it has no tool; give one");
-  return tool;
-}
-
 ToolOptions checked(const ToolOptions& options, const Tool& tool) {
   kRequireProxy.not_negative("stiffness", options.stiffness, "give N/m, 0 or more");
   kRequireProxy(options.gyration == 0 ||
@@ -127,8 +122,11 @@ void ToolProxy::Inside::see(const ToolSurface& surface, const Field::Traits& tra
   revision_ = traits.revision;
 }
 
-ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool, const ToolOptions& options)
-    : inside_(std::make_unique<Inside>(checked(tool), checked(options, *checked(tool)))) {}
+ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool, const ToolOptions& options) {
+  if (!tool) throw Error("tool proxy: it has no tool; give one");
+  const ToolOptions complete = checked(options, *tool);
+  inside_ = std::make_unique<Inside>(std::move(tool), complete);
+}
 ToolProxy::~ToolProxy() = default;
 ToolProxy::ToolProxy(ToolProxy&&) noexcept = default;
 ToolProxy& ToolProxy::operator=(ToolProxy&&) noexcept = default;
