@@ -16,8 +16,8 @@ namespace palpate {
 /// A cloud's surface may rise this fast and still take a resting proxy along, m/s (judgement).
 inline constexpr double kFastestCloud = 0.5;
 
-/// All sources of a scene as one field follows them: which layers count now, and where each is told
-/// that the tool can be next. Real-time but for construction and destruction.
+/// All sources of a scene as one field follows them: lists which layers count now, and reports to
+/// the sources where the tool can be next. Real-time but for construction and destruction.
 class FollowedSources {
  public:
   /// `name`: for reports of stalled fields. `scale`: metres that the tool goes for one of the hand.
@@ -28,7 +28,7 @@ class FollowedSources {
   FollowedSources& operator=(const FollowedSources&) = delete;
 
   /// Brings all sources to time `now`, s; where that is not finite, to that of the last call. True
-  /// when a surface moved or changed; then the layers are listed anew.
+  /// when a surface moved or changed; then the layers are listed again.
   bool advance(double now, const FieldOptions& options) noexcept;
   /// Lists the layers that count for a field with these options.
   void list(const FieldOptions& options) noexcept;

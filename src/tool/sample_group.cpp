@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 // R that a patch reaches beyond the samples that it is gathered for: as for a point (judgement).
 constexpr double kMargin = 0.35;
-constexpr double kMoved = 0.15;  // R after which sides are decided anew: as for a point
+constexpr double kMoved = 0.15;  // R after which sides are decided again: as for a point
 
 }  // namespace
 
@@ -135,8 +135,8 @@ void SampleGroup::begin_at(const Vector3d& x) const noexcept {
   now_.patch.sides().forget();
 }
 
-/// Do sides have to be decided anew, as the tool has moved or the surface is another one? Then they
-/// are reopened where the tool is free.
+/// Do sides have to be decided again, as the tool has moved or the surface is another one? Then
+/// they are reopened where the tool is free.
 bool SampleGroup::turns() const noexcept {
   const double moved = (now_.stance.proxy - now_.faced.proxy).norm();
   const bool same = now_.stance.touches() == now_.faced.touches() && moved < kMoved * radius();

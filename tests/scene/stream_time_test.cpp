@@ -26,12 +26,7 @@ constexpr double kStiffness = 500;
 
 class StreamTimeTest : public testing::Test {
  protected:
-  static SourceOptions options() {
-    SourceOptions options;
-    options.T_world_sensor = looking_down();
-    options.policy.fit_everywhere = true;
-    return options;
-  }
+  static SourceOptions options() { return test::fitted_from(looking_down()); }
 
   // A frame of a plane at `height` that is ready at `ready` and felt a little later. From asking
   // for the start to publishing `rest` passes.

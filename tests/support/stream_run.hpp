@@ -11,6 +11,14 @@
 
 namespace palpate::test {
 
+/// A source whose camera is at `pose` and that fits all of each frame.
+inline SourceOptions fitted_from(const Eigen::Isometry3d& pose) {
+  SourceOptions options;
+  options.T_world_sensor = pose;
+  options.policy.fit_everywhere = true;
+  return options;
+}
+
 /// A frame that becomes ready at a time, and what is to be done with it then.
 struct Arrives {
   double time = 0;  ///< s

@@ -6,6 +6,7 @@
 
 #include "palpate/tool/tool_field.hpp"
 #include "support/depth_frames.hpp"
+#include "support/stream_run.hpp"
 #include "tool/tool_rig.hpp"
 
 namespace palpate::test {
@@ -30,13 +31,6 @@ DepthOf seen_from_above(const HeightAt& height) {
 /// A box on what a camera sees, which looks down from 0.5 m.
 class ToolOnAStream : public testing::Test {
  protected:
-  static SourceOptions options() {
-    SourceOptions options;
-    options.T_world_sensor = looking_down();
-    options.policy.fit_everywhere = true;
-    return options;
-  }
-
   // Goes on to `end` (s) with a new frame every 33 ms, a hand, and what is to be seen of each step.
   void until(double end, const std::function<DepthOf(double)>& depths,
              const std::function<Pose(double)>& hand,
@@ -63,7 +57,7 @@ class ToolOnAStream : public testing::Test {
 
   double noise_ = 0;
   Scene scene_;
-  Source& source_ = scene_.add("camera", options());
+  Source& source_ = scene_.add("camera", fitted_from(looking_down()));
   std::shared_ptr<const Tool> tool_ =
       std::make_shared<const Tool>(Tool::box({0.04, 0.06, 0.02}, 0.005));
   ToolField field_{scene_, tool_};

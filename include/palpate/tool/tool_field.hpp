@@ -19,7 +19,7 @@ namespace palpate {
 /// can pinch a sheet. One thread uses it; up to 16 fields may look at one scene.
 ///
 /// What a step looks at in the index is bounded for all groups together (kStepVisits); what is not
-/// seen by then is solid, and holds the tool for that step. Sides are decided anew for each group
+/// seen by then is solid, and holds the tool for that step. Sides are decided again for each group
 /// that has moved, and each sample is a sum, so that a step takes longer with more of them
 /// (docs/method.md 3.7).
 class ToolField final : public ToolSurface {
