@@ -18,6 +18,17 @@ using Eigen::Vector3d;
 // hand's damping over its stiffness (SimulatedDeviceOptions::Hand)
 constexpr double kSettled = 0.05;
 
+// m: what turns as fast as the hand may move has its edge there. A hand is some 80 mm wide.
+constexpr double kLever = 0.08;
+
+// A unit quaternion's length is off by no more than the rounding of texts of seven digits.
+constexpr double kUnit = 1e-6;
+
+bool is_valid(const TargetSource::Target& target) noexcept {
+  return target.position.allFinite() && target.maximum_force > 0 && std::isfinite(target.opening) &&
+         std::abs(target.orientation.norm() - 1) < kUnit;
+}
+
 TeleoperatedHandOptions checked(const TeleoperatedHandOptions& o) {
   const Requirement require{"teleoperated hand"};
   require.positive("speed", o.speed, "give a positive speed in m/s");
@@ -48,8 +59,7 @@ RemoteTarget::RemoteTarget() : inside_(std::make_unique<Inside>()) {}
 RemoteTarget::~RemoteTarget() = default;
 
 bool RemoteTarget::move(const TargetSource::Target& target, double stamp) noexcept {
-  if (!target.position.allFinite() || !(target.maximum_force > 0) || !std::isfinite(stamp))
-    return false;
+  if (!is_valid(target) || !std::isfinite(stamp)) return false;
   Command& newest = inside_->newest;
   newest = {target, stamp, true, newest.moves + 1};
   inside_->shared.set(newest);
@@ -103,6 +113,7 @@ struct TeleoperatedHand::Inside {
   void play(double dt, const Vector3d& position) noexcept;
   void approach(const Vector3d& goal, double dt) noexcept;
   void go(const Vector3d& goal, double speed, double dt) noexcept;
+  void turn(double dt) noexcept;
 
   const RemoteTarget& remote;
   TeleoperatedHandOptions options;
@@ -130,6 +141,7 @@ TargetSource::Target TeleoperatedHand::target(double time, const Vector3d& posit
   in.receive(time, position);
   in.choose_mode(time);
   in.advance(time, position);
+  in.turn(time - in.time);
   in.time = time;
   return in.target;
 }
@@ -244,6 +256,21 @@ void TeleoperatedHand::Inside::go(const Vector3d& goal, double speed, double dt)
   } else {
     target.position += reach / length * path;
   }
+}
+
+void TeleoperatedHand::Inside::turn(double dt) noexcept {
+  if (mode == Mode::released) return;
+  const TargetSource::Target goal =
+      mode == Mode::following ? command.target : TargetSource::Target();
+  const double angle = target.orientation.angularDistance(goal.orientation);
+  const double reach = options.speed * dt;
+  if (kLever * angle <= reach) {
+    target.orientation = goal.orientation;
+  } else {
+    target.orientation =
+        target.orientation.slerp(reach / (kLever * angle), goal.orientation).normalized();
+  }
+  target.opening += std::clamp(goal.opening - target.opening, -reach, reach);
 }
 
 }  // namespace palpate

@@ -38,6 +38,8 @@ struct TabHand {
 
   void go(TargetSource::Target target) {
     target.position = placement.workspace.position_to_device(target.position);
+    target.orientation = placement.workspace.orientation_to_device(target.orientation);
+    target.opening /= placement.workspace.scale;
     remote.move(target, heard);
   }
 

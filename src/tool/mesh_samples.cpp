@@ -200,7 +200,12 @@ Tool Tool::mesh(std::span<const Vector3d> vertices, std::span<const Triangle> tr
     fill_face(samples, mesh.positions()[face[0]], mesh.positions()[face[1]],
               mesh.positions()[face[2]], spacing);
   }
-  return Tool(std::move(samples.samples()));
+  Tool tool(std::move(samples.samples()));
+  for (const Triangle& face : mesh.faces()) {
+    const auto corner = [&](std::size_t i) { return mesh.positions()[face[i]].cast<float>(); };
+    tool.faces_.push_back({corner(0), corner(1), corner(2)});
+  }
+  return tool;
 }
 
 }  // namespace palpate

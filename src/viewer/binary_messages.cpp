@@ -20,7 +20,10 @@ constexpr std::uint8_t kStateKind = 1;
 constexpr std::uint8_t kCloudKind = 2;
 constexpr std::uint8_t kSurfaceKind = 3;
 constexpr std::uint8_t kPastKind = 4;
+constexpr std::uint8_t kToolKind = 5;
 constexpr std::size_t kPastHeader = 16;
+constexpr std::size_t kToolHeader = 24;
+constexpr std::size_t kToolPart = 40;
 constexpr std::size_t kStateHeader = 92;
 constexpr std::size_t kCloudHeader = 40;
 constexpr std::size_t kSurfaceHeader = 24;
@@ -52,6 +55,9 @@ class ByteWriter {
   void put(double value) { put(std::bit_cast<std::uint64_t>(value)); }
   void put(const Eigen::Vector3f& v) {
     for (int i = 0; i < 3; ++i) put(v[i]);
+  }
+  void put(const Eigen::Quaternionf& q) {
+    for (const float part : {q.x(), q.y(), q.z(), q.w()}) put(part);
   }
 
   [[nodiscard]] std::string take() { return std::move(bytes_); }
@@ -85,6 +91,14 @@ void put_positions(const CloudMessage& message, ByteWriter& bytes) {
   }
 }
 
+void put_tool(const ToolPart& tool, ByteWriter& bytes) {
+  bytes.put(tool.orientation);
+  bytes.put(tool.opening);
+  bytes.put(tool.hand_opening);
+  bytes.put(tool.torque);
+  bytes.put(tool.grip);
+}
+
 }  // namespace
 
 std::uint8_t logarithmic(float radius) noexcept {
@@ -104,8 +118,9 @@ std::array<std::int8_t, 2> octahedral(const Eigen::Vector3f& normal) noexcept {
 
 std::string encode(const StateMessage& message) {
   assert(message.forces.size() <= std::numeric_limits<std::uint16_t>::max());
+  const bool holds_tool = (message.flags & state_flag::kTool) != 0;
   ByteWriter bytes(kStateHeader + message.forces.size() * sizeof(Eigen::Vector3f) +
-                   (message.orientation ? kQuaternion : 0));
+                   (message.orientation ? kQuaternion : 0) + (holds_tool ? kToolPart : 0));
   bytes.put(kStateKind);
   bytes.put(message.device);
   bytes.put(static_cast<std::uint16_t>(message.forces.size()));
@@ -118,9 +133,8 @@ std::string encode(const StateMessage& message) {
   for (const float time : message.lateness) bytes.put(time);
   bytes.put(message.interval);
   for (const Eigen::Vector3f& force : message.forces) bytes.put(force);
-  if (const auto& q = message.orientation) {
-    for (const float part : {q->x(), q->y(), q->z(), q->w()}) bytes.put(part);
-  }
+  if (message.orientation) bytes.put(*message.orientation);
+  if (holds_tool) put_tool(message.tool, bytes);
   return bytes.take();
 }
 
@@ -172,6 +186,26 @@ std::string encode_surface(std::uint8_t device, const Eigen::Vector3f& center, c
   }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint16_t corner : triangle) bytes.put(corner);
+  }
+  return bytes.take();
+}
+
+std::string encode_tool(std::uint8_t device, const Tool& tool) {
+  const std::span samples = tool.samples();
+  ByteWriter bytes(kToolHeader + 20 * samples.size() + 36 * tool.faces().size());
+  bytes.put(kToolKind);
+  bytes.put(device);
+  bytes.put(std::uint16_t{0});
+  bytes.put(static_cast<std::uint32_t>(samples.size()));
+  bytes.put(static_cast<std::uint32_t>(tool.faces().size()));
+  bytes.put(Vector3f(tool.axis().cast<float>()));
+  for (const Tool::Point& sample : samples) {
+    bytes.put(Vector3f(sample.position.cast<float>()));
+    bytes.put(static_cast<float>(sample.radius));
+    bytes.put(static_cast<float>(sample.side));
+  }
+  for (const Tool::Face& face : tool.faces()) {
+    for (const Vector3f& corner : face) bytes.put(corner);
   }
   return bytes.take();
 }

@@ -235,6 +235,12 @@ void ClientSessions::greet(Session& session, const Hello& hello) {
   }
   moment_.reset();  // for the new one
   for (const auto& [topic, message] : time_line_messages(options_)) session.send(topic, message);
+  for (std::size_t i = 0; i < welcome.devices.size(); ++i) {
+    const auto& tool = welcome.devices[i].tool;
+    if (tool == nullptr) continue;
+    session.send({Topic::Kind::tool, i},
+                 binary_message(encode_tool(static_cast<std::uint8_t>(i), *tool)));
+  }
   session.greeted = true;
   session.points = hello.points;
 }

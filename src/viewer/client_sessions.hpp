@@ -35,6 +35,7 @@ struct Topic {
     time,
     envelope,
     past,
+    tool,
     answer
   };
   Kind kind = Kind::answer;

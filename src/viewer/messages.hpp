@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "palpate/device/device.hpp"
+#include "palpate/tool/tool.hpp"
 #include "palpate/viewer/viewer.hpp"
 
 namespace palpate::viewer {
@@ -97,7 +99,8 @@ struct Notice {
 struct DeviceLabel {
   std::string name;
   bool takeable = false;
-  double scale = 1;  ///< world metres of a metre that the hand moves
+  double scale = 1;                       ///< world metres of a metre that the hand moves
+  std::shared_ptr<const Tool> tool = {};  ///< that turns; null: a point
 };
 
 struct SourceLabel {
@@ -175,7 +178,17 @@ constexpr std::uint32_t kClutched = 4096;
 constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
 constexpr std::uint32_t kBehind = 16384;
 constexpr std::uint32_t kNotLoaded = 32768;
+constexpr std::uint32_t kTool = 65536;  ///< a tool that turns follows
 }  // namespace state_flag
+
+/// A tool that turns: its proxy is StateMessage::proxy, turned and opened so.
+struct ToolPart {
+  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+  float opening = 0;                                 ///< m
+  float hand_opening = 0;                            ///< m, that the hand asks for
+  Eigen::Vector3f torque = Eigen::Vector3f::Zero();  ///< N m, about the handle
+  float grip = 0;                                    ///< N
+};
 
 /// Message 1. Positions relative to the origin, m.
 struct StateMessage {
@@ -192,7 +205,8 @@ struct StateMessage {
   std::array<float, 2> lateness{};                  ///< p50 and p99, s
   float interval = 0;                               ///< between samples on average, s
   std::vector<Eigen::Vector3f> forces;              ///< N, oldest first; at most 65535
-  std::optional<Eigen::Quaternionf> orientation{};  ///< of the tool, where it is reported
+  std::optional<Eigen::Quaternionf> orientation{};  ///< of the hand, where it is reported
+  ToolPart tool{};                                  ///< with kTool
 };
 
 [[nodiscard]] std::string encode(const StateMessage& message);
@@ -218,6 +232,9 @@ struct CloudMessage {
 
 /// Message 4: the forces before the moment that was sought last.
 [[nodiscard]] std::string encode_past(std::uint8_t device, std::span<const TimeLine::Force> forces);
+
+/// Message 5: what a device holds in the place of a point, and what it looks like.
+[[nodiscard]] std::string encode_tool(std::uint8_t device, const Tool& tool);
 
 /// A radius (m) in a byte: eighths of octaves, 160 for 1 m; from 1 um to 3.7 km, to 4.4 %.
 [[nodiscard]] std::uint8_t logarithmic(float radius) noexcept;

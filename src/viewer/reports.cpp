@@ -36,6 +36,16 @@ std::array<float, 2> quantiles(const Durations& now, Durations& before) {
   return {static_cast<float>(since.quantile(0.5)), static_cast<float>(since.quantile(0.99))};
 }
 
+ToolPart tool_part(const ServoState& state, double scale) {
+  ToolPart part;
+  part.orientation = state.tool.orientation.cast<float>();
+  part.opening = static_cast<float>(state.tool.opening);
+  part.hand_opening = static_cast<float>(scale * state.gripper);
+  part.torque = state.wrench.torque.cast<float>();
+  part.grip = static_cast<float>(state.wrench.grip);
+  return part;
+}
+
 bool lasts(const StreamState& stream) {
   return stream.phase == StreamState::Phase::stalled || stream.phase == StreamState::Phase::failed;
 }
@@ -96,7 +106,12 @@ std::optional<StateMessage> StateReporter::next(double now, double radius, bool 
   message.lateness = quantiles(durations.lateness, durations_.lateness);
   message.interval = static_cast<float>(interval(state));
   message.forces = forces_until(state.step);
-  if (servo_.device().info().has_orientation) {
+  const bool holds_tool = servo_.options().tool != nullptr;
+  if (holds_tool) {
+    message.flags |= state_flag::kTool;
+    message.tool = tool_part(state, servo_.options().workspace.scale);
+  }
+  if (holds_tool || servo_.device().info().has_orientation) {
     message.orientation = state.orientation.cast<float>();
   }
   return message;

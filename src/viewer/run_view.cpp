@@ -78,7 +78,8 @@ std::vector<DeviceLabel> labels_of(const std::vector<Servo*>& servos,
   std::vector<DeviceLabel> labels;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     const bool takeable = controls.hand && (!controls.takeable || controls.takeable(i));
-    labels.push_back({names[i], takeable, controls.scale ? controls.scale(i) : 1});
+    labels.push_back(
+        {names[i], takeable, controls.scale ? controls.scale(i) : 1, servos[i]->options().tool});
   }
   return labels;
 }

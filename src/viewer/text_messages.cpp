@@ -22,6 +22,7 @@ constexpr double kFastest = 4;                     // speed of a replay, s/s (ju
 constexpr double kAllButtons = 4294967295.0;       // 2^32 - 1: 32 bits (derived)
 constexpr double kLeastForce = 1e-3;               // N of a hand's pull (judgement)
 constexpr double kMostForce = 1e3;                 // N of a hand's pull (judgement)
+constexpr double kRounding = 1e-3;  // that a quaternion's length may be off by: texts are rounded
 
 // Thrown in here alone: becomes Unreadable.
 struct Unread {
@@ -69,6 +70,19 @@ std::size_t device(const json& object) {
   return static_cast<std::size_t>(whole(object, "device", kMostDevices - 1));
 }
 
+Eigen::Quaterniond orientation(const json& object) {
+  const json& parts = member(object, "orientation");
+  if (!parts.is_array() || parts.size() != 4) throw Unread{"'orientation' is not [x, y, z, w]"};
+  Eigen::Quaterniond q;
+  for (std::size_t i = 0; i < 4; ++i) {
+    q.coeffs()[static_cast<Eigen::Index>(i)] = number(parts[i], "orientation", -2, 2);
+  }
+  if (std::abs(q.norm() - 1) > kRounding) {
+    throw Unread{fmt::format("'orientation' has a length of {}; it must be 1", q.norm())};
+  }
+  return q.normalized();
+}
+
 Hand hand(const json& object) {
   const json& position = member(object, "position");
   if (!position.is_array() || position.size() != 3) throw Unread{"'position' is not [x, y, z]"};
@@ -81,6 +95,10 @@ Hand hand(const json& object) {
   hand.target.buttons = static_cast<std::uint32_t>(whole(object, "buttons", kAllButtons));
   if (object.contains("force")) {
     hand.target.maximum_force = number(object["force"], "force", kLeastForce, kMostForce);
+  }
+  if (object.contains("orientation")) hand.target.orientation = orientation(object);
+  if (object.contains("opening")) {
+    hand.target.opening = number(object["opening"], "opening", 0, Tool::kLongest);
   }
   return hand;
 }

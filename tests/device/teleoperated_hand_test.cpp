@@ -3,69 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <vector>
 
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
-#include "support/effort.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-TEST(RemoteTarget, IsHeldFromItsFirstPoseUntilItIsReleased) {
-  RemoteTarget hand;
-  EXPECT_FALSE(hand.command()->held);
-  EXPECT_TRUE(hand.move({{0.1, 0, 0}, 5}, 3));
-  EXPECT_TRUE(hand.command()->held);
-  EXPECT_EQ(hand.command()->target.position, Vector3d(0.1, 0, 0));
-  EXPECT_EQ(hand.command()->target.buttons, 5u);
-  EXPECT_EQ(hand.command()->stamp, 3);
-  hand.release();
-  EXPECT_FALSE(hand.command()->held);
-}
-
-TEST(RemoteTarget, KeepingIsHeardButIsNoNewPose) {
-  RemoteTarget hand;
-  hand.keep_alive();
-  EXPECT_EQ(hand.generation(), 0u) << "nobody has it";
-  static_cast<void>(hand.move({}, 0));
-  const std::uint64_t generation = hand.generation();
-  hand.keep_alive();
-  EXPECT_GT(hand.generation(), generation);
-  EXPECT_EQ(hand.command()->moves, 1u);
-}
-
-TEST(RemoteTarget, LeavesOutPosesThatAreNotFinite) {
-  RemoteTarget hand;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(hand.move({{0, nan, 0}, 0}, 1));
-  EXPECT_FALSE(hand.move({{0, 0, 0}, 0}, nan));
-  EXPECT_FALSE(hand.command()->held);
-  EXPECT_EQ(hand.generation(), 0u);
-}
-
-TEST(RemoteTarget, ListenersSeeWholePosesWhileAnotherThreadSpeaks) {
-  RemoteTarget hand;
-  const int count = test::effort(100'000);
-  const std::jthread speaker([&] {
-    for (int i = 1; i <= count; ++i) {
-      static_cast<void>(
-          hand.move({Vector3d::Constant(i), static_cast<std::uint32_t>(i)}, 1e-3 * i));
-    }
-  });
-  for (double last = 0; last < count;) {
-    const std::optional<RemoteTarget::Command> word = hand.command();
-    if (!word || !word->held) continue;
-    const double x = word->target.position.x();
-    ASSERT_EQ(word->target.position, Vector3d::Constant(x));
-    ASSERT_EQ(word->target.buttons, static_cast<std::uint32_t>(x));
-    ASSERT_GE(x, last);
-    last = x;
-  }
-}
 
 constexpr double kStep = 1e-3;  // s
 
@@ -145,6 +91,30 @@ TEST(TeleoperatedHand, FollowsWhoeverTakesItAndReturnsSomeTimeAfterItWasLetGo) {
   EXPECT_NEAR((asker.ask_until(2.51 + return_time).position - start).norm(), 0, 2e-3);
   EXPECT_NEAR(asker.ask_until(3.0 + return_time).position.x(), 0.05, 2e-3) << "explores again";
   EXPECT_LE(asker.fastest(), 0.4 + 1e-9);
+}
+
+// At 0.4 m/s the edge of a hand, 80 mm out, turns by 5 rad/s.
+TEST(TeleoperatedHand, TurnsAndOpensAfterTheCommandsAndBackWhereItExploresAgain) {
+  RemoteTarget remote;
+  TeleoperatedHand hand(remote, there_and_back(), {.speed = 0.4, .return_after = 1});
+  Asker asker(hand, Vector3d::Zero());
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(2, Vector3d::UnitX()));
+  Eigen::Quaterniond last = Eigen::Quaterniond::Identity();
+  double fastest = 0;
+  while (asker.now() < 0.5) {
+    static_cast<void>(remote.move({.orientation = turned, .opening = 0.04}, asker.now()));
+    const TargetSource::Target wish = asker.ask();
+    fastest = std::max(fastest, last.angularDistance(wish.orientation) / kStep);
+    ASSERT_LE(wish.opening, 0.4 * asker.now() + 1e-12);
+    last = wish.orientation;
+  }
+  EXPECT_NEAR(fastest, 5, 1e-6);
+  EXPECT_EQ(last.coeffs(), turned.coeffs());
+  EXPECT_EQ(asker.ask().opening, 0.04);
+  remote.release();
+  EXPECT_EQ(asker.ask_until(1.4).orientation.coeffs(), turned.coeffs()) << "rests as it was left";
+  EXPECT_EQ(asker.ask_until(2.2).orientation.coeffs(), Eigen::Quaterniond::Identity().coeffs());
+  EXPECT_EQ(asker.ask().opening, 0);
 }
 
 TEST(TeleoperatedHand, NoPoseMakesItFasterThanItsSpeed) {

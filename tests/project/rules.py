@@ -37,7 +37,7 @@ FLOORS = CORE | {
                "scene", "sim"},
     "device": {"base", "geometry", "io", "message", "dds", "field", "contact", "prepare", "scene"},
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "tool", "device"},
-    "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "device",
+    "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "tool", "device",
                "servo"},
     "session": {"base", "geometry", "io", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
     "tab": {"base", "geometry", "io", "bag", "depth", "field", "contact", "prepare", "scene", "sim", "sensor", "device", "servo", "viewer",

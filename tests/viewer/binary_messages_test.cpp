@@ -62,6 +62,54 @@ TEST(StateMessage, LiesByteByByteAsTheProtocolSays) {
   expect_vector(bytes, 104, {4, 5, 6});
 }
 
+TEST(StateMessage, EndsWithTheToolThatTurns) {
+  StateMessage message;
+  message.flags = state_flag::kTool;
+  message.forces = {{1, 2, 3}};
+  message.orientation = Eigen::Quaternionf(0.8F, 0, 0.6F, 0);
+  message.tool.orientation = Eigen::Quaternionf(0.5F, -0.5F, 0.5F, 0.5F);
+  message.tool.opening = 0.25F;
+  message.tool.hand_opening = 0.5F;
+  message.tool.torque = {1, 2, 3};
+  message.tool.grip = -4;
+  const std::string bytes = encode(message);
+  ASSERT_EQ(bytes.size(), 92u + 12 + 16 + 40);
+  EXPECT_EQ(u32(bytes, 4), 65536u + 8192);
+  EXPECT_EQ(f32(bytes, 108), 0.6F);
+  expect_vector(bytes, 120, {-0.5F, 0.5F, 0.5F});
+  EXPECT_EQ(f32(bytes, 132), 0.5F);
+  EXPECT_EQ(f32(bytes, 136), 0.25F);
+  EXPECT_EQ(f32(bytes, 140), 0.5F);
+  expect_vector(bytes, 144, {1, 2, 3});
+  EXPECT_EQ(f32(bytes, 156), -4.F);
+}
+
+TEST(ToolMessage, LiesByteByByteAsTheProtocolSays) {
+  const std::string points =
+      encode_tool(2, Tool({{{1, 2, 3}, 0.5, 1}, {{4, 5, 6}, 0, -1}}, Eigen::Vector3d::UnitY()));
+  ASSERT_EQ(points.size(), 24u + 2 * 20);
+  EXPECT_EQ(u8(points, 0), 5);
+  EXPECT_EQ(u8(points, 1), 2);
+  EXPECT_EQ(u32(points, 4), 2u);
+  EXPECT_EQ(u32(points, 8), 0u);
+  expect_vector(points, 12, {0, 1, 0});
+  expect_vector(points, 24, {4, 5, 6});  // samples are in the order of sides
+  EXPECT_EQ(f32(points, 40), -1.F);
+  expect_vector(points, 44, {1, 2, 3});
+  EXPECT_EQ(f32(points, 56), 0.5F);
+  EXPECT_EQ(f32(points, 60), 1.F);
+
+  const std::vector<Eigen::Vector3d> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const std::vector<Tool::Triangle> triangles{{0, 1, 2}};
+  const Tool mesh = Tool::mesh(vertices, triangles, 2);
+  const std::string bytes = encode_tool(0, mesh);
+  ASSERT_EQ(u32(bytes, 8), 1u);
+  const std::size_t faces = 24 + 20 * mesh.samples().size();
+  ASSERT_EQ(bytes.size(), faces + 36);
+  expect_vector(bytes, faces + 12, {1, 0, 0});
+  expect_vector(bytes, faces + 24, {0, 1, 0});
+}
+
 TEST(StateMessage, OrientationFollowsTheForcesWhereItIsKnown) {
   StateMessage message;
   message.flags = state_flag::kClutched;

@@ -66,5 +66,27 @@ TEST(StateReporter, TellsTheOrientationOfDevicesThatKnowIt) {
   EXPECT_EQ(steps.next().orientation.value().coeffs(), Eigen::Vector4f(0, 0.8F, 0, 0.6F));
 }
 
+TEST(StateReporter, TellsThePoseAndTheWrenchOfATool) {
+  Scene scene;
+  test::add_sheet(scene);
+  test::FreeDevice device;
+  ServoOptions options;
+  options.tool = std::make_shared<const Tool>(Tool::gripper({0.01, 0.02, 0.03}, 0.005));
+  options.workspace.scale = 2;
+  Servo servo(device, scene, options);
+  StateReporter source(servo, 0, {0, 0, 0});
+  device.state().position.z() = 0.5;  // far above the sheet
+  device.state().orientation = Eigen::Quaterniond(0.6, 0, 0.8, 0);
+  device.state().gripper = 0.01;
+  servo.tick(5);
+  const StateMessage message = source.next(5, 0, false).value();
+  EXPECT_NE(message.flags & state_flag::kTool, 0u);
+  EXPECT_EQ(message.orientation.value().coeffs(), Eigen::Vector4f(0, 0.8F, 0, 0.6F));
+  EXPECT_TRUE(message.tool.orientation.isApprox(Eigen::Quaternionf(0.6F, 0, 0.8F, 0), 1e-6F));
+  EXPECT_FLOAT_EQ(message.tool.opening, 0.02F);
+  EXPECT_FLOAT_EQ(message.tool.hand_opening, 0.02F);
+  EXPECT_EQ(message.tool.torque, Eigen::Vector3f::Zero());
+}
+
 }  // namespace
 }  // namespace palpate::viewer

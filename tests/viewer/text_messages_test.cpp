@@ -30,6 +30,11 @@ TEST(ClientMessage, EveryKindOfTheProtocolIsRead) {
   EXPECT_EQ(hand.device, 1u);
   EXPECT_EQ(hand.target.position, Eigen::Vector3d(0.1, -2, 3e-3));
   EXPECT_EQ(hand.target.buttons, 4294967295u);
+  EXPECT_EQ(hand.target.orientation.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
+  const Hand turned = read<Hand>(R"({"type":"hand","device":1,"position":[0,0,0],"buttons":0,)"
+                                 R"("orientation":[0.6,0,0,0.8],"opening":0.02})");
+  EXPECT_TRUE(turned.target.orientation.coeffs().isApprox(Eigen::Vector4d(0.6, 0, 0, 0.8), 1e-12));
+  EXPECT_EQ(turned.target.opening, 0.02);
   EXPECT_EQ(read<Release>(R"({"type":"release","device":2})").device, 2u);
   EXPECT_EQ(std::get<double>(read<Set>(R"({"type":"set","key":"k","value":-1.5})").value), -1.5);
   EXPECT_EQ(std::get<bool>(read<Set>(R"({"type":"set","key":"k","value":true})").value), true);
@@ -72,6 +77,12 @@ TEST(ClientMessage, WhatCannotBeReadIsRefusedWithWords) {
            R"({"type":"hand","device":256,"position":[0,0,0],"buttons":0})",
            R"({"type":"hand","device":-1,"position":[0,0,0],"buttons":0})",
            R"({"type":"hand","device":0,"position":[0,0,0],"buttons":4294967296})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"orientation":[0,0,0,0]})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"orientation":[0,0,1]})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"orientation":[1,0,0,1]})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"orientation":[0,0,0,"1"]})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"opening":-0.01})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0,"opening":11})",
            R"({"type":"pause","on":1})",
            R"({"type":"set","key":"k"})",
            R"({"type":"set","key":"k","value":null})",

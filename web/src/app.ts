@@ -83,7 +83,8 @@ export class App {
     this.look = new LookPanel(() => this.relook(), () => this.sendPoints());
     this.hand = new Hand(send, () => this.holdChanged());
     this.stroke = new Stroke(this.world, this.hand, () => send({ type: "reset", device: this.hand.device }));
-    this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth));
+    this.hold = new HoldPanel(this.session, this.hand, this.world, (depth) => (this.input.depth = depth),
+      (opening) => (this.input.opening = opening));
     const take = () => this.hold.take();
     this.tour = new Tour(this.session, this.hand, this.stroke, take, send, (words) => say(byId("tour"), words));
     this.bar = new Bar(this.session, this.world, this.sound, this.notices, panels, end, send);
@@ -232,6 +233,8 @@ export class App {
       this.world.takeCloud(message);
     } else if (message.kind === Kind.surface) {
       this.world.takeSurface(message);
+    } else if (message.kind === Kind.tool) {
+      this.world.takeTool(message);
     } else if (message.kind === Kind.past) {
       this.session.devices[message.device]?.takePast(message);
     } else {

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decode, DecodeError, Flag, Kind, radiusOf, type CloudMessage, type PastMessage, type StateMessage, type SurfaceMessage } from "../src/protocol/decode";
+import { decode, DecodeError, Flag, Kind, radiusOf, type CloudMessage, type PastMessage, type StateMessage, type SurfaceMessage, type ToolMessage } from "../src/protocol/decode";
 
 /** Bytes written one by one, as docs/viewer_protocol.md lists them. */
 class Writer {
@@ -164,4 +164,25 @@ test("counts that cannot be are refused", () => {
   new DataView(huge).setUint32(4, 0xffffffff, true);
   assert.throws(() => decode(huge), DecodeError);
   assert.throws(() => decode(new Writer().u8(9).buffer), /kind 9/);
+});
+
+test("a state tells of a tool that turns, after how the hand is held", () => {
+  const held = new Writer().f32(0, 0.6, 0, 0.8).f32(0.5, 0.5, 0.5, 0.5).f32(0.25, 0.5).f32(1, 2, 3).f32(-4);
+  const bytes = new Uint8Array([...new Uint8Array(state(1)), ...new Uint8Array(held.buffer)]);
+  new DataView(bytes.buffer).setUint32(4, Flag.oriented | Flag.holdsTool, true);
+  const message = decode(bytes.buffer) as StateMessage;
+  assert.deepEqual(message.orientation, [0, Math.fround(0.6), 0, Math.fround(0.8)]);
+  assert.deepEqual(message.tool, { orientation: [0.5, 0.5, 0.5, 0.5], opening: 0.25, handOpening: 0.5, torque: [1, 2, 3], grip: -4 });
+  assert.throws(() => decode(bytes.buffer.slice(0, -1)), DecodeError);
+});
+
+test("a tool is its samples, and a mesh's faces", () => {
+  const writer = new Writer().u8(5, 1).u16(0).u32(2).u32(1).f32(1, 0, 0);
+  writer.f32(1, 2, 3, 0.5, -1).f32(4, 5, 6, 0, 1).f32(0, 0, 0, 1, 0, 0, 0, 1, 0);
+  const tool = decode(writer.buffer) as ToolMessage;
+  assert.equal(tool.device, 1);
+  assert.deepEqual(tool.axis, [1, 0, 0]);
+  assert.deepEqual([...tool.samples], [1, 2, 3, 0.5, -1, 4, 5, 6, 0, 1]);
+  assert.deepEqual([...tool.faces], [0, 0, 0, 1, 0, 0, 0, 1, 0]);
+  assert.throws(() => decode(writer.buffer.slice(0, -4)), DecodeError);
 });

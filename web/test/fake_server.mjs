@@ -29,8 +29,8 @@ async function answer(request, response) {
 }
 
 /** Resolves to { address, program, close } once it listens on 127.0.0.1; port 0 takes a free one. */
-export async function serve({ port = 0, points = 30000, still = false, silent, length, anew, token = randomBytes(16).toString("hex") } = {}) {
-  const program = new FakeProgram({ points, still, silent, length, anew, token });
+export async function serve({ port = 0, points = 30000, still = false, silent, length, anew, box, token = randomBytes(16).toString("hex") } = {}) {
+  const program = new FakeProgram({ points, still, silent, length, anew, box, token });
   const http = createServer((request, response) => void answer(request, response));
   const sockets = new WebSocketServer({ server: http, path: "/live", maxPayload: 64_000 });
   sockets.on("connection", (socket) => {

@@ -1,8 +1,12 @@
 import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
-import { PerspectiveCamera, Vector3 } from "three";
+import { PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { Hand } from "../src/input/hand";
 import type { ToProgram } from "../src/protocol/messages";
+import type { ToolShape } from "../src/view/tool_shape";
+
+const toolAt = (x: number, y: number, z: number) =>
+  ({ hipPosition: new Vector3(x, y, z), shape: undefined, turn: new Quaternion(), opening: 0 });
 
 // A clock of our own: timers ring when the test lets time pass.
 let now = 0;
@@ -39,7 +43,7 @@ function newHand(): Hand {
 
 test("the hand speaks 125 times a second at most, and the last place is told", () => {
   const hand = newHand();
-  hand.take(0, new Vector3());
+  hand.take(0, toolAt(0, 0, 0));
   for (let i = 1; i <= 1000; i += 1) {
     pass(1);
     hand.moveTo(new Vector3(i, 0, 0));
@@ -54,7 +58,7 @@ test("the hand speaks 125 times a second at most, and the last place is told", (
 
 test("a hand that is let go says so at once, and nothing after", () => {
   const hand = newHand();
-  hand.take(0, new Vector3());
+  hand.take(0, toolAt(0, 0, 0));
   hand.moveTo(new Vector3(1, 0, 0));
   hand.letGo();
   pass(100);
@@ -64,7 +68,7 @@ test("a hand that is let go says so at once, and nothing after", () => {
 
 test("places that are no numbers are not told, and a nudge goes as the eye sees it", () => {
   const hand = newHand();
-  hand.take(0, new Vector3(0, 0, 1));
+  hand.take(0, toolAt(0, 0, 1));
   pass(10);
   hand.moveTo(new Vector3(NaN, 0, 0));
   pass(10);
@@ -73,4 +77,46 @@ test("places that are no numbers are not told, and a nudge goes as the eye sees 
   const { message } = sent.at(-1)!;
   assert.ok(message.type === "hand");
   assert.deepEqual(message.position, [0.5, 0.25, -1]);
+});
+
+const near = (found: readonly number[], wanted: readonly number[]) =>
+  found.forEach((value, i) => assert.ok(Math.abs(value - wanted[i]!) < 1e-12, `${String(found)}, not ${String(wanted)}`));
+
+test("a tool that turns begins as it is held, and turns about directions that the eye sees", () => {
+  const hand = newHand();
+  const turn = new Quaternion(0, 0, Math.sin(0.2), Math.cos(0.2));
+  hand.take(0, { ...toolAt(0, 0, 0), shape: { extent: 0.1 } as ToolShape, turn, opening: 0.02 });
+  pass(10);
+  const first = sent.at(-1)!.message;
+  assert.ok(first.type === "hand");
+  near(first.orientation!, turn.toArray());
+  assert.equal(first.opening, 0.02);
+  const camera = new PerspectiveCamera();
+  camera.quaternion.set(0, Math.SQRT1_2, 0, Math.SQRT1_2); // it looks along -x: towards the eye is x, right is -z
+  hand.turn(camera, 0, 0, 0.3);
+  hand.turn(camera, -0.1, 0, 0);
+  hand.open(0.5);
+  pass(10);
+  const last = sent.at(-1)!.message;
+  assert.ok(last.type === "hand");
+  const wanted = new Quaternion(0, 0, Math.sin(0.05), Math.cos(0.05))
+    .multiply(new Quaternion(Math.sin(0.15), 0, 0, Math.cos(0.15))).multiply(turn);
+  near(last.orientation!, wanted.toArray());
+  near([last.opening!], [0.07]);
+  hand.open(-10);
+  pass(10);
+  const closed = sent.at(-1)!.message;
+  assert.ok(closed.type === "hand" && closed.opening === 0, "no farther than closed");
+});
+
+test("a point is not turned, and its messages say nothing of turns", () => {
+  const hand = newHand();
+  hand.take(0, toolAt(0, 0, 0));
+  pass(10);
+  const count = sent.length;
+  hand.turn(new PerspectiveCamera(), 1, 0, 0);
+  hand.open(1);
+  pass(10);
+  assert.equal(sent.length, count);
+  assert.ok(!("orientation" in sent[0]!.message));
 });

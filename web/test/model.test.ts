@@ -73,7 +73,7 @@ function stateAt(time: number, samples: number[]): StateMessage {
   return {
     kind: 1, device: 0, flags: 0, time, hip: [0, 0, 0], proxy: [0, 0, 0], normal: [0, 0, 0], force: [0, 0, 0],
     radius: 0, rate: 1000, step: [0, 0], lateness: [0, 0], interval: 0.001, samples: Float32Array.from(samples),
-    orientation: undefined,
+    orientation: undefined, tool: undefined,
   };
 }
 

@@ -9,12 +9,12 @@ import type { World } from "../src/view/world";
 
 const kReach = 0.01; // m
 
-function setUp() {
+function setUp(lift = 0) {
   const camera = new PerspectiveCamera();
   camera.position.set(0, 0, 1);
   const tool = {
-    hipPosition: new Vector3(0, 0, 2 * kReach), proxyPosition: new Vector3(), normal: new Vector3(0, 0, 1), force: new Vector3(0, 0, 0.1),
-    touching: false, behind: false, weak: false, faulty: false,
+    hipPosition: new Vector3(0, 0, lift + 2 * kReach), proxyPosition: new Vector3(0, 0, lift), normal: new Vector3(0, 0, 1), force: new Vector3(0, 0, 0.1),
+    touching: false, behind: false, weak: false, faulty: false, reach: () => lift,
   };
   const seen = () => ({ position: new Vector3(), normal: new Vector3(0, 0, 1), reach: kReach, inward: new Vector3() });
   const world = { tools: [tool], stage: { camera }, surfaceAlong: seen } as unknown as World;
@@ -29,7 +29,7 @@ function setUp() {
     stroke.update(now);
     return aims.at(-1)!;
   };
-  assert.ok(at(1000, 2 * kReach, false, false) < 0, "from above it presses");
+  assert.ok(at(1000, lift + 2 * kReach, false, false) < lift, "from above it presses");
   return at;
 }
 
@@ -45,4 +45,14 @@ test("a press that is soft and deep is lifted, and presses again once it is out"
 test("a press on what is as stiff as asked for stays", () => {
   const at = setUp();
   assert.ok(at(1032, -2.5 * kReach, true, false) < 0);
+});
+
+test("a tool is pressed until what is lowest of it would be below the surface, and hovers with it above", () => {
+  const lift = 0.05;
+  const at = setUp(lift);
+  const pressed = at(1016, lift + 0.2 * kReach, false, false);
+  const point = setUp()(1016, 0.2 * kReach, false, false);
+  assert.ok(Math.abs(pressed - lift - point) < 1e-9, `the handle goes to ${pressed}, a point to ${point}`);
+  at(1032, lift - 2.5 * kReach, true, true);
+  assert.ok(at(1200, lift - 2.5 * kReach, true, true) > lift + kReach, "soft and deep: up");
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PerspectiveCamera, Vector3 } from "three";
 import { bend, readPad } from "../src/input/gamepad";
-import { readTranslation } from "../src/input/space_mouse";
+import { readRotation, readTranslation } from "../src/input/space_mouse";
 import { decimals, distrust, inStep, millimetres, Scale, seconds, short, threeDigits, whole } from "../src/panel/numbers";
 import { samplesOf } from "../src/view/backdrop";
 import { boundsOf, type Sample } from "../src/view/bounds";
@@ -104,12 +104,13 @@ test("sticks rest inside their dead zone and reach one at their end", () => {
 test("controllers and 3D mice mean the same directions", () => {
   const buttons = [{ pressed: true }, { pressed: false }, { pressed: true }] as GamepadButton[];
   const pad = readPad({ id: "Standard", axes: [1, -1, 0, -1], buttons });
-  assert.deepEqual(pad, { right: 1, up: 1, away: 1, buttons: 5 });
-  const mouse = readPad({ id: "3Dconnexion SpaceMouse", axes: [1, -1, -1], buttons: [] });
-  assert.deepEqual(mouse, { right: 1, up: 1, away: 1, buttons: 0 });
+  assert.deepEqual(pad, { right: 1, up: 1, away: 1, depth: 0, turn: [-1, 0, 0], open: 0, buttons: 5 });
+  const mouse = readPad({ id: "3Dconnexion SpaceMouse", axes: [1, -1, -1, 1, -1, 1], buttons: [] });
+  assert.deepEqual(mouse, { right: 1, up: 1, away: 1, depth: 1, turn: [1, -1, -1], open: 0, buttons: 0 });
   const report = new DataView(new ArrayBuffer(6));
   [350, -350, -350].forEach((value, i) => report.setInt16(2 * i, value, true));
-  assert.deepEqual(readTranslation(report), { right: 1, up: 1, away: 1 });
+  assert.deepEqual(readTranslation(report), { right: 1, up: 1, away: 1, depth: 1 });
+  assert.deepEqual(readRotation(report, 0), [1, 1, -1]);
 });
 
 test("bounds leave outliers out", () => {

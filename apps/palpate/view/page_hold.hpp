@@ -21,6 +21,8 @@ class PageHold {
     const std::lock_guard lock(mutex_);
     held_ = true;
     target.position = hand_.workspace.position_to_device(target.position);
+    target.orientation = hand_.workspace.orientation_to_device(target.orientation);
+    target.opening /= hand_.workspace.scale;
     hand_.remote->move(target, clock_.now());
   }
   void release() {

@@ -148,6 +148,10 @@ struct Workspace {
       const Eigen::Quaterniond& device) const noexcept {
     return Eigen::Quaterniond(T_world_device.linear()) * device;
   }
+  [[nodiscard]] Eigen::Quaterniond orientation_to_device(
+      const Eigen::Quaterniond& world) const noexcept {
+    return Eigen::Quaterniond(T_world_device.linear()).conjugate() * world;
+  }
   [[nodiscard]] Eigen::Vector3d force_to_device(const Eigen::Vector3d& world) const noexcept {
     return T_world_device.linear().transpose() * world;
   }

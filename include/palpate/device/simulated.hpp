@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -28,6 +29,10 @@ class TargetSource {
     /// The hand pulls with no more, N, nor with more than its SimulatedDeviceOptions allow; above
     /// 0.
     double maximum_force = std::numeric_limits<double>::infinity();
+    /// Where the hand pulls the device's wrist to, if it has one: from the tool's axes to the
+    /// device's, of unit length.
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    double opening = 0;  ///< how far the hand has a gripper open, m
   };
 
   virtual ~TargetSource() = default;
@@ -178,8 +183,8 @@ class RemoteTarget {
   ~RemoteTarget();
 
   /// Takes the tool, unless it is held already, and moves it. `stamp`: s, on the sender's clock;
-  /// grows from call to call. False: ignored, since it is not finite or pulls with no force.
-  /// Wait-free, as all that follows.
+  /// grows from call to call. False: ignored, since it is not finite, pulls with no force, or its
+  /// orientation has not unit length. Wait-free, as all that follows.
   bool move(const TargetSource::Target& target, double stamp) noexcept;
 
   /// The user of the tool is still connected and keeps it still: a mouse that rests sends
@@ -224,6 +229,8 @@ struct TeleoperatedHandOptions {
 ///  it goes straight to where the trajectory is off the surface, and on from there.
 ///  - Commands are interpolated between their irregular times, and followed no faster than `speed`
 ///    and than comes to rest there by `braking`.
+///  - What it holds turns after the commands as fast as a hand of 80 mm moves its edge at `speed`,
+///  stays so when released, and turns back where the trajectory goes on.
 ///  - A command that limits the hand's force does so until the trajectory goes on, after its
 ///  release,
 ///    too. Where the next has no limit the target begins at the device.

@@ -42,6 +42,9 @@ class Tool {
   /// Corners of a triangle, as indices of vertices.
   using Triangle = std::array<std::uint32_t, 3>;
 
+  /// Corners of a triangle, m, at an opening of 0.
+  using Face = std::array<Eigen::Vector3f, 3>;
+
   static constexpr std::size_t kMostSamples = 100'000;  ///< some 10 MB; more is a typing error
 
   /// m from the handle: nobody holds a longer tool, which may be one in other units.
@@ -84,6 +87,8 @@ class Tool {
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   /// The nodes that hold all samples of a side.
   [[nodiscard]] std::span<const std::int32_t> roots() const noexcept { return roots_; }
+  /// What a mesh looks like, for pictures; empty: the convex hull of the samples of each side.
+  [[nodiscard]] std::span<const Face> faces() const noexcept { return faces_; }
   /// Unit vector.
   [[nodiscard]] const Eigen::Vector3d& axis() const noexcept { return axis_; }
   /// Does anything move with the opening?
@@ -108,6 +113,7 @@ class Tool {
   std::vector<Point> samples_;
   std::vector<Node> nodes_;
   std::vector<std::int32_t> roots_;
+  std::vector<Face> faces_;
   Eigen::Vector3d axis_;
   double extent_ = 0;
   double gyration_ = 0;

@@ -4,6 +4,9 @@ export interface PadReading {
   right: number; // -1 to 1
   up: number;
   away: number;
+  turn: readonly [number, number, number]; // about right, up and towards the eye, of a tool that turns
+  open: number; // of a gripper
+  depth: number; // as away, where what is away turns the tool
   buttons: number; // bits
 }
 
@@ -16,12 +19,18 @@ export function bend(value: number): number {
   return over <= 0 ? 0 : Math.sign(value) * (over / (1 - kDead)) ** 1.6;
 }
 
-/** Left stick: in the plane of the view; right stick: depth. */
+/** Left stick: in the plane of the view; right stick: depth, or what turns the tool: then shoulder buttons are for depth, triggers for the gripper. */
 export function readPad(pad: Pick<Gamepad, "id" | "axes" | "buttons">): PadReading {
   const axis = (i: number) => bend(pad.axes[i] ?? 0);
   const buttons = pad.buttons.reduce((bits, b, i) => (b.pressed && i < 31 ? bits | (1 << i) : bits), 0);
-  if (kSpaceMouse.test(pad.id)) return { right: axis(0), up: -axis(2), away: -axis(1), buttons };
-  return { right: axis(0), up: -axis(1), away: -axis(3), buttons };
+  if (kSpaceMouse.test(pad.id)) {
+    const away = -axis(1);
+    return { right: axis(0), up: -axis(2), away, depth: away, turn: [axis(3), -axis(5), axis(4)], open: 0, buttons };
+  }
+  const value = (i: number) => pad.buttons[i]?.value ?? 0;
+  return {
+    right: axis(0), up: -axis(1), away: -axis(3), depth: value(5) - value(4), turn: [axis(3), axis(2), 0], open: value(7) - value(6), buttons,
+  };
 }
 
 export class Gamepads {
@@ -29,14 +38,10 @@ export class Gamepads {
   read(): PadReading | undefined {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad?.connected);
     if (pads.length === 0) return undefined;
-    const sum: PadReading = { right: 0, up: 0, away: 0, buttons: 0 };
-    for (const pad of pads) {
-      const one = readPad(pad!);
-      sum.right += one.right;
-      sum.up += one.up;
-      sum.away += one.away;
-      sum.buttons |= one.buttons;
-    }
-    return sum;
+    return pads.map((pad) => readPad(pad!)).reduce((sum, one) => ({
+      right: sum.right + one.right, up: sum.up + one.up, away: sum.away + one.away, depth: sum.depth + one.depth,
+      turn: [sum.turn[0] + one.turn[0], sum.turn[1] + one.turn[1], sum.turn[2] + one.turn[2]],
+      open: sum.open + one.open, buttons: sum.buttons | one.buttons,
+    }));
   }
 }

@@ -1,15 +1,20 @@
 // The hand of this page: where it wants the tool to be. It is held from `take` on until `letGo`; the
 // program receives every move, but no more often than it reads messages.
 
-import { Vector3, type PerspectiveCamera } from "three";
+import { MathUtils, Quaternion, Vector3, type PerspectiveCamera } from "three";
 import type { ToProgram } from "../protocol/messages";
+import type { Tool } from "../view/tool";
 
 const kInterval = 8; // ms: 125 messages a second at most
+const kWidest = 2; // extents of its tool that a gripper opens at most: two fingers on either side of what is as large
 
 export class Hand {
   held = false;
   device = 0;
   readonly position = new Vector3();
+  turned: Quaternion | undefined; // of a tool that turns
+  private opening = 0; // m
+  private extent = 0; // of the tool from its handle, m
   private force: number | undefined; // N, that it pulls with at most; undefined: as hard as it can
   private buttons = 0;
   private sent = -Infinity;
@@ -20,9 +25,13 @@ export class Hand {
     private readonly changed: () => void,
   ) {}
 
-  take(device: number, position: Vector3): void {
+  /** A tool that turns begins as the hand has it. */
+  take(device: number, tool: Pick<Tool, "hipPosition" | "shape" | "turn" | "opening">): void {
     this.device = device;
-    this.position.copy(position);
+    this.position.copy(tool.hipPosition);
+    this.turned = tool.shape && tool.turn.clone();
+    this.extent = tool.shape?.extent ?? 0;
+    this.opening = tool.opening;
     this.held = true;
     this.force = undefined;
     this.mark();
@@ -53,6 +62,22 @@ export class Hand {
     this.mark();
   }
 
+  /** About the directions right, up and towards the eye as it sees them, rad. */
+  turn(camera: PerspectiveCamera, right: number, up: number, towards: number): void {
+    const angle = Math.hypot(right, up, towards);
+    if (!this.held || this.turned === undefined || !(angle > 0) || !Number.isFinite(angle)) return;
+    const axis = new Vector3(right, up, towards).divideScalar(angle).applyQuaternion(camera.quaternion);
+    this.turned.premultiply(new Quaternion().setFromAxisAngle(axis, angle)).normalize();
+    this.mark();
+  }
+
+  /** By so many extents of the tool; negative: closer. */
+  open(extents: number): void {
+    if (!this.held || this.turned === undefined || extents === 0) return;
+    this.opening = MathUtils.clamp(this.opening + extents * this.extent, 0, kWidest * this.extent);
+    this.mark();
+  }
+
   press(buttons: number): void {
     if (buttons === this.buttons) return;
     this.buttons = buttons;
@@ -73,6 +98,7 @@ export class Hand {
     this.send({
       type: "hand", device: this.device, position: this.position.toArray(), buttons: this.buttons,
       ...(this.force === undefined ? {} : { force: this.force }),
+      ...(this.turned === undefined ? {} : { orientation: this.turned.toArray(), opening: this.opening }),
     });
   }
 }

@@ -21,13 +21,12 @@ export interface Actions {
   sayForce(): void;
 }
 
-const kMoves: Record<string, readonly [number, number, number]> = {
-  ArrowRight: [1, 0, 0],
-  ArrowLeft: [-1, 0, 0],
-  ArrowUp: [0, 1, 0],
-  ArrowDown: [0, -1, 0],
-  PageUp: [0, 0, 1],
-  PageDown: [0, 0, -1],
+/** What keys that are held down do: right, up and away; turns about right, up and towards the eye; how a gripper opens. */
+export type Held = [right: number, up: number, away: number, pitch: number, yaw: number, roll: number, open: number];
+
+const kMoves: Record<string, readonly [axis: number, sign: number]> = {
+  ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1],
+  k: [3, 1], i: [3, -1], l: [4, 1], j: [4, -1], ",": [5, 1], ".": [5, -1], o: [6, 1], g: [6, -1],
 };
 
 const kFast = 4;
@@ -41,7 +40,7 @@ export class Keys {
   single = true; // letters act by themselves
   timeLine: TimeKeys | undefined; // of a recording
   private readonly down = new Map<string, number>(); // from when on its time is to be counted, ms
-  private held: [number, number, number] = [0, 0, 0]; // s
+  private held: Held = [0, 0, 0, 0, 0, 0, 0]; // s
   private pace = 1;
 
   constructor(actions: Actions) {
@@ -71,17 +70,18 @@ export class Keys {
       event.preventDefault();
     });
     window.addEventListener("keyup", (event) => {
-      this.count(event.key, event.timeStamp);
-      this.down.delete(event.key);
+      const key = nameOf(event);
+      this.count(key, event.timeStamp);
+      this.down.delete(key);
     });
     window.addEventListener("blur", () => this.down.clear());
   }
 
-  /** For how long right, up and away were held down since the last look, s and times the pace. */
-  take(now: number): [number, number, number] {
+  /** For how long each was held down since the last look, s and times the pace. */
+  take(now: number): Held {
     for (const key of this.down.keys()) this.count(key, now);
     const held = this.held;
-    this.held = [0, 0, 0];
+    this.held = [0, 0, 0, 0, 0, 0, 0];
     return held;
   }
 
@@ -90,7 +90,8 @@ export class Keys {
     if (since === undefined || now < since) return;
     this.down.set(key, now);
     const seconds = Math.min(kLongest, (now - since) / 1000);
-    kMoves[key]?.forEach((part, axis) => (this.held[axis as 0 | 1 | 2] += part * this.pace * seconds));
+    const [axis, sign] = kMoves[key]!;
+    this.held[axis]! += sign * this.pace * seconds;
   }
 
   /** Arrows and the space bar, where a recording is shown; a button keeps its space bar. */
@@ -109,12 +110,18 @@ export class Keys {
   }
 
   private press(event: KeyboardEvent): boolean {
-    if (kMoves[event.key] === undefined) return false;
+    const key = nameOf(event);
+    if (kMoves[key] === undefined || (key.length === 1 && !this.single)) return false;
     if (event.target instanceof Element && event.target.closest(".side") !== null) return false;
     this.pace = event.shiftKey ? kFast : event.altKey ? kFine : 1;
-    if (!this.down.has(event.key)) this.down.set(event.key, event.timeStamp);
+    if (!this.down.has(key)) this.down.set(key, event.timeStamp);
     return true;
   }
+}
+
+/** A letter is the same with Shift. */
+function nameOf({ key }: KeyboardEvent): string {
+  return key.length === 1 ? key.toLowerCase() : key;
 }
 
 function writes(target: EventTarget | null): boolean {

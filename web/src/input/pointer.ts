@@ -2,7 +2,7 @@
 // begins on the hand, or any drag while the tool is held, moves the hand in the plane through it that faces
 // the eye; the wheel meanwhile changes its depth. Everything else is left to the navigation.
 
-import { Plane, Raycaster, Vector2, Vector3 } from "three";
+import { MathUtils, Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { World } from "../view/world";
 import type { Hand } from "./hand";
 import type { Stroke } from "./stroke";
@@ -11,10 +11,14 @@ const kGrasp = 24; // pixels around the hand
 const kFinger = 40;
 const kStill = 4; // pixels, below which a press was no drag
 const kNotch = 0.012; // of the distance, a notch of the wheel
+const kRoll = MathUtils.degToRad(5); // a notch of the wheel
+const kHalfTurn = Math.PI; // a drag from the picture's top to its bottom
 
 export class PointerInput {
   private inPlane = false; // it moves in the plane that faces the eye
   private pointer: number | undefined; // that drags the hand
+  turns = false; // drags turn the tool, as with Shift
+  private turning: Vector2 | undefined; // where a drag that turns it has come to, pixels
   private touches = new Set<number>();
   private began: Vector2 | undefined; // where a press beside the surface did, pixels
   missed = -Infinity; // ms, when such a press ended that was no drag; until the next that touches the surface
@@ -53,7 +57,8 @@ export class PointerInput {
     if (event.target !== this.canvas) return;
     if (event.pointerType === "touch") this.touches.add(event.pointerId);
     const plain = event.button === 0 && !event.altKey && !event.ctrlKey && !event.metaKey;
-    const mine = plain && this.touches.size <= 1 && this.grasps(event) && this.take();
+    const turning = plain && this.touches.size <= 1 && (event.shiftKey || this.turns) && this.holdsTool() && this.take();
+    const mine = turning || (plain && this.touches.size <= 1 && this.grasps(event) && this.take());
     const two = this.touches.size > 1; // fingers turn the view
     this.world.navigation.turnByDrag(!mine && !(this.free ? this.hand.held && this.touches.size > 0 : two));
     if (this.touches.size > 1) this.drag(undefined);
@@ -62,6 +67,8 @@ export class PointerInput {
     this.missed = -Infinity;
     this.drag(event.pointerId);
     this.canvas.setPointerCapture(event.pointerId);
+    this.turning = turning ? new Vector2(event.clientX, event.clientY) : undefined;
+    if (turning) return;
     if (this.free) {
       this.offset.copy(this.hand.position).sub(this.onPlane(event) ?? this.hand.position);
     } else {
@@ -75,12 +82,25 @@ export class PointerInput {
       if (event.target === this.canvas && event.buttons === 0) this.hover(event);
     } else if (event.pointerId !== this.pointer) {
       return;
+    } else if (this.turning !== undefined) {
+      this.turnBy(this.turning, event);
     } else if (!this.free) {
       this.aim(event);
     } else {
       const position = this.onPlane(event);
       if (position !== undefined) this.hand.moveTo(position.add(this.offset));
     }
+  }
+
+  private holdsTool(): boolean {
+    return this.world.tools[this.hand.device]?.shape !== undefined;
+  }
+
+  /** As a ball under the pointer turns. */
+  private turnBy(from: Vector2, event: PointerEvent): void {
+    const rate = kHalfTurn / this.canvas.getBoundingClientRect().height;
+    this.hand.turn(this.world.stage.camera, rate * (event.clientY - from.y), rate * (event.clientX - from.x), 0);
+    from.set(event.clientX, event.clientY);
   }
 
   private hover(event: PointerEvent): void {
@@ -99,6 +119,7 @@ export class PointerInput {
   private drag(pointer: number | undefined): void {
     this.pointer = pointer;
     this.world.dragging = pointer !== undefined;
+    if (pointer === undefined) this.turning = undefined;
     if (pointer === undefined) this.stroke.press(false);
   }
 
@@ -108,10 +129,13 @@ export class PointerInput {
   }
 
   private wheel(event: WheelEvent): void {
-    if (this.pointer === undefined) return;
+    const rolls = event.shiftKey && this.hand.held && this.hand.turned !== undefined;
+    if (this.pointer === undefined && !rolls) return;
     event.preventDefault();
     event.stopPropagation();
-    const notches = -event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3);
+    const delta = event.deltaY || event.deltaX; // browsers scroll sideways with Shift
+    const notches = -delta / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3);
+    if (rolls) return this.hand.turn(this.world.stage.camera, 0, 0, notches * kRoll);
     if (!this.free) return this.stroke.harder(notches);
     const camera = this.world.stage.camera;
     const away = notches * kNotch * camera.position.distanceTo(this.hand.position);

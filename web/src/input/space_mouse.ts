@@ -4,7 +4,8 @@ import { bend, type PadReading } from "./gamepad";
 
 const kVendors = [0x256f, 0x046d]; // 3Dconnexion; Logitech for the older ones
 const kFull = 350; // counts at full deflection
-const kTranslation = 1; // reports
+const kTranslation = 1; // reports; of newer ones with the rotation behind it
+const kRotation = 2;
 const kButtons = 3;
 
 interface HidDevice extends EventTarget {
@@ -27,11 +28,21 @@ export function hid(): Hid | undefined {
   return (navigator as Navigator & { hid?: Hid }).hid;
 }
 
+const kRest: PadReading = { right: 0, up: 0, away: 0, depth: 0, turn: [0, 0, 0], open: 0, buttons: 0 };
+
+function part(data: DataView, offset: number): number {
+  return bend(Math.min(1, Math.max(-1, data.getInt16(offset, true) / kFull)));
+}
+
 /** A translation report: x right, y towards the person, z down, 16 bits each. */
-export function readTranslation(data: DataView): Omit<PadReading, "buttons"> {
-  const part = (offset: number) =>
-    bend(Math.min(1, Math.max(-1, data.getInt16(offset, true) / kFull)));
-  return { right: part(0), up: -part(4), away: -part(2) };
+export function readTranslation(data: DataView): Pick<PadReading, "right" | "up" | "away" | "depth"> {
+  const away = -part(data, 2);
+  return { right: part(data, 0), up: -part(data, 4), away, depth: away };
+}
+
+/** Turns about the same axes, from an offset on. */
+export function readRotation(data: DataView, offset: number): PadReading["turn"] {
+  return [part(data, offset), -part(data, offset + 4), part(data, offset + 2)];
 }
 
 export class SpaceMouse {
@@ -57,14 +68,17 @@ export class SpaceMouse {
 
   private async listen(device: HidDevice): Promise<void> {
     if (!device.opened) await device.open();
-    this.reading ??= { right: 0, up: 0, away: 0, buttons: 0 };
+    this.reading ??= kRest;
     device.addEventListener("inputreport", (event) => this.take(event as HidReport));
   }
 
   private take({ reportId, data }: HidReport): void {
-    const before = this.reading ?? { right: 0, up: 0, away: 0, buttons: 0 };
+    const before = this.reading ?? kRest;
     if (reportId === kTranslation && data.byteLength >= 6) {
-      this.reading = { ...readTranslation(data), buttons: before.buttons };
+      const turn = data.byteLength >= 12 ? readRotation(data, 6) : before.turn;
+      this.reading = { ...before, ...readTranslation(data), turn };
+    } else if (reportId === kRotation && data.byteLength >= 6) {
+      this.reading = { ...before, turn: readRotation(data, 0) };
     } else if (reportId === kButtons && data.byteLength >= 1) {
       this.reading = { ...before, buttons: data.getUint8(0) };
     }

@@ -88,7 +88,8 @@ export class Stroke {
     if (this.last === undefined) return;
     const felt = this.refine(this.last, tool);
     const { position, normal, reach } = this.last;
-    const above = position.clone().addScaledVector(normal, kAbove * reach);
+    const lift = tool.reach(normal.clone().negate()); // of the handle above what is lowest of the tool
+    const above = position.clone().addScaledVector(normal, kAbove * reach + lift);
     this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
     if (!this.pressing || tool.touching) this.misses = 0;
     this.judge(tool, above, felt, now);
@@ -96,8 +97,8 @@ export class Stroke {
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
     if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPosition); // until it is free
     else if (!pressing) this.hand.moveTo(above);
-    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(position.clone().addScaledVector(normal, -kNear * reach));
-    else this.hand.moveTo(position.clone().addScaledVector(normal, -this.depth(tool, reach)), this.pen ?? this.force);
+    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(position.clone().addScaledVector(normal, lift - kNear * reach));
+    else this.hand.moveTo(position.clone().addScaledVector(normal, lift - this.depth(tool, reach)), this.pen ?? this.force);
   }
 
   /** m; so deep that the hand's spring pulls with all of the force. */
@@ -111,6 +112,7 @@ export class Stroke {
   private refine({ position, normal, reach, inward }: Seen, tool: Tool): boolean {
     const facing = -tool.normal.dot(this.caster.ray.direction);
     if (!tool.touching || facing <= 0) return false;
+    if (tool.shape !== undefined) return tool.proxyPosition.distanceTo(position) < tool.shape.extent + kAbove * reach; // some part of it touches
     const tangent = facing > kGrazing ? this.tangent(tool.proxyPosition, tool.normal)?.add(inward.clone().projectOnPlane(tool.normal)) : undefined;
     if ((tangent ?? tool.proxyPosition).distanceTo(position) > kAbove * reach) return false;
     if (tangent !== undefined) position.copy(tangent);
@@ -121,13 +123,13 @@ export class Stroke {
   /** Is the tool on the surface or above it? It has to go there if it is far off in depth, or has missed it. */
   private judge(tool: Tool, above: Vector3, felt: boolean, now: number): void {
     const { position, reach } = this.last!;
-    const offset = position.clone().sub(tool.hipPosition);
+    const offset = position.clone().sub(this.foot(tool));
     const deep = Math.abs(offset.dot(this.caster.ray.direction));
     const aside = Math.sqrt(Math.max(0, offset.lengthSq() - deep * deep));
     const was = this.there;
     if (felt) this.there = true;
     else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;
-    else if (tool.hipPosition.distanceTo(above) < reach) this.there = true;
+    else if (tool.hipPosition.distanceTo(above) < reach + (tool.shape?.extent ?? 0) / 4) this.there = true;
     this.sunk = tool.touching && (this.sunk || (tool.weak && this.below(tool) > kSunk * reach));
     if (this.sunk) this.there = false;
     if (!tool.touching || !tool.weak || this.content) this.strong = now;
@@ -149,7 +151,13 @@ export class Stroke {
 
   /** How deep the hand is below the surface, m. */
   private below(tool: Tool): number {
-    return this.last!.position.clone().sub(tool.hipPosition).dot(this.last!.normal);
+    return this.last!.position.clone().sub(this.foot(tool)).dot(this.last!.normal);
+  }
+
+  /** Below the hand's handle, as low as the tool reaches; the hand itself, where it is a point. */
+  private foot(tool: Tool): Vector3 {
+    const { normal } = this.last!;
+    return tool.hipPosition.clone().addScaledVector(normal, -tool.reach(normal.clone().negate()));
   }
 
   /** How far it has not gone straight through the surface, m. */

@@ -14,6 +14,7 @@ export class DeviceHistory {
   received = 0; // ms, performance.now()
   report: DeviceReport = { status: "ok" };
   readonly force = new Ring(kSteps, 5); // time, x, y, z, magnitude
+  readonly torque = new Ring(4096, 5); // time, x, y, z, magnitude; N mm, of a tool that turns
   readonly timing = new Ring(4096, 5); // time, step p50 and p99, lateness p50 and p99; us
 
   take(state: StateMessage, now: number): void {
@@ -28,6 +29,10 @@ export class DeviceHistory {
       const time = state.time - (n - 1 - i) * state.interval;
       this.force.push(time, x, y, z, Math.hypot(x, y, z));
     }
+    if (state.tool !== undefined) {
+      const [x, y, z] = state.tool.torque.map((part) => 1000 * part) as [number, number, number];
+      this.torque.push(state.time, x, y, z, Math.hypot(x, y, z));
+    }
     const [p50, p99] = state.step;
     const [late50, late99] = state.lateness;
     this.timing.push(state.time, p50 * 1e6, p99 * 1e6, late50 * 1e6, late99 * 1e6);
@@ -36,6 +41,7 @@ export class DeviceHistory {
   /** What was before the moment of a recording that is shown now; what was shown before goes. */
   takePast({ time, samples }: PastMessage): void {
     this.force.clear();
+    this.torque.clear();
     this.timing.clear();
     for (let i = 0; i + 3 < samples.length; i += 4) {
       const [before, x, y, z] = samples.subarray(i, i + 4) as unknown as [number, number, number, number];
@@ -51,6 +57,7 @@ export class DeviceHistory {
   clear(): void {
     this.latest = undefined;
     this.force.clear();
+    this.torque.clear();
     this.timing.clear();
   }
 }

@@ -16,6 +16,17 @@ const kColours = ["red", "blue", "violet", "purple"]; // --hand-0 and those afte
 const kHintTime = 3000; // ms
 const kCoarse = matchMedia("(pointer: coarse)");
 
+/** Acts from when a button goes down until it comes up. */
+function whileDown(id: string, begin: () => void, end: () => void): void {
+  const button = byId(id);
+  button.addEventListener("pointerdown", begin);
+  button.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" || event.key === " ") begin();
+  });
+  for (const type of ["pointerup", "pointerleave", "pointercancel", "keyup", "blur"]) button.addEventListener(type, end);
+  button.addEventListener("contextmenu", (event) => event.preventDefault());
+}
+
 export class HoldPanel {
   private held = false;
   private pointer: PointerInput | undefined;
@@ -26,22 +37,17 @@ export class HoldPanel {
     private readonly hand: Hand,
     private readonly world: World,
     depth: (direction: number) => void,
+    opening: (direction: number) => void,
   ) {
     byId("take").addEventListener("click", () => {
       this.toggle();
       if (this.hand.held) byId("view").focus({ preventScroll: true }); // for the keys that move it
     });
-    for (const [id, direction] of [["away", 1], ["closer", -1]] as const) {
-      const button = byId(id);
-      button.addEventListener("pointerdown", () => depth(direction));
-      button.addEventListener("keydown", (event) => {
-        if (event.key === "Enter" || event.key === " ") depth(direction);
-      });
-      for (const type of ["pointerup", "pointerleave", "pointercancel", "keyup", "blur"]) {
-        button.addEventListener(type, () => depth(0));
-      }
-      button.addEventListener("contextmenu", (event) => event.preventDefault());
-    }
+    whileDown("away", () => depth(1), () => depth(0));
+    whileDown("closer", () => depth(-1), () => depth(0));
+    whileDown("widen", () => opening(1), () => opening(0));
+    whileDown("grip", () => opening(-1), () => opening(0));
+    byId("turn").addEventListener("click", () => this.setTurns(this.pointer?.turns === false));
     byId("device").addEventListener("change", () => {
       this.hand.letGo();
       this.session.device = Number(byId<HTMLSelectElement>("device").value);
@@ -70,7 +76,7 @@ export class HoldPanel {
     if (this.hand.held) return true;
     const state = this.session.tool?.latest;
     if (!this.takeable() || state === undefined) return false;
-    this.hand.take(this.session.device, this.world.tools[this.session.device]!.hipPosition);
+    this.hand.take(this.session.device, this.world.tools[this.session.device]!);
     return true;
   }
 
@@ -80,6 +86,9 @@ export class HoldPanel {
     const held = this.hand.held;
     say(byId("hint"), this.hint());
     if (!this.hand.held) say(byId("take-words"), this.session.tool?.has("taken") ? "Take the tool over" : "Take the tool");
+    const shape = this.world.tools[this.session.device]?.shape;
+    byId("turn").hidden = shape === undefined;
+    for (const id of ["widen", "grip"]) byId(id).hidden = shape?.opens !== true;
     byId("by-itself").hidden = button.disabled || held || this.session.tool?.has("taken") === true;
     byId("tour-offer").hidden = button.disabled || held;
     this.nameDevices();
@@ -95,6 +104,12 @@ export class HoldPanel {
   /** Between the surface under the pointer and free motion. */
   toggleFree(): void {
     if (this.pointer !== undefined) this.setFree(!this.pointer.free);
+  }
+
+  private setTurns(turns: boolean): void {
+    if (this.pointer !== undefined) this.pointer.turns = turns;
+    byId("turn").setAttribute("aria-pressed", String(turns));
+    this.update();
   }
 
   private setFree(free: boolean): void {
@@ -155,6 +170,10 @@ export class HoldPanel {
     const free = this.pointer?.free === true;
     const around = `drag ${kCoarse.matches ? "with two fingers" : "beside it"} to look around`;
     if (performance.now() < (this.pointer?.missed ?? -Infinity) + kHintTime) return `No surface here: nothing was seen; ${around}`;
+    if (this.hand.held && this.hand.turned !== undefined) {
+      if (this.pointer?.turns === true) return "Drags turn the tool; press the button again to move it";
+      if (!kCoarse.matches) return `${free ? "Drag to move it" : "Hold to press"}, with Shift to turn it; wheel for ${free ? "depth" : "more force"}, with Shift to roll it`;
+    }
     if (this.hand.held && free) {
       return kCoarse.matches
         ? "One finger moves the tool, two turn the view"

@@ -1,6 +1,7 @@
-// Four plots: force, its spectrum, the servo's time, the frames' time.
+// Plots: force, torque of a tool that turns, the force's spectrum, the servo's time, the frames' time.
 
 import { kForceSpan, kFrameSpan, kTimingSpan, type Session } from "../model/session";
+import type { Ring } from "../model/ring";
 import { kWindow, Spectrum } from "../model/spectrum";
 import { sourceColour } from "../view/colours";
 import { byId } from "./dom";
@@ -12,19 +13,23 @@ const kSlowTimes = 2.5; // times as long where drawing is slow
 const kFloor = 0.01; // mN, least amplitude that the spectrum shows
 const kHighest = 500; // Hz
 
+const kParts = [
+  { label: "x", colour: "--x" },
+  { label: "y", colour: "--y" },
+  { label: "z", colour: "--z" },
+  { label: "size", colour: "--force", width: 1.75, filled: true },
+];
+
 export class Plots {
   frozen = false;
   private drawn = -Infinity; // ms
   private calmly = -Infinity;
   private readonly spectrum = new Spectrum();
   private readonly force = new Plot({
-    name: "force", title: "Force on the hand", unit: "N", xUnit: "s", x: [-kForceSpan, 0], least: 0.5,
-    curves: [
-      { label: "x", colour: "--x" },
-      { label: "y", colour: "--y" },
-      { label: "z", colour: "--z" },
-      { label: "size", colour: "--force", width: 1.75, filled: true },
-    ],
+    name: "force", title: "Force on the hand", unit: "N", xUnit: "s", x: [-kForceSpan, 0], least: 0.5, curves: kParts,
+  });
+  private readonly torque = new Plot({
+    name: "torque", title: "Torque about the handle", unit: "N mm", xUnit: "s", x: [-kForceSpan, 0], least: 5, curves: kParts,
   });
   private readonly tones = new Plot({
     name: "spectrum", title: "Spectrum", unit: "mN over Hz", xUnit: "Hz", x: [0, kHighest], least: kFloor, most: 1000,
@@ -42,7 +47,7 @@ export class Plots {
   private readonly frames = new Plot({
     name: "frames", title: "Frames", unit: "latency, ms", xUnit: "s", x: [-kFrameSpan, 0], least: 50, curves: [],
   });
-  private readonly all = [this.force, this.tones, this.steps, this.frames];
+  private readonly all = [this.force, this.torque, this.tones, this.steps, this.frames];
 
   constructor(private readonly session: Session) {
     byId("strip").prepend(...this.all.map((plot) => plot.figure));
@@ -55,13 +60,16 @@ export class Plots {
       { label: i === cameras.length - 1 ? "age" : "", colour: sourceColour(index), dash: [3, 3] },
     ]));
     this.frames.figure.classList.toggle("none", cameras.length === 0 || this.session.recorded);
+    this.torque.figure.classList.add("none"); // until a tool reports one
   }
 
   update(now: number, slow: boolean): void {
     const times = slow ? kSlowTimes : 1;
     if (this.frozen || now - this.drawn < times * kInterval) return;
     this.drawn = now;
-    if (this.force.visible) this.showForce();
+    if (this.force.visible) this.show(this.force, this.session.tool?.force);
+    this.torque.figure.classList.toggle("none", this.session.tool?.latest?.tool === undefined);
+    if (this.torque.visible) this.show(this.torque, this.session.tool?.torque);
     if (now - this.calmly < times * kCalmInterval) return;
     this.calmly = now;
     if (this.tones.visible) this.showSpectrum();
@@ -79,13 +87,12 @@ export class Plots {
       .filter(({ source }) => source.camera);
   }
 
-  private showForce(): void {
-    const ring = this.session.tool?.force;
+  private show(plot: Plot, ring: Ring | undefined): void {
     if (ring === undefined || ring.length === 0) return;
     const newest = ring.at(0, ring.length - 1);
     const first = ring.from(newest - kForceSpan);
     const times = ring.copy(0, first).map((time) => time - newest);
-    this.force.set([times, ...[1, 2, 3, 4].map((column) => ring.copy(column, first))]);
+    plot.set([times, ...[1, 2, 3, 4].map((column) => ring.copy(column, first))]);
   }
 
   private showSpectrum(): void {

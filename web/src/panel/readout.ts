@@ -3,7 +3,7 @@
 import type { DeviceHistory } from "../model/session";
 import { Flag, type StateMessage } from "../protocol/decode";
 import { byId, make, say } from "./dom";
-import { millimetres } from "./numbers";
+import { millimetres, threeDigits } from "./numbers";
 
 type Name = keyof typeof Flag;
 
@@ -95,13 +95,20 @@ export class Readout {
     if (tool.has("behind")) return "behind what the camera sees: nothing is felt";
     if (this.nothing && !tool.has("notLoaded")) return "no surface here";
     if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
-    const deep = `touching, ${millimetres(depthOf(state))} deep`;
+    const deep = `touching, ${millimetres(depthOf(state))} deep${torqueOf(state)}`;
     return this.scale < kLarge ? deep : `${deep}, ${millimetres(depthOf(state) / this.scale)} at the hand`;
   }
 }
 
 function depthOf({ proxy, hip }: StateMessage): number {
   return Math.hypot(...proxy.map((p, i) => p - hip[i as 0 | 1 | 2]));
+}
+
+/** In words, of a tool that turns. */
+function torqueOf({ tool }: StateMessage): string {
+  if (tool === undefined) return "";
+  const grip = Math.abs(tool.grip) < 0.005 ? "" : `, grip ${tool.grip.toFixed(2)} N`;
+  return `, torque ${threeDigits(1000 * Math.hypot(...tool.torque))} N mm${grip}`;
 }
 
 /** The share of the surface's stiffness that is felt; empty where all of it is. */

@@ -4,7 +4,7 @@
 
 import type { Quaternion, Vector } from "./messages";
 
-export const Kind = { state: 1, cloud: 2, surface: 3, past: 4 } as const;
+export const Kind = { state: 1, cloud: 2, surface: 3, past: 4, tool: 5 } as const;
 
 export const Flag = {
   touching: 1,
@@ -23,7 +23,17 @@ export const Flag = {
   oriented: 8192,
   behind: 16384, // what a camera sees: nothing is felt from there
   notLoaded: 32768, // the cloud is not read or prepared there
+  holdsTool: 65536, // that turns
 } as const;
+
+/** A tool that turns; its proxy is the state's, turned and opened so. */
+export interface ToolPart {
+  orientation: Quaternion;
+  opening: number; // m
+  handOpening: number; // m, that the hand asks for
+  torque: Vector; // N m, about the handle
+  grip: number; // N
+}
 
 export interface StateMessage {
   kind: typeof Kind.state;
@@ -40,7 +50,8 @@ export interface StateMessage {
   lateness: [number, number]; // s, p50 and p99
   interval: number; // s, between samples
   samples: Float32Array; // N, x y z of each step, oldest first
-  orientation: Quaternion | undefined; // from the tool's axes; its tip points along y
+  orientation: Quaternion | undefined; // of the hand, from the tool's axes; a point's tip is along y
+  tool: ToolPart | undefined;
 }
 
 export interface CloudMessage {
@@ -75,7 +86,16 @@ export interface PastMessage {
   samples: Float32Array; // s before that, N x y z of each step, oldest first
 }
 
-export type BinaryMessage = StateMessage | CloudMessage | SurfaceMessage | PastMessage;
+/** What a device holds in the place of a point, in its own axes, m from the handle. */
+export interface ToolMessage {
+  kind: typeof Kind.tool;
+  device: number;
+  axis: Vector; // in which the finger of side +1 opens
+  samples: Float32Array; // x y z radius side of each; sides are -1, 0, 1
+  faces: Float32Array; // corners of a mesh's triangles; none: the convex hull of each side's samples
+}
+
+export type BinaryMessage = StateMessage | CloudMessage | SurfaceMessage | PastMessage | ToolMessage;
 
 export class DecodeError extends Error {}
 
@@ -97,13 +117,29 @@ function pair(view: DataView, offset: number): [number, number] {
   return [view.getFloat32(offset, true), view.getFloat32(offset + 4, true)];
 }
 
+function quaternion(view: DataView, offset: number): Quaternion {
+  return [...vector(view, offset), view.getFloat32(offset + 12, true)];
+}
+
+function decodeTool(view: DataView, offset: number): ToolPart {
+  return {
+    orientation: quaternion(view, offset),
+    opening: view.getFloat32(offset + 16, true),
+    handOpening: view.getFloat32(offset + 20, true),
+    torque: vector(view, offset + 24),
+    grip: view.getFloat32(offset + 36, true),
+  };
+}
+
 function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
   need(buffer, 92, "state");
   const samples = view.getUint16(2, true);
   const flags = view.getUint32(4, true);
   const end = 92 + 12 * samples;
   const oriented = (flags & Flag.oriented) !== 0;
-  need(buffer, end + (oriented ? 16 : 0), `state with ${samples} samples`);
+  const holds = (flags & Flag.holdsTool) !== 0;
+  const after = end + (oriented ? 16 : 0);
+  need(buffer, after + (holds ? 40 : 0), `state with ${samples} samples`);
   return {
     kind: Kind.state,
     device: view.getUint8(1),
@@ -119,7 +155,8 @@ function decodeState(buffer: ArrayBuffer, view: DataView): StateMessage {
     lateness: pair(view, 80),
     interval: view.getFloat32(88, true),
     samples: new Float32Array(buffer, 92, 3 * samples),
-    orientation: oriented ? [...vector(view, end), view.getFloat32(end + 12, true)] : undefined,
+    orientation: oriented ? quaternion(view, end) : undefined,
+    tool: holds ? decodeTool(view, after) : undefined,
   };
 }
 
@@ -189,6 +226,20 @@ function decodePast(buffer: ArrayBuffer, view: DataView): PastMessage {
   };
 }
 
+function decodeShape(buffer: ArrayBuffer, view: DataView): ToolMessage {
+  need(buffer, 24, "tool");
+  const samples = view.getUint32(4, true);
+  const faces = view.getUint32(8, true);
+  need(buffer, 24 + 20 * samples + 36 * faces, `tool of ${samples} samples and ${faces} faces`);
+  return {
+    kind: Kind.tool,
+    device: view.getUint8(1),
+    axis: vector(view, 12),
+    samples: new Float32Array(buffer, 24, 5 * samples),
+    faces: new Float32Array(buffer, 24 + 20 * samples, 9 * faces),
+  };
+}
+
 /** Throws DecodeError for what is cut short or of an unknown kind. */
 export function decode(buffer: ArrayBuffer): BinaryMessage {
   need(buffer, 1, "message");
@@ -198,5 +249,6 @@ export function decode(buffer: ArrayBuffer): BinaryMessage {
   if (kind === Kind.cloud) return decodeCloud(buffer, view);
   if (kind === Kind.surface) return decodeSurface(buffer, view);
   if (kind === Kind.past) return decodePast(buffer, view);
+  if (kind === Kind.tool) return decodeShape(buffer, view);
   throw new DecodeError(`unknown message kind ${kind}`);
 }

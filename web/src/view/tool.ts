@@ -6,11 +6,12 @@ import {
   CircleGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshBasicMaterial,
   MeshLambertMaterial, Quaternion, RingGeometry, SphereGeometry, Vector3, Vector4, type Camera, type Material,
 } from "three";
-import type { StateMessage } from "../protocol/decode";
+import type { StateMessage, ToolMessage } from "../protocol/decode";
 import { Flag } from "../protocol/decode";
 import type { Caster } from "./backdrop";
 import { colourOf, handColour } from "./colours";
 import { HaloMaterial } from "./halo";
+import { ToolShape } from "./tool_shape";
 import { Trail } from "./trail";
 
 const kUp = new Vector3(0, 1, 0);
@@ -82,7 +83,9 @@ export class Tool {
   weak = false; // the force is less than the surface's, until the tool has been lifted
   faulty = false; // no force until somebody resets
   readonly force = new Vector3(); // N, on the hand
+  opening = 0; // of a gripper, that the hand asks for, m
   readonly normal = new Vector3(); // of the tangent constraint
+  shape: ToolShape | undefined; // of a tool that turns, in the place of a point
   below: { point: Vector3; spacing: number } | undefined; // the nearest point of the surface, while the hand is free
   private readonly handMaterial = new MeshLambertMaterial();
   private readonly proxyMaterial = new MeshLambertMaterial();
@@ -113,7 +116,7 @@ export class Tool {
   private readonly shaft = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.forceMaterial);
   private readonly head = new Mesh(new ConeGeometry(1, 1, 24), this.forceMaterial);
   private readonly endOn = new Mesh(new RingGeometry(0.9, 1, 48), this.endOnMaterial);
-  private readonly turn = new Quaternion();
+  readonly turn = new Quaternion(); // of the hand
   private readonly stem = new Vector3(); // from the tip along the stylus, 1 long; 0: unknown
   private radius = 0;
 
@@ -148,14 +151,27 @@ export class Tool {
     return this.radius;
   }
 
+  takeShape(message: ToolMessage): void {
+    if (this.shape !== undefined) this.group.remove(this.shape.proxy, this.shape.hand);
+    this.shape?.dispose();
+    this.shape = new ToolShape(message, this.proxyMaterial.color, this.handMaterial.color);
+    this.group.add(this.shape.proxy, this.shape.hand);
+  }
+
+  /** How far what is held reaches from the proxy in a direction (unit), m. */
+  reach(direction: Vector3): number {
+    return this.shape?.reach(direction) ?? 0;
+  }
+
   take(state: StateMessage): void {
     this.group.visible = true;
     this.hipPosition.set(...state.hip);
     this.proxyPosition.set(...state.proxy);
     this.force.set(...state.force);
     this.normal.set(...state.normal);
-    this.stem.set(0, state.orientation ? -1 : 0, 0);
-    if (state.orientation) this.stem.applyQuaternion(this.turn.set(...state.orientation));
+    if (state.orientation) this.turn.set(...state.orientation);
+    this.stem.set(0, state.orientation && !state.tool ? -1 : 0, 0).applyQuaternion(this.turn);
+    this.placeShape(state);
     this.radius = state.radius;
     this.touching = (state.flags & Flag.touching) !== 0;
     this.behind = (state.flags & Flag.behind) !== 0;
@@ -164,10 +180,18 @@ export class Tool {
     this.trail.take(this.proxyPosition, state.time);
   }
 
+  private placeShape({ tool }: StateMessage): void {
+    if (this.shape === undefined || tool === undefined) return;
+    this.opening = tool.handOpening;
+    this.shape.placeProxy(this.proxyPosition, new Quaternion(...tool.orientation), tool.opening);
+    this.shape.placeHand(this.hipPosition, this.turn, tool.handOpening);
+  }
+
   update({ pixel, perNewton, camera, lift }: Sizes): void {
     const proxySize = Math.max(0.16 * this.radius, kProxyPixels * pixel);
-    this.proxy.visible = this.touching; // elsewhere it is where the hand is
-    this.proxyGhost.visible = this.touching;
+    this.proxy.visible = this.touching && this.shape === undefined; // elsewhere it is where the hand is
+    this.proxyGhost.visible = this.proxy.visible;
+    if (this.shape !== undefined) this.shape.hand.visible = this.touching;
     const towards = camera.position.clone().sub(this.proxyPosition).normalize().multiplyScalar(lift);
     this.proxy.position.copy(this.proxyPosition).add(towards);
     this.proxy.scale.setScalar(proxySize);
@@ -177,7 +201,7 @@ export class Tool {
     this.proxyGhost.scale.copy(this.proxy.scale);
     this.handGhost.position.copy(this.hand.position);
     this.handGhost.scale.copy(this.hand.scale);
-    this.halo.visible = this.showSupport && this.radius > 2 * proxySize;
+    this.halo.visible = this.showSupport && this.shape === undefined && this.radius > 2 * proxySize;
     this.halo.position.copy(this.proxyPosition);
     this.halo.scale.setScalar(Math.max(this.radius, 1e-9));
     this.placeDisk(Math.max(0.9 * this.radius, 2.8 * proxySize), towards);
@@ -188,7 +212,8 @@ export class Tool {
   }
 
   private placeDisk(size: number, towards: Vector3): void {
-    const hasNormal = this.touching && this.normal.lengthSq() > 0.5;
+    const hasNormal = this.touching && this.shape === undefined && // a tool that turns touches with several planes
+      this.normal.lengthSq() > 0.5;
     this.disk.visible = hasNormal;
     this.rim.visible = hasNormal;
     if (!hasNormal) return;
@@ -248,6 +273,7 @@ export class Tool {
     this.endOn.visible = false;
     if (!shown) return;
     const along = this.force.clone().divideScalar(size);
+    start = Math.max(start, this.reach(along));
     const longest = Math.min(size * perNewton, kLongest * pixel);
     const tip = this.proxyPosition.clone().addScaledVector(along, start + longest);
     const length = Math.max(longest * shareInPicture(camera, this.proxyPosition, tip), 10 * pixel);

@@ -3,7 +3,7 @@
 import {
   Line, Mesh, Points, Vector3, type BufferGeometry, type Material, type Object3D, type Ray,
 } from "three";
-import type { CloudMessage, StateMessage, SurfaceMessage } from "../protocol/decode";
+import type { CloudMessage, StateMessage, SurfaceMessage, ToolMessage } from "../protocol/decode";
 import type { View } from "../protocol/link";
 import type { SourceReport, Welcome } from "../protocol/messages";
 import { recall, remember } from "../model/memory";
@@ -111,6 +111,11 @@ export class World {
 
   takeSurface(message: SurfaceMessage): void {
     this.surfaces[message.device]?.take(message);
+    this.stage.request();
+  }
+
+  takeTool(message: ToolMessage): void {
+    this.tools[message.device]?.takeShape(message);
     this.stage.request();
   }
 

@@ -17,6 +17,7 @@ import "./moving.mjs";
 import "./simple.mjs";
 import "./sounds.mjs";
 import "./time_line.mjs";
+import "./turning.mjs";
 
 test("shows the scene and its force, and the browser has nothing to complain of", () =>
   withPage(kSmall, async (page) => {

@@ -9,17 +9,30 @@ export function octahedral([x, y, z]) {
 }
 
 export function encodeState(state) {
-  const bytes = Buffer.alloc(92 + 12 * state.samples.length);
+  const after = state.tool === undefined ? [] : [...state.tool.hand, ...state.tool.proxy, 0, state.tool.opening, ...state.tool.torque, 0];
+  const bytes = Buffer.alloc(92 + 12 * state.samples.length + 4 * after.length);
   bytes.writeUInt8(1, 0);
   bytes.writeUInt8(state.device, 1);
   bytes.writeUInt16LE(state.samples.length, 2);
-  bytes.writeUInt32LE(state.flags, 4);
+  bytes.writeUInt32LE(state.flags | (state.tool === undefined ? 0 : 8192 | 65536), 4);
   bytes.writeDoubleLE(state.time, 8);
   const floats = [
     ...state.hip, ...state.proxy, ...state.normal, ...state.force, state.radius, state.rate,
-    ...state.step, ...state.lateness, state.interval, ...state.samples.flat(),
+    ...state.step, ...state.lateness, state.interval, ...state.samples.flat(), ...after,
   ];
   floats.forEach((value, i) => bytes.writeFloatLE(value, 16 + 4 * i));
+  return bytes;
+}
+
+/** A box's corners, m. */
+export function encodeTool(device, [x, y, z]) {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [(k & 1) - 0.5, ((k >> 1) & 1) - 0.5, (k >> 2) - 0.5]);
+  const floats = [1, 0, 0, ...corners.flatMap(([i, j, k]) => [i * x, j * y, k * z, 0, 0])];
+  const bytes = Buffer.alloc(12 + 4 * floats.length);
+  bytes.writeUInt8(5, 0);
+  bytes.writeUInt8(device, 1);
+  bytes.writeUInt32LE(corners.length, 4);
+  floats.forEach((value, i) => bytes.writeFloatLE(value, 12 + 4 * i));
   return bytes;
 }
 

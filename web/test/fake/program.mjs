@@ -1,6 +1,6 @@
 // The fake program behind the socket: settings, messages of pages, what is sent when.
 
-import { encodeCloud, encodePast, encodeState } from "./encode.mjs";
+import { encodeCloud, encodePast, encodeState, encodeTool } from "./encode.mjs";
 import { kCameras, lookAtOrigin, randomFrom, seenPoints } from "./scene.mjs";
 import { Servo } from "./servo.mjs";
 import { patchAround } from "./surface.mjs";
@@ -44,11 +44,12 @@ export class FakeProgram {
   near = false;
   holder; // the client whose hand moves the tool
 
-  constructor({ points = 30000, token, still = false, silent, length, anew = false }) {
+  constructor({ points = 30000, token, still = false, silent, length, anew = false, box }) {
     this.token = token;
     this.run = "first";
     this.opens = anew ? 2 ** 30 : undefined; // bytes
     if (anew) this.settings.push(...kAnew.map((one) => ({ ...one })));
+    this.box = box; // m, of a tool that turns
     this.motors = false; // does the tool have them? Then no page takes it
     this.length = length; // s, of a recording that is shown; undefined: a run
     this.moment = { time: 0, playing: false, speed: 1 };
@@ -90,6 +91,7 @@ export class FakeProgram {
     this.servo.advance(Math.min(0.1, (now - this.last) / 1000));
     this.last = now;
     const state = this.servo.report();
+    if (this.box !== undefined) state.tool = this.servo.tool;
     if (this.length === undefined) this.broadcast(encodeState(state));
     else this.tellMoment(state);
     if (this.hands > 1) this.broadcast(encodeState({ ...state, device: 1, flags: 0, hip: kOther, proxy: kOther, force: [0, 0, 0], samples: [] }));
@@ -197,7 +199,7 @@ export class FakeProgram {
     if (!client.welcome && message.type !== "hello") return answer({ type: "refused", text: "send hello first" });
     const act = {
       hello: () => this.hello(client, message),
-      hand: () => this.move(client, message.position),
+      hand: () => this.move(client, message),
       release: () => this.release(client),
       set: () => this.changed(answer, this.set(message.key, message.value)),
       preset: () => Object.entries(kPresets[message.name] ?? {}).forEach(([k, v]) => this.set(k, v)) ?? this.tellSettings(),
@@ -217,17 +219,19 @@ export class FakeProgram {
     if (token !== this.token) return client.socket.close(1008, "wrong token");
     Object.assign(client, { welcome: true, points });
     client.socket.send(JSON.stringify(this.welcome()));
+    if (this.box !== undefined) client.socket.send(encodeTool(0, this.box));
     if (this.length === undefined) return;
     const forces = Array.from({ length: 100 }, (_, i) => (i > 40 && i < 60 ? 2 : 0));
     client.socket.send(JSON.stringify({ type: "envelope", forces }));
   }
 
-  move(client, place) {
+  move(client, { position: hand, orientation }) {
     if (this.holder !== undefined && this.holder !== client) {
       this.holder.socket.send(JSON.stringify({ type: "lost", device: 0, text: "another page took the tool" }));
     }
     this.holder = client;
-    Object.assign(this.servo, { taken: true, hand: place });
+    Object.assign(this.servo, { taken: true, hand });
+    if (orientation !== undefined) Object.assign(this.servo.tool, { hand: orientation, proxy: orientation });
   }
 
   /** A client let go, or is gone. */

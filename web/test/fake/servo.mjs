@@ -23,6 +23,7 @@ export class Servo {
   contact;
   force = [0, 0, 0];
   samples = [];
+  tool = { hand: [0, 0, 0, 1], proxy: [0, 0, 0, 1], opening: 0, torque: [0, 0.02, 0] }; // where there is one
   clamped = false;
 
   constructor(random) {
