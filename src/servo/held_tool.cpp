@@ -25,6 +25,7 @@ HeldTool::HeldTool(Scene& scene, const ServoOptions& options, double limit)
     : field_(scene, without_traces(options).tool, options.field, "a tool's field",
              options.workspace.scale),
       proxy_(options.tool, {.stiffness = std::min(options.proxy.stiffness, limit),
+                            .friction = options.proxy.friction,
                             .gyration = options.gyration}) {}
 
 void HeldTool::reset(const Pose& hand) noexcept {
@@ -44,6 +45,7 @@ Contact HeldTool::step(double now, const Pose& hand, double dt) noexcept {
   contact.proxy = tool.proxy.position;
   contact.stiffness = tool.stiffness;
   contact.touching = tool.touching;
+  contact.sliding = tool.sliding;
   contact.source = tool.source;
   contact.iterations = tool.iterations;
   contact.evaluations = tool.evaluations;

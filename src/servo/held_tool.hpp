@@ -24,7 +24,9 @@ class HeldTool {
   /// (docs/method.md 3.7).
   [[nodiscard]] Contact step(double now, const Pose& hand, double dt) noexcept;
   void reset(const Pose& hand) noexcept;
-  void change(double stiffness) noexcept { proxy_.change(stiffness); }
+  void change(double stiffness, const Friction& friction) noexcept {
+    proxy_.change(stiffness, friction);
+  }
   void change(const FieldOptions& checked) noexcept { field_.change(checked); }
 
   [[nodiscard]] const Pose& pose() const noexcept { return proxy_.pose(); }

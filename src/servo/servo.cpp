@@ -185,7 +185,8 @@ void Servo::Inside::apply_pending() noexcept {
     guard.reset();
   }
   if (basis.contact) limited.change(*basis.contact);
-  if (basis.contact && tool) tool->change(limited.proxy.options().stiffness);
+  if (basis.contact && tool)
+    tool->change(limited.proxy.options().stiffness, basis.contact->friction);
   if (basis.field && tool) tool->change(*basis.field);
   if (basis.field && limited.field) limited.field->change(*basis.field);
 }

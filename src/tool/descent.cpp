@@ -77,11 +77,13 @@ void Descent::shift(double moved) noexcept {
 void Descent::release(const Pose& pose) noexcept {
   move_to(pose);
   touches_.count = 0;
+  friction_.forget();
   outside_ = {pose};
 }
 
 void Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
-                     ToolContact& contact) noexcept {
+                     const FrictionLaw& law, ToolContact& contact) noexcept {
+  friction_.begin(law, pose_);
   const double radius = gaps_.radius();
   Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius),
                 .moves = std::exchange(moves_, false)};
@@ -123,11 +125,18 @@ bool Descent::iterate(const ToolSurface& surface, const Pose& hand, bool restore
   }
   if (restores) return restore(look, step);
   if (step.creased) add_planes();
-  const LeastMotion pull = solve(metric_.between(pose_, hand));
-  remember_touches(pull);
+  Motion wanted = metric_.between(pose_, hand);
+  LeastMotion pull = solve(wanted);
+  if (pull.count == 0) friction_.forget();
+  const bool rubs = friction_.any() && pull.count > 0 && pull.end == LeastMotion::End::solved;
+  if (rubs) {
+    wanted = friction_.hold({*tool_, metric_, pose_, constraints_.all(), wanted}, pull);
+    pull = solve(wanted);
+  }
+  remember_touches(pull, rubs);
   const bool held = step.held > 0 && pull.count > 0;
   const double pace = held ? pace_of(pull.motion, step.pull, step.motion) : 1;
-  const LeastMotion least = pace < 1 ? solve(pace * metric_.between(pose_, hand)) : pull;
+  const LeastMotion least = pace < 1 ? solve(pace * wanted) : pull;
   step.pull = pull.motion;
   const double far = move(least, seen, look, step);
   const bool free = pull.end == LeastMotion::End::solved && pull.count == 0;
@@ -218,14 +227,24 @@ void Descent::remember_planes(const LeastMotion& least, std::size_t seen,
   }
 }
 
-void Descent::remember_touches(const LeastMotion& least) noexcept {
+// Of contacts that rub friction knows the forces, which share out among others than those of
+// `least`.
+void Descent::remember_touches(const LeastMotion& least, bool rubs) noexcept {
   touches_.count = 0;
+  if (rubs) {
+    for (const ToolFriction::Contact& contact : friction_.contacts()) {
+      if (contact.sample < 0 || !(contact.pressed > 0)) continue;
+      touches_.all[static_cast<std::size_t>(touches_.count++)] = {
+          contact.sample, contact.normal.head<3>(), contact.pressed, contact.axes * contact.held};
+    }
+    return;
+  }
   for (int k = 0; k < least.count; ++k) {
     const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
     const Constraint& held = constraints_.all()[static_cast<std::size_t>(active.index)];
     if (held.sample < 0) continue;
-    touches_.all[static_cast<std::size_t>(touches_.count++)] = {held.sample, held.normal.head<3>(),
-                                                                active.multiplier};
+    touches_.all[static_cast<std::size_t>(touches_.count++)] = {
+        held.sample, held.normal.head<3>(), active.multiplier, Eigen::Vector3d::Zero()};
   }
 }
 

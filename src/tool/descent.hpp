@@ -7,6 +7,7 @@
 
 #include "palpate/tool/tool_proxy.hpp"
 #include "tool/gap_search.hpp"
+#include "tool/tool_friction.hpp"
 
 namespace palpate {
 
@@ -17,6 +18,7 @@ struct Touches {
     int sample = -1;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the surface, outward, unit
     double multiplier = 0;                             ///< m; times the stiffness a force
+    Eigen::Vector3d held = Eigen::Vector3d::Zero();    ///< along the surface, by friction, m
   };
   std::array<Touch, ToolContact::kMostTouches> all{};
   int count = 0;
@@ -40,13 +42,14 @@ class Descent {
   /// The surface has changed: lifts the tool, which touches it, to where each touch finds it again
   /// within `reach` (m) above.
   void lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept;
-  /// Goes where the hand is, as far as the surface lets it; `moved`: how far any sample of the hand
-  /// has moved since the last step, m, at most.
-  void follow(const ToolSurface& surface, const Pose& hand, double moved,
+  /// Goes where the hand is, as far as the surface and its friction let it; `moved`: how far any
+  /// sample of the hand has moved since the last step, m, at most.
+  void follow(const ToolSurface& surface, const Pose& hand, double moved, const FrictionLaw& law,
               ToolContact& contact) noexcept;
 
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
   [[nodiscard]] const Touches& touches() const noexcept { return touches_; }
+  [[nodiscard]] const ToolFriction& friction() const noexcept { return friction_; }
   [[nodiscard]] GapSearch& gaps() noexcept { return gaps_; }
   [[nodiscard]] const Metric& metric() const noexcept { return metric_; }
   /// The farthest that any sample moves with this, m, at most.
@@ -86,7 +89,7 @@ class Descent {
                              Progress& step) noexcept;
   void add_planes() noexcept;
   void remember_planes(const LeastMotion& least, std::size_t seen, const Motion& motion) noexcept;
-  void remember_touches(const LeastMotion& least) noexcept;
+  void remember_touches(const LeastMotion& least, bool rubs) noexcept;
   void move_to(const Pose& pose) noexcept;
 
   std::shared_ptr<const Tool> tool_;
@@ -95,6 +98,7 @@ class Descent {
   GapSearch gaps_;
   Pose pose_;
   Touches touches_;
+  ToolFriction friction_;
   ConstraintList constraints_;
   std::optional<Outside> outside_;  // the last one
   bool moves_ = false;              // has the surface moved on since the last step?

@@ -13,6 +13,7 @@ namespace palpate {
 namespace {
 
 constexpr Requirement kRequireProxy{"tool proxy"};  // the name that errors begin with
+constexpr double kLeastTime = 1e-9;                 // s; friction divides by the time of a step
 constexpr double kLeastGyration = 0.01;  // m: a tool as slim is turned with the fingers (judgement)
 constexpr double kPointGyration = 1e-3;  // m, of a point, whose turns meet nothing
 // m: the turns of a smaller or larger gyration are those of no hand, and are lost in rounding.
@@ -21,8 +22,17 @@ constexpr double kSmallestGyration = 1e-4;
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
+void check(const Friction& friction) {
+  kRequireProxy.not_negative("friction.static", friction.static_coefficient, "give 0 or more");
+  kRequireProxy.not_negative("friction.dynamic", friction.dynamic_coefficient, "give 0 or more");
+  kRequireProxy.not_negative("friction.viscous", friction.viscous, "give 0 or more N s/m");
+  kRequireProxy(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
+                friction.dynamic_coefficient, "give at most the static coefficient, or raise that");
+}
+
 ToolOptions checked(const ToolOptions& options, const Tool& tool) {
   kRequireProxy.not_negative("stiffness", options.stiffness, "give N/m, 0 or more");
+  check(options.friction);
   kRequireProxy(options.gyration == 0 ||
                     (options.gyration >= kSmallestGyration && options.gyration <= Tool::kLongest),
                 "gyration", options.gyration, "give 0.0001 to 10 metres, or 0 for the tool's");
@@ -73,7 +83,7 @@ void ToolProxy::Inside::reset(const Pose& given) noexcept {
   descent_.shift(kAnywhere);  // whether it is free there is not known, either
   spring_.reset();
   revision_.reset();
-  factor_ = 1;
+  factor_ = friction_factor_ = 1;
 }
 
 ToolContact ToolProxy::Inside::faulted() const noexcept {
@@ -94,6 +104,8 @@ ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& give
   see(surface, traits);
   ToolContact contact;
   surface.whole().begin_step();
+  const double time = std::max(dt, kLeastTime);
+  law_ = friction_law(options_.friction, friction_factor_, spring_.stiffness(), time);
   move(surface, hand, contact);
   free_hand(surface.whole(), hand, dt, contact);
   report(surface, contact);
@@ -139,8 +151,8 @@ ToolContact ToolProxy::step(const Field& field, const Pose& hand, double dt) noe
   return inside_->step(Alone(field), hand, dt);
 }
 
-void ToolProxy::change(double stiffness) noexcept {
-  inside_->change(stiffness);
+void ToolProxy::change(double stiffness, const Friction& friction) noexcept {
+  inside_->change(stiffness, friction);
 }
 
 const Pose& ToolProxy::pose() const noexcept {

@@ -23,7 +23,10 @@ class ToolProxy::Inside {
 
   [[nodiscard]] ToolContact step(const ToolSurface& surface, const Pose& given, double dt) noexcept;
   void reset(const Pose& given) noexcept;
-  void change(double stiffness) noexcept { options_.stiffness = stiffness; }
+  void change(double stiffness, const Friction& friction) noexcept {
+    options_.stiffness = stiffness;
+    options_.friction = friction;
+  }
 
   [[nodiscard]] const Pose& pose() const noexcept { return descent_.pose(); }
   [[nodiscard]] const Tool& tool() const noexcept { return *tool_; }
@@ -49,8 +52,11 @@ class ToolProxy::Inside {
   Pose last_hand_;                         // in the last step
   const Field* field_ = nullptr;           // in the last step; never looked into
   std::optional<std::uint64_t> revision_;  // of it, then; empty: no step since a reset
-  double factor_ = 1;                      // of the stiffness, by what is touched
-  bool changed_ = false;                   // is the surface another than in the last step?
+  FrictionLaw law_;                        // of this step
+  // Of stiffness and friction, by what was touched last.
+  double factor_ = 1;
+  double friction_factor_ = 1;
+  bool changed_ = false;  // is the surface another than in the last step?
   bool started_ = false;
   bool fault_ = false;
 };

@@ -40,7 +40,7 @@ void ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand,
   if (path_is_free(field, hand)) return descent_.release(hand);
   if (changed_) descent_.lift(surface, field.traits().reanchor_reach, contact);
   const double moved = descent_.farthest(descent_.metric().between(hand_, hand));
-  descent_.follow(surface, hand, moved, contact);
+  descent_.follow(surface, hand, moved, law_, contact);
 }
 
 // Lets go of a hand that is held hard in free air for long, as a point does, or whose tool is
@@ -109,13 +109,17 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
                 .now = pose(),
                 .full = factor_ * options_.stiffness,
                 .moved = hand_moved + open,
+                .dissipated = descent_.friction().dissipated(),
                 .dt = dt,
                 // A tool that lags behind a hand which has let go is still held: else what it meets
                 // next would begin as soft as the spring is stretched.
                 .touching = descent_.touches().count > 0 || (held && !at_hand),
                 .jumped = far && jumped},
                metric, contact);
-  for (ToolContact::Touch& touch : contact.touches) touch.force *= spring_.stiffness();
+  for (ToolContact::Touch& touch : contact.touches) {
+    touch.force *= spring_.stiffness();
+    touch.friction *= spring_.stiffness();
+  }
 }
 
 // Reads what the surface is where it is touched, before the field's step ends: its budget counts
@@ -125,6 +129,7 @@ void ToolProxy::Inside::report(const ToolSurface& surface, ToolContact& contact)
   contact.evaluations = descent_.gaps().evaluations() + descent_.touches().count;
   double sum = 0;
   double weighted = 0;
+  double rubbed = 0;
   double most = 0;
   for (const Touches::Touch& touch : descent_.touches().span()) {
     const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
@@ -133,12 +138,16 @@ void ToolProxy::Inside::report(const ToolSurface& surface, ToolContact& contact)
     sum += touch.multiplier;
     weighted +=
         touch.multiplier * share_of_one(here.stiffness_factor) * share_of_one(here.presence);
+    rubbed += touch.multiplier * share_of_one(here.friction_factor);
     if (touch.multiplier > most) contact.source = here.source;
     most = std::max(most, touch.multiplier);
     contact.touches[static_cast<std::size_t>(contact.touch_count++)] = {
-        x, touch.normal, touch.multiplier, touch.sample};
+        x, touch.normal, touch.multiplier, touch.held, touch.sample};
   }
-  if (sum > 0) factor_ = weighted / sum;
+  contact.sliding = descent_.friction().slides();
+  if (!(sum > 0)) return;
+  factor_ = weighted / sum;
+  friction_factor_ = rubbed / sum;
 }
 
 }  // namespace palpate

@@ -32,7 +32,7 @@ void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& conta
   }
   touching_ = contact.touching = step.touching;
   if (touching_) {
-    add(stretch, tank_.follow(wanted, length, 0, step.dt), metric, contact);
+    add(stretch, tank_.follow(wanted, length, step.dissipated, step.dt), metric, contact);
     if (tank_.stiffness() < Limit::kMuchSofter * wanted) contact.notes |= ContactNote::softer;
   }
   if (fading_ > 0) add_fading(step, metric, contact);

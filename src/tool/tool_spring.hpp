@@ -21,7 +21,8 @@ class ToolSpring {
     Pose now;          ///< and after it
     double full = 0;   ///< stiffness that the surface allows, N/m
     double moved = 0;  ///< length of the hand's motion in the metric, m, and what is open beyond it
-    double dt = 0;     ///< s
+    double dissipated = 0;  ///< by friction, J
+    double dt = 0;          ///< s
     bool touching = false;  ///< a surface holds the tool now
     bool jumped = false;    ///< a change of the surface took the tool along farther than it may
   };

@@ -162,7 +162,7 @@ struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
   /// What the hand holds; null: a point. Experimental. A device that measures its orientation turns
-  /// it, but feels the force alone; friction and texture are not rendered, and its steps cannot be
+  /// it, but feels the force alone; texture is not rendered, and its steps cannot be
   /// traced.
   std::shared_ptr<const Tool> tool = {};
   double gyration = 0;      ///< ToolOptions::gyration

@@ -15,6 +15,7 @@ namespace palpate {
 
 struct ToolOptions {
   double stiffness = 500;  ///< K of forces and of the grip, N/m
+  Friction friction = {};  ///< of every contact (docs/method.md 4.1)
   /// g, m, 1e-4 to 10: turns have the stiffness K g^2 (N m/rad). 0: the tool's radius of gyration,
   /// at least 10 mm and at most half of its extent (1 mm for a point).
   double gyration = 0;
@@ -25,12 +26,13 @@ struct ToolOptions {
 
 /// What one step of a tool's proxy gives.
 struct ToolContact {
-  /// Where a sample of the tool presses on the surface. The forces of a contact add up to
-  /// its wrench once the hand rests.
+  /// Where a sample of the tool presses on the surface. The forces of all touches and what friction
+  /// holds there add up to the wrench once the hand rests.
   struct Touch {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the sample, m, world
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< of the surface, outward, unit
     double force = 0;                                    ///< along the normal, N
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< along the surface, N
     int sample = -1;                                     ///< of Tool::samples()
   };
   /// Six constraints hold a rigid tool, a seventh a gripper's opening.
@@ -42,6 +44,7 @@ struct ToolContact {
   Pose proxy;
   double stiffness = 0;   ///< of all springs in the force, N/m
   bool touching = false;  ///< held by a surface
+  bool sliding = false;   ///< friction yielded in this step
   std::array<Touch, kMostTouches> touches{};
   int touch_count = 0;
   int iterations = 0;   ///< looks at the surface
@@ -61,7 +64,7 @@ struct ToolContact {
 /// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
 /// system. Input that is not finite or in range (an orientation whose length is
 /// not about 1) latches a fault: a zero wrench until reset(). More than half a turn
-/// between hand and proxy is taken the short way round. Friction and texture are not rendered.
+/// between hand and proxy is taken the short way round. Texture is not rendered.
 class ToolProxy {
  public:
   /// @throws Error without a tool, and when an option is not finite or out of its range.
@@ -84,9 +87,10 @@ class ToolProxy {
   /// The same of a field that serves all samples alike.
   [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
 
-  /// Another stiffness of forces and turns from the next step on, N/m, finite and not below 0; in
-  /// contact it changes as the energy tank allows (docs/method.md 3.5).
-  void change(double stiffness) noexcept;
+  /// Another stiffness of forces and turns, N/m, finite and not below 0, and another friction, in
+  /// the range that the constructor takes, from the next step on; in contact stiffness changes as
+  /// the energy tank allows (docs/method.md 3.5).
+  void change(double stiffness, const Friction& friction) noexcept;
 
   /// Where the tool is. At the origin until the first step or reset().
   [[nodiscard]] const Pose& pose() const noexcept;

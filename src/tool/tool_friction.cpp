@@ -1,0 +1,143 @@
+// Solves for normal and tangential forces of all contacts at once, one contact after the other
+// (Jean 1999, "The non-smooth contact dynamics method"). What was held in the step before begins.
+#include "tool/tool_friction.hpp"
+
+#include <cmath>
+
+#include "tool/constraint_list.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr int kSweeps = 64;       // over the contacts; what is left open is taken up in the next step
+constexpr double kStill = 1e-10;  // m: a sweep that changes the motion by less is the last one
+// m in a step: a contact whose cone is full slides no farther where others hold the tool. A hand
+// that creeps by 1 um/s at 1 kHz moves as far.
+constexpr double kCreep = 1e-9;
+
+}  // namespace
+
+ToolFriction::Contact ToolFriction::contact_of(const Look& look,
+                                               const Constraint& constraint) const noexcept {
+  Contact contact;
+  contact.sample = constraint.sample;
+  contact.normal = constraint.normal;
+  contact.bound = constraint.bound;
+  if (contact.sample < 0) return contact;  // no surface
+  const Tool::Point& sample = look.tool.samples()[static_cast<std::size_t>(contact.sample)];
+  const Eigen::Vector3d normal = constraint.normal.head<3>();
+  const Eigen::Vector3d at =
+      look.tool.in_world(sample.position, sample.side, look.pose) - sample.radius * normal;
+  contact.axes.col(0) = normal.unitOrthogonal();
+  contact.axes.col(1) = normal.cross(contact.axes.col(0));
+  for (int i = 0; i < 2; ++i) {
+    contact.along.col(i) = constraint_on(look.tool, contact.sample, at, contact.axes.col(i),
+                                         look.pose, look.metric)
+                               .normal;
+  }
+  contact.moved = contact.along.transpose() * look.metric.between(start_, look.pose);
+  const Eigen::Matrix2d square = contact.along.transpose() * contact.along;
+  contact.weight = std::max(square(0, 0), square(1, 1)) + std::abs(square(0, 1));
+  contact.held = contact.axes.transpose() * held(contact.sample);
+  return contact;
+}
+
+void ToolFriction::place(const Look& look, const LeastMotion& least) noexcept {
+  std::array<Contact, ToolContact::kMostTouches> placed;
+  std::size_t count = 0;
+  for (int k = 0; k < least.count; ++k) {
+    const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
+    placed[count] = contact_of(look, look.constraints[static_cast<std::size_t>(active.index)]);
+    placed[count++].pressed = active.multiplier;
+  }
+  contacts_ = placed;
+  count_ = count;
+}
+
+// A constraint that holds with equality, as far as it pushes. Returns the length of the change.
+double ToolFriction::press(Contact& contact, Motion& motion) const noexcept {
+  const double lacking = contact.bound - contact.normal.dot(motion);
+  const double square = contact.normal.squaredNorm();
+  const double change = std::max(-contact.pressed, lacking / square);
+  contact.pressed += change;
+  motion += change * contact.normal;
+  return std::abs(change) * std::sqrt(square);
+}
+
+// Holds the contact where it was when the step began, or as far as the cone lets it; the viscous
+// part is implicit in time.
+double ToolFriction::rub(Contact& contact, double coefficient, Motion& motion) const noexcept {
+  const Along slip = contact.moved + contact.along.transpose() * motion;
+  const Along unheld = slip - contact.weight * contact.held;
+  const double most = coefficient * contact.pressed;
+  Along held = -unheld / contact.weight;
+  const double length = held.norm();
+  if (length > most) {
+    const Along dry = most / length * held;
+    const double viscous = law_.stiffness > 0 ? law_.viscous_rate / law_.stiffness : 0;
+    held = dry - viscous / (1 + viscous * contact.weight) * (unheld + contact.weight * dry);
+  }
+  const Along change = held - contact.held;
+  contact.held = held;
+  motion += contact.along * change;
+  return (contact.along * change).norm();
+}
+
+// True: a contact slides.
+bool ToolFriction::relax(double coefficient, Motion& motion) noexcept {
+  slides_ = false;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    double changed = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      changed += press(contacts_[i], motion);
+      if (contacts_[i].sample >= 0) changed += rub(contacts_[i], coefficient, motion);
+    }
+    if (!(changed > kStill)) break;
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    slides_ = slides_ || slip_of(contacts_[i], motion).norm() > kCreep;
+  }
+  return slides_;
+}
+
+// How far a contact that presses moves along the surface in this step, m.
+ToolFriction::Along ToolFriction::slip_of(const Contact& contact,
+                                          const Motion& motion) const noexcept {
+  if (contact.sample < 0 || !(contact.pressed > 0)) return Along::Zero();
+  return contact.moved + contact.along.transpose() * motion;
+}
+
+void ToolFriction::count_work(const Motion& motion) noexcept {
+  dissipated_ = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const double lost = -contacts_[i].held.dot(slip_of(contacts_[i], motion));
+    dissipated_ += law_.stiffness * std::max(0.0, lost);
+  }
+}
+
+Motion ToolFriction::hold(const Look& look, const LeastMotion& least) noexcept {
+  const bool slid = slides_;
+  place(look, least);
+  Motion motion = look.wanted;
+  for (std::size_t i = 0; i < count_; ++i) {
+    motion += contacts_[i].pressed * contacts_[i].normal;
+    if (contacts_[i].sample >= 0) motion += contacts_[i].along * contacts_[i].held;
+  }
+  const bool at_rest = !slid && !relax(law_.static_coefficient, motion);
+  if (!at_rest) static_cast<void>(relax(law_.dynamic_coefficient, motion));
+  count_work(motion);
+  Motion wanted = look.wanted;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (contacts_[i].sample >= 0) wanted += contacts_[i].along * contacts_[i].held;
+  }
+  return wanted;
+}
+
+Eigen::Vector3d ToolFriction::held(int sample) const noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (contacts_[i].sample == sample) return contacts_[i].axes * contacts_[i].held;
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+}  // namespace palpate

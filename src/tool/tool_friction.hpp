@@ -1,0 +1,84 @@
+// Coulomb friction where the samples of a tool press on a surface.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "contact/probe.hpp"
+#include "palpate/tool/tool_proxy.hpp"
+#include "tool/active_set.hpp"
+
+namespace palpate {
+
+/// Friction's law at every contact of a step (docs/method.md 4.1): each holds the tool back by a
+/// stretch of the spring along the surface, up to what its cone allows. Real-time.
+class ToolFriction {
+ public:
+  /// A step begins at this pose. `law`: of all contacts; without one nothing is held.
+  void begin(const FrictionLaw& law, const Pose& pose) noexcept {
+    law_ = law;
+    start_ = pose;
+    dissipated_ = 0;
+  }
+  /// The tool is free: a new contact begins at rest.
+  void forget() noexcept {
+    count_ = 0;
+    slides_ = false;
+  }
+  [[nodiscard]] bool any() const noexcept { return law_.any(); }
+
+  using Along = Eigen::Vector2d;
+
+  /// A constraint that presses, as the last look found it.
+  struct Contact {
+    int sample = -1;                            ///< -1: of no surface
+    Eigen::Matrix<double, 3, 2> axes;           ///< along the surface, unit
+    Eigen::Matrix<double, kFreedoms, 2> along;  ///< how motions move it along them
+    Along moved = Along::Zero();                ///< in the step before that look, m
+    Along held = Along::Zero();                 ///< stretch, m
+    Motion normal = Motion::Zero();
+    double bound = 0;
+    double pressed = 0;  ///< multiplier of the normal, m
+    double weight = 1;   ///< bounds the eigenvalues of along^T along
+  };
+
+  /// What a tool tries to do in one look.
+  struct Look {
+    const Tool& tool;
+    const Metric& metric;
+    const Pose& pose;
+    std::span<const Constraint> constraints;
+    Motion wanted;  ///< from the pose to the hand
+  };
+  /// The wanted motion with what friction holds of it, of contacts that press without friction as
+  /// `least` has them.
+  [[nodiscard]] Motion hold(const Look& look, const LeastMotion& least) noexcept;
+
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept {
+    return std::span(contacts_).first(count_);
+  }
+  /// Of this step so far, J; of a spring with the law's stiffness.
+  [[nodiscard]] double dissipated() const noexcept { return dissipated_; }
+  /// Did a contact slide in this step?
+  [[nodiscard]] bool slides() const noexcept { return slides_; }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d held(int sample) const noexcept;
+  void place(const Look& look, const LeastMotion& least) noexcept;
+  [[nodiscard]] Contact contact_of(const Look& look, const Constraint& constraint) const noexcept;
+  [[nodiscard]] bool relax(double coefficient, Motion& motion) noexcept;
+  [[nodiscard]] double press(Contact& contact, Motion& motion) const noexcept;
+  [[nodiscard]] double rub(Contact& contact, double coefficient, Motion& motion) const noexcept;
+  [[nodiscard]] Along slip_of(const Contact& contact, const Motion& motion) const noexcept;
+  void count_work(const Motion& motion) noexcept;
+
+  FrictionLaw law_;
+  Pose start_;
+  std::array<Contact, ToolContact::kMostTouches> contacts_;
+  std::size_t count_ = 0;
+  double dissipated_ = 0;
+  bool slides_ = false;
+};
+
+}  // namespace palpate
