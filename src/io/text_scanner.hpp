@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/parse_number.hpp"
 #include "io/input.hpp"
 
 namespace palpate::io {
@@ -119,23 +119,8 @@ class TextScanner {
 /// none.
 [[nodiscard]] std::string unused(std::size_t count);
 
-/// A whole token as a number, in the C locale whatever the user's is; "nan" and "inf" count, a
-/// leading plus too, Fortran's "1.5D+03", and "1.#QNAN", "-1.#IND" and "1.#INF" of Microsoft's,
-/// which are all not finite. What is too large for a double becomes infinite, what is too small
-/// zero.
-[[nodiscard]] std::optional<double> parse_number(std::string_view token);
-
-/// Does what std::from_chars() does for a double, by strtod(): C++ libraries have had the former
-/// late.
-std::from_chars_result number_by_strtod(std::string_view text, double& value);
-
 /// A whole token as a count.
 [[nodiscard]] std::optional<std::size_t> parse_count(std::string_view token);
-
-/// White space of the C locale.
-[[nodiscard]] constexpr bool is_space(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
 
 /// `text` without white space (and CR) around it.
 [[nodiscard]] std::string_view trim(std::string_view text);

@@ -58,7 +58,7 @@ std::string_view separator_of(std::string_view header) {
 }
 
 std::optional<double> number(std::string_view text) {
-  const std::optional<double> value = io::parse_number(text);
+  const std::optional<double> value = parse_number(text);
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 

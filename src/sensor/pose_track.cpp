@@ -53,7 +53,7 @@ namespace {
 constexpr std::string_view kRemedy = "Correct this line, or write the list again";
 
 std::optional<ListedFrame> take_frame(std::string_view& line) {
-  const std::optional<double> stamp = io::parse_number(io::take_word(line));
+  const std::optional<double> stamp = parse_number(io::take_word(line));
   const std::string_view image = io::take_word(line);
   if (!stamp || !std::isfinite(*stamp) || image.empty()) return {};
   return ListedFrame{*stamp, std::string(image)};
@@ -125,7 +125,7 @@ template <std::size_t N>
 std::optional<std::array<double, N>> numbers(std::string_view line) {
   std::array<double, N> values{};
   for (double& value : values) {
-    const std::optional<double> number = io::parse_number(take_word(line));
+    const std::optional<double> number = parse_number(take_word(line));
     if (!number) return {};
     value = *number;
   }

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/parse_number.hpp"
 #include "io/file_bytes.hpp"
 #include "io/input.hpp"
-#include "io/text_scanner.hpp"
 #include "io/time_unit.hpp"
 #include "palpate/base/error.hpp"
 #include "sensor/frame_files.hpp"
@@ -104,7 +104,7 @@ void check_stamps(const fs::path& folder, const std::vector<double>& stamps, std
 std::optional<double> time_in_name(const fs::path& frame) {
   const std::string name = frame.stem().string();
   const bool digits = name.find_first_not_of("0123456789.-e") == std::string::npos;
-  const std::optional<double> time = io::parse_number(name);
+  const std::optional<double> time = parse_number(name);
   if (!is_cloud(frame) || !digits || !time || !std::isfinite(*time)) return std::nullopt;
   if (name.find('.') != std::string::npos) return time;
   const bool since_1970 = name.size() == 16 || name.size() == 19;

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/numbers.hpp"
-#include "io/text_scanner.hpp"
+#include "base/parse_number.hpp"
 #include "palpate/base/error.hpp"
 #include "sim/simulated_camera.hpp"
 
@@ -18,7 +18,7 @@ namespace {
 constexpr double kMostWhole = 1e6;  // largest whole number (judgement)
 
 double number(const std::string& text) {
-  const std::optional<double> value = io::parse_number(text);
+  const std::optional<double> value = parse_number(text);
   if (!value || !std::isfinite(*value)) {
     throw Error(fmt::format("'{}' is not a finite number", text));
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
+#include "base/parse_number.hpp"
 #include "base/requirement.hpp"
 #include "palpate/tool/tool.hpp"
 
@@ -70,26 +70,6 @@ void add_ring(Samples& samples, double radius, double spacing, const Vector3d& c
   }
 }
 
-// A decimal number above 0 without a sign or an exponent.
-std::optional<double> size_of(std::string_view text) {
-  double digits = 0;
-  double unit = 0;  // of the last digit; 0: before the point
-  bool any = false;
-  for (const char c : text) {
-    if (c == '.' && unit == 0) {
-      unit = 1;
-    } else if (c >= '0' && c <= '9') {
-      any = true;
-      digits = 10 * digits + (c - '0');
-      unit /= 10;
-    } else {
-      return std::nullopt;
-    }
-  }
-  if (!any || !(digits > 0)) return std::nullopt;
-  return unit > 0 ? digits * unit : digits;
-}
-
 // A name, how many sizes follow it, and how errors write them.
 struct Shape {
   std::string_view name;
@@ -119,7 +99,7 @@ std::vector<double> sizes_of(std::string_view text, const Shape& shape) {
   std::size_t begin = shape.name.size();
   while (begin < text.size()) {
     const std::size_t end = std::min(text.find('x', ++begin), text.size());
-    const double size = kMillimetre * size_of(text.substr(begin, end - begin)).value_or(0);
+    const double size = kMillimetre * parse_number(text.substr(begin, end - begin)).value_or(0);
     if (!(size > 0 && size <= Tool::kLongest)) sizes.resize(shape.sizes);  // one too many follows
     sizes.push_back(size);
     begin = end;

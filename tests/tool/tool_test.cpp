@@ -254,6 +254,7 @@ TEST(Tool, RefusesSamplesThatAreNone) {
 TEST(ToolText, NamesShapesAndTheirSizesInMillimetres) {
   EXPECT_NEAR(Tool::from_text("ball:3.5", kSpacing).extent(), 3.5e-3, 1e-15);
   EXPECT_NEAR(Tool::from_text("capsule:50x4", kSpacing).extent(), 0.054, 1e-15);
+  EXPECT_NEAR(Tool::from_text("capsule:.5e2x+4", kSpacing).extent(), 0.054, 1e-15);
   EXPECT_NEAR(Tool::from_text("cylinder:60x40", kSpacing).extent(), 0.05, 1e-15);
   expect_box(Tool::from_text("box:20x30x5", kSpacing), {0.02, 0.03, 0.005}, Vector3d::Zero(),
              kSpacing);
@@ -268,8 +269,8 @@ TEST(ToolText, SaysWhatIsWrongAndHowToWriteIt) {
               HasSubstr("\"bowl:3\" is no shape; give one of ball:R, capsule:LxR"));
   EXPECT_THAT(error(""), HasSubstr("is no shape"));
   for (const char* text : {"box:20x30", "box:20x30x5x1", "box:20x30x", "box:20xx5", "box:20x30x5mm",
-                           "box", "box:", "box:20x-30x5", "box:1e3x3x4", "box:0x3x4", "box:.x3x4",
-                           "box:1.2.3x3x4", "box:20000x3x4"}) {
+                           "box", "box:", "box:20x-30x5", "box:0x3x4", "box:.x3x4", "box:nanx3x4",
+                           "box:infx3x4", "box:1.2.3x3x4", "box:20000x3x4"}) {
     EXPECT_THAT(error(text), HasSubstr("give box:XxYxZ in millimetres")) << text;
   }
   EXPECT_THAT(error("ball:0"), HasSubstr("give ball:R in millimetres, a number above 0"));

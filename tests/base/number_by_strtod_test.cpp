@@ -8,9 +8,9 @@
 #include <random>
 #include <string>
 
-#include "io/text_scanner.hpp"
+#include "base/parse_number.hpp"
 
-namespace palpate::io {
+namespace palpate::test {
 namespace {
 
 struct Text {
@@ -106,4 +106,4 @@ TEST(NumberByStrtod, RoundsAsParsedNumbersAre) {
 }
 
 }  // namespace
-}  // namespace palpate::io
+}  // namespace palpate::test
