@@ -9,6 +9,7 @@
 
 #include "base/requirement.hpp"
 #include "device/explore.hpp"
+#include "device/explored_tool.hpp"
 #include "field/formulas.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
@@ -196,6 +197,7 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   const double felt = plan.workspace.felt_stiffness(plan.stiffness);
   strokes.depth = plan.depth * (1 + felt / options.hand.stiffness);
   strokes.offset = offset(field, all, options.tool_radius);
+  strokes.tool = options.tool;
   strokes.region = plan.region;
   strokes.slide_speed = scale * std::clamp(0.5 * plan.region / scale, 0.05, 0.2);
   strokes.travel_speed = scale * std::clamp(plan.region / scale, 0.1, 0.3);
@@ -223,14 +225,15 @@ Placement place_device(const Scene& scene, const FieldOptions& field,
   const ExploredSurface surface = all.view();
   const Extent extent = extent_of(all, options);
   const std::size_t point = standing_point(surface);
-  const double height = offset(field, all, options.tool_radius) + kStandoff * extent.scale;
+  const Vector3d normal = normal_at(surface, point).cast<double>();
+  const double reach = ExploredTool(options.tool).reach(normal);
+  const double height = offset(field, all, options.tool_radius) + reach + kStandoff * extent.scale;
   Placement placement;
   placement.region = extent.region;
   placement.stiffness = extent.stiffness;
   placement.workspace.scale = extent.scale;
   placement.workspace.T_world_device.translation() =
-      surface.origin + surface.points[point].cast<double>() +
-      height * normal_at(surface, point).cast<double>();
+      surface.origin + surface.points[point].cast<double>() + height * normal;
   return placement;
 }
 

@@ -10,6 +10,8 @@
 
 #include "base/numbers.hpp"
 #include "base/requirement.hpp"
+#include "device/explored_tool.hpp"
+#include "device/stroke_player.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
@@ -20,11 +22,11 @@ using Eigen::Vector3d;
 
 // R above the rendered surface where the hand moves freely (judgement)
 constexpr double kClearance = 2.5;
+constexpr double kRoom = 0.5;     // R that a tool has around it there (judgement)
 constexpr double kStep = 0.25;    // R between positions of a stroke (judgement)
 constexpr double kStroke = 0.6;   // longest stroke, share of the region's extent (judgement)
 constexpr double kLongest = 1.2;  // s; longest stroke (judgement)
 constexpr double kDwell = 0.1;    // s at rest before and after a stroke (judgement)
-constexpr double kRamp = 0.2;     // share of a move spent speeding up, and slowing down (judgement)
 // Share of the extent: a start so far from all touched positions is far enough (judgement)
 constexpr double kFresh = 0.3;
 constexpr double kNear = 0.3;    // weight of the path there against that distance (judgement)
@@ -32,64 +34,12 @@ constexpr int kCandidates = 24;  // start positions compared for a stroke (judge
 constexpr int kTries = 8;        // strokes tried until a free path leads to one (judgement)
 constexpr int kDirections = 4;   // directions tried from a start (judgement)
 
-// Share of a move's path that is done after share u of its time: speed rises and falls as a cosine.
-double progress(double u) {
-  const auto ramp = [](double v) {
-    return 0.5 * (v - kRamp / std::numbers::pi * std::sin(std::numbers::pi * v / kRamp));
-  };
-  if (u < kRamp) return ramp(u) / (1 - kRamp);
-  if (u > 1 - kRamp) return 1 - ramp(1 - u) / (1 - kRamp);
-  return (u - kRamp / 2) / (1 - kRamp);
-}
-
-// Writes rows while moves are appended, until the time is over.
-class Player {
- public:
-  Player(const Vector3d& origin, const StrokeOptions& options)
-      : origin_(origin), options_(options) {}
-
-  [[nodiscard]] bool over() const { return time() > options_.duration; }
-  [[nodiscard]] double share() const { return std::min(1.0, time() / options_.duration); }
-
-  void dwell(const Vector3d& position, double seconds) {
-    const double end = time() + seconds;
-    while (time() < end && !over()) add(position);
-  }
-
-  void move(const std::vector<Vector3d>& path, double speed) {
-    std::vector<double> lengths(1, 0.0);
-    for (std::size_t i = 1; i < path.size(); ++i) {
-      lengths.push_back(lengths.back() + (path[i] - path[i - 1]).norm());
-    }
-    if (lengths.back() <= 0) return;
-    const double seconds = lengths.back() / (speed * (1 - kRamp));
-    const double start = time();
-    std::size_t k = 1;
-    while (time() < start + seconds && !over()) {
-      const double done = progress((time() - start) / seconds) * lengths.back();
-      while (k + 1 < path.size() && lengths[k] < done) ++k;
-      const double length = lengths[k] - lengths[k - 1];
-      const double part = length > 0 ? std::clamp((done - lengths[k - 1]) / length, 0.0, 1.0) : 1.0;
-      add(path[k - 1] + part * (path[k] - path[k - 1]));
-    }
-  }
-
-  [[nodiscard]] double time() const { return static_cast<double>(rows_.size()) * options_.period; }
-  Trajectory take() { return std::move(rows_); }
-
- private:
-  void add(const Vector3d& position) { rows_.push_back({time(), origin_ + position}); }
-
-  Vector3d origin_;
-  StrokeOptions options_;
-  Trajectory rows_;
-};
-
 class Explorer {
  public:
   Explorer(const ExploredSurface& surface, const StrokeOptions& options)
       : options_(options),
         map_(surface, options.region, options.radius),
+        tool_(options.tool),
         random_(options.seed),
         player_(surface.origin, options) {}
 
@@ -121,11 +71,12 @@ class Explorer {
   };
 
   [[nodiscard]] double clearance() const { return options_.offset + kClearance * options_.radius; }
-  [[nodiscard]] Vector3d above(const MapSample& s) const {
-    return s.position + clearance() * s.normal;
+  [[nodiscard]] Vector3d over(const MapSample& s, double height) const {
+    return s.position + (height + tool_.reach(s.normal)) * s.normal;
   }
+  [[nodiscard]] Vector3d above(const MapSample& s) const { return over(s, clearance()); }
   [[nodiscard]] Vector3d under(const MapSample& s, double depth) const {
-    return s.position + (options_.offset - depth) * s.normal;
+    return over(s, options_.offset - depth);
   }
 
   // Can the hand leave the surface here without meeting it again? Not from inside a closed object.
@@ -139,6 +90,10 @@ class Explorer {
       d += step * (1 + std::floor(room / step));  // nothing can be near before
     }
     return true;
+  }
+
+  [[nodiscard]] bool fits(const MapSample& s) const {
+    return tool_.fits(map_, above(s), kRoom * options_.radius);
   }
 
   // Down along the normal, along the stroke with the depth going up and down, and off again.
@@ -194,7 +149,7 @@ class Explorer {
       const auto k = static_cast<std::size_t>(random_.uniform() * static_cast<double>(map_.size()));
       const MapSample sample = map_.at(map_.point(k));
       if (sample.normal.isZero() || !map_.inside(sample.position)) continue;
-      if (i < 4 * kCandidates && !open(sample)) continue;
+      if (i < 4 * kCandidates && !(open(sample) && fits(sample))) continue;
       ++seen;
       const double score = score_of(sample.position, here, highest);
       if (score > highest) {
@@ -207,8 +162,7 @@ class Explorer {
     return {map_.point(0), Vector3d::UnitZ()};
   }
 
-  // Along the surface until its points end or the stroke is long enough, and back to a position
-  // where the hand can leave.
+  // Along the surface while it goes on, not too far, and back to where the hand can leave.
   [[nodiscard]] std::vector<MapSample> follow(const MapSample& start, Vector3d direction) const {
     const double step = kStep * options_.radius;
     const double longest = std::min(kStroke * map_.extent(), kLongest * options_.slide_speed);
@@ -270,8 +224,9 @@ class Explorer {
 
   StrokeOptions options_;
   SurfaceMap map_;
+  ExploredTool tool_;
   Random random_;
-  Player player_;
+  StrokePlayer player_;
   std::vector<Vector3d> touched_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "palpate/device/simulated.hpp"
 #include "palpate/geometry/cell_grid.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/io/trajectory.hpp"
 
 namespace palpate {
@@ -74,7 +75,8 @@ struct StrokeOptions {
   double region = 0.3;         ///< largest extent of the region that is explored, m; > 0
   double slide_speed = 0.1;    ///< m/s
   double travel_speed = 0.25;  ///< m/s, through free space
-  std::uint64_t seed = 1;      ///< of the random choice of positions and directions
+  std::vector<Ball> tool = {};  ///< a tool that turns, from its handle on, m; empty: a point
+  std::uint64_t seed = 1;       ///< of the random choice of positions and directions
   std::function<void(double)> progress = {};  ///< called with the share done, 0 to 1
 };
 

@@ -12,6 +12,7 @@
 #include "io/file_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
+#include "io/mesh/triangles.hpp"
 #include "io/potree/potree.hpp"
 #include "io/splats/splats.hpp"
 #include "io/whole_store.hpp"
@@ -75,7 +76,7 @@ Bytes unpack(const Input& input, const std::string& inside) {
 
 // Makes the cloud as long as the caller states.
 void fit_length(const Input& input, CloudFile& file) {
-  if (!input.options.length) return;
+  if (!input.options.length || file.cloud.empty()) return;
   constexpr std::size_t kOutermost = 200;  // one point in so many, at either end (judgement)
   const PointCloud& cloud = file.cloud;
   const Box inner = detail::inner_box(cloud.positions, cloud.size() / kOutermost);
@@ -100,8 +101,8 @@ Input without_mark(const Input& input) {
 
 CloudFile read_packed(const Input& input) {
   const Bytes unpacked = unpack(input, name_inside(input.name));
-  const Input inside =
-      without_mark({unpacked.span(), name_inside(input.name), input.options, input.folder});
+  const Input inside = without_mark(
+      {unpacked.span(), name_inside(input.name), input.options, input.folder, input.faces});
   CloudFile file = read_kind(inside, kind_of(inside));
   file.format += ", gzip";
   return file;
@@ -157,6 +158,20 @@ CloudFile read_cloud_file(const std::filesystem::path& path, const ReadOptions& 
 
 PointCloud read_cloud(const std::filesystem::path& path, const ReadOptions& options) {
   return read_cloud_file(path, options).cloud;
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+  const bool piped = path == "-";
+  try {
+    Mesh faces;
+    const Bytes bytes = read_bytes(path);
+    const Input input{bytes.span(), piped ? "standard input" : path.string(), options,
+                      path.parent_path() / ".", &faces};
+    std::string format = read_input(input).format;
+    return triangles_of(input, faces, std::move(format));
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string() + ": not enough memory to read it. Simplify the mesh first.");
+  }
 }
 
 std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path) {

@@ -12,12 +12,15 @@
 
 namespace palpate::io {
 
+struct Mesh;
+
 /// Input of every reader: bytes, their name for messages, and the caller's options.
 struct Input {
   std::span<const std::byte> bytes;
   std::string name;
   const ReadOptions& options;
   std::filesystem::path folder{};  ///< of the file, where others may lie beside it; empty: none
+  Mesh* faces = nullptr;  ///< takes the file's faces, which then become no points; null: they do
 
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

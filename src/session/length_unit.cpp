@@ -118,13 +118,16 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   return {"metres", size + ", plausible for an object or a room in metres", ""};
 }
 
-double likely_unit(const CloudFile& file) {
+double likely_unit(std::string_view format, double extent) {
   constexpr double kShortest = 1;
   constexpr double kLongest = 2000;
-  const bool unitless = file.format.starts_with("STL") || file.format.starts_with("OBJ");
-  if (!unitless || !file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
-  const double extent = core_of(file.cloud).size().maxCoeff();
-  return extent >= kShortest && extent <= kLongest ? 0.001 : 1;
+  const bool unitless = format.starts_with("STL") || format.starts_with("OBJ");
+  return unitless && extent >= kShortest && extent <= kLongest ? 0.001 : 1;
+}
+
+double likely_unit(const CloudFile& file) {
+  if (!file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
+  return likely_unit(file.format, core_of(file.cloud).size().maxCoeff());
 }
 
 UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {

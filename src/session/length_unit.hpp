@@ -34,6 +34,8 @@ inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
 /// state none, where the longest side is 1 to 2000; else 1. Those who draw meshes for printers and
 /// machines draw in millimetres: shorter is no part, and longer no machine's.
 [[nodiscard]] double likely_unit(const CloudFile& file);
+/// The same of faces in a file of that format, whose longest side is `extent`, in its unit.
+[[nodiscard]] double likely_unit(std::string_view format, double extent);
 
 /// Guesses from coordinates as read, in what is taken for metres.
 [[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);

@@ -125,6 +125,7 @@ ViewScope scope_of(const Scene& scene, double scale, const std::vector<Servo*>& 
   scope.stiffest = kSteadyStiffness / scale;
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
+    scope.turns = scope.turns || servo->options().tool;
   }
   const double deepest = deepest_texture(scene);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
@@ -138,9 +139,11 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
       choice("field", "Surface", names_of(kFields), name_in(kFields, settings.field.kind)));
   list.push_back(number("stiffness", "Stiffness", "N/m", 0, scope.stiffest,
                         round_step(scope.stiffest / kSliderSteps), settings.feel.stiffness));
-  list.push_back(
-      number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
-  if (scope.deepest_texture > 0) {
+  if (!scope.turns) {
+    list.push_back(number("friction", "Friction", "", 0, 1.5, 0.05,
+                          settings.feel.friction.dynamic_coefficient));
+  }
+  if (!scope.turns && scope.deepest_texture > 0) {
     list.push_back(length_setting("texture", "Texture", unit, scope.deepest_texture,
                                   settings.feel.texture.amplitude));
     list.push_back(
@@ -189,8 +192,9 @@ void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
   }
 }
 
-std::vector<std::string> preset_names() {
-  std::vector<std::string> names = {"default", "paper"};
+std::vector<std::string> preset_names(bool turns) {
+  std::vector<std::string> names = {"default"};
+  if (!turns) names.emplace_back("paper");
   for (const Material& each : kMaterials) names.emplace_back(each.name);
   return names;
 }
@@ -205,6 +209,10 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
     make_paper(result);
   } else if (name != "default") {
     throw Error(fmt::format("unknown preset '{}'", name));
+  }
+  if (scope.turns) {
+    set_friction(feel, 0);
+    feel.texture.amplitude = 0;
   }
   feel.stiffness = std::min(feel.stiffness, scope.stiffest);
   feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);

@@ -41,6 +41,7 @@ struct ViewScope {
   bool lives = false;          ///< frames or clouds follow one another in time
   bool depth = false;          ///< ... and are depth images
   bool clouds = false;         ///< clouds are prepared here
+  bool turns = false;          ///< a hand holds a tool that turns: no friction, no texture
 };
 
 /// What `scene` and `servos` allow to be felt, at so many world metres of a metre of the hand; what
@@ -56,8 +57,8 @@ struct ViewScope {
 void set(ViewSettings& settings, const ViewScope& scope, const std::string& key,
          const Setting::Value& value);
 
-/// The names that preset() accepts.
-[[nodiscard]] std::vector<std::string> preset_names();
+/// The names that preset() accepts. `turns`: of hands that hold a tool that turns.
+[[nodiscard]] std::vector<std::string> preset_names(bool turns = false);
 
 /// What a run began with, but for what the preset of that name sets, within the bounds of `scope`.
 /// @throws Error when there is none.

@@ -46,6 +46,13 @@ TEST(LiveStatus, TellsPaceForceAndStreamsInOneLine) {
   EXPECT_FALSE(contains(words, "dropped"));
   EXPECT_FALSE(contains(words, "FAULT"));
   EXPECT_FALSE(contains(words, "hand 1"));
+  EXPECT_FALSE(contains(words, "torque"));
+}
+
+TEST(LiveStatus, TellsTheTorqueOfAToolThatTurns) {
+  LiveMoment moment = second();
+  moment.hands[0].servo.wrench.torque = {0.03, 0, 0.04};
+  EXPECT_TRUE(contains(in_words(moment), "torque 0.050 N m"));
 }
 
 TEST(LiveStatus, TellsWhatIsWrong) {

@@ -7,9 +7,10 @@
 namespace palpate::app {
 namespace {
 
-std::string logged(const std::vector<ServoState>& steps, const DeviceInfo& device = {}) {
+std::string logged(const std::vector<ServoState>& steps, const DeviceInfo& device = {},
+                   bool turns = false) {
   const Shell shell;
-  TouchLog log(shell.path("log.csv"));
+  TouchLog log(shell.path("log.csv"), turns);
   for (const ServoState& step : steps) log.add(step, device);
   log.close();
   return shell.read("log.csv");
@@ -39,6 +40,20 @@ TEST(TouchLog, TellsOrientationAndGripperAtTheEndWhereTheyAreKnown) {
   const std::string text = logged({step}, device);
   EXPECT_TRUE(text.ends_with(",0,-0.8,0,0.6,0.0125\n")) << text;
   EXPECT_EQ(columns(text).at("gripper").front(), "0.0125");
+}
+
+TEST(TouchLog, OfAToolThatTurnsHasItsPoseAndTheWrenchAtTheEnd) {
+  ServoState step;
+  step.gripper = 0.03;
+  step.tool.orientation = Eigen::Quaterniond(0.6, 0, 0, 0.8);
+  step.tool.opening = 0.02;
+  step.wrench.torque = {0.25, -0.5, 0.125};
+  step.wrench.grip = 5;
+  const std::string text = logged({step}, {}, true);
+  EXPECT_TRUE(text.ends_with(",0,0,0,1,0.03,0,0,0.8,0.6,0.02,0.25,-0.5,0.125,5\n")) << text;
+  EXPECT_EQ(columns(text).at("torque_y").front(), "-0.5");
+  EXPECT_EQ(columns(text).at("grip").front(), "5");
+  EXPECT_TRUE(logged({}, {}, true).ends_with(",torque_z,grip\n"));
 }
 
 }  // namespace

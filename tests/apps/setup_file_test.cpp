@@ -141,7 +141,7 @@ TEST(SetupFile, EveryPartAndKeyIsDocumented) {
     EXPECT_NE(text.find("`" + each.key() + "`"), std::string::npos) << each.key();
   }
   EXPECT_EQ(sections, (std::set<std::string>{"reading", "stream", "surface", "material", "hand",
-                                             "guard", "servo", "ros"}));
+                                             "tool", "guard", "servo", "ros"}));
   EXPECT_EQ(of_sources, 22);
 }
 

@@ -26,6 +26,17 @@ TEST(TouchStatistics, EnergyOfAConstantForceIsForceTimesWay) {
   EXPECT_NEAR(statistics.path_energy(), 0.2, 1e-15);
 }
 
+TEST(TouchStatistics, KeepsTheLongestTorqueAndGrip) {
+  TouchStatistics statistics;
+  ServoState pressed = step(0, Vector3d::Zero(), {0, 0, 1});
+  pressed.wrench.torque = {0.3, 0, -0.4};
+  pressed.wrench.grip = -2;
+  statistics.add(pressed);
+  statistics.add(step(1, Vector3d::Zero(), {0, 0, 1}));
+  EXPECT_DOUBLE_EQ(statistics.largest_torque(), 0.5);
+  EXPECT_EQ(statistics.largest_grip(), 2);
+}
+
 TEST(TouchStatistics, SpringGivesBackWhatItTookAlongThePath) {
   TouchStatistics statistics;
   for (int i = 0; i <= 1000; ++i) {

@@ -51,6 +51,27 @@ TEST(Exploration, PressesIntoASphereToTheDepthWantedAndNotDeeper) {
   EXPECT_LT(share, 0.9);
 }
 
+TEST(Exploration, AToolIsHeldAsFarOffAsItReachesAgainstTheSurface) {
+  const PointCloud cloud = synthetic_cloud("sphere");
+  const double depth = 2e-3;
+  // A box that is 20 mm high and 10 mm wide: a corner is farthest against most normals.
+  std::vector<Ball> box;
+  for (int i = 0; i < 8; ++i) {
+    box.push_back({{5e-3 - 1e-2 * (i & 1), 5e-3 - 1e-2 * (i >> 1 & 1), 10e-3 - 2e-2 * (i >> 2)}});
+  }
+  const auto reach = [](const Vector3d& n) {
+    return 5e-3 * std::abs(n.x()) + 5e-3 * std::abs(n.y()) + 10e-3 * std::abs(n.z());
+  };
+  const StrokeOptions options{
+      .duration = 6, .radius = 5e-3, .depth = depth, .region = 1, .tool = box};
+  double deepest = 1;
+  for (const TrajectoryRow& row : explore(view(cloud), options)) {
+    const double height = row.position.norm() - 0.06;
+    deepest = std::min(deepest, height - reach(row.position.normalized()));
+  }
+  EXPECT_NEAR(deepest, -depth, 4e-4);
+}
+
 TEST(Exploration, SlidesOverAGoodPartOfTheObject) {
   const PointCloud cloud = synthetic_cloud("bumps");
   const Trajectory rows =

@@ -45,7 +45,7 @@ FLOORS = CORE | {
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",
             "sensor", "device", "servo"},
     "apps": {"base", "geometry", "depth", "io", "tile", "message", "bag", "field", "contact", "prepare", "align",
-             "scene", "stream", "sensor", "device", "servo", "ros", "viewer", "session"},
+             "scene", "tool", "stream", "sensor", "device", "servo", "ros", "viewer", "session"},
     "python": {"base", "geometry", "depth", "io", "field", "contact", "prepare", "scene", "tool", "sensor", "device", "servo"},
 }
 # The files of two floors from the first step on: what stands in one line sees what stands above it.

@@ -57,6 +57,24 @@ TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   }
 }
 
+TEST(ViewSettings, OfAToolThatTurnsThereIsNoFrictionNoTextureAndNoPaper) {
+  ViewScope scope = kAll;
+  scope.turns = true;
+  for (const char* key : {"friction", "texture", "wavelength"}) {
+    EXPECT_NE(find(list_settings({}, kAll), key), nullptr) << key;
+    EXPECT_EQ(find(list_settings({}, scope), key), nullptr) << key;
+  }
+  const std::vector<std::string> names = preset_names(true);
+  EXPECT_EQ(std::ranges::count(names, "paper"), 0);
+  EXPECT_EQ(names.size() + 1, preset_names().size());
+  for (const std::string& name : names) {
+    const ContactSettings feel = preset({}, name, scope).feel;
+    EXPECT_EQ(feel.friction.dynamic_coefficient, 0) << name;
+    EXPECT_EQ(feel.friction.static_coefficient, 0) << name;
+    EXPECT_EQ(feel.texture.amplitude, 0) << name;
+  }
+}
+
 TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {
   const std::vector<Setting> list = list_settings({}, {.clouds = true});
   EXPECT_EQ(find(list, "policy"), nullptr);

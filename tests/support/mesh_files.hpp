@@ -8,12 +8,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/put.hpp"
 
 namespace palpate::test {
 
@@ -131,14 +132,6 @@ inline std::string as_stl_text(const TestMesh& mesh) {
     text += "  endloop\n endfacet\n";
   }
   return text + "endsolid thing\n";
-}
-
-/// Appends numbers as little endian bytes.
-template <class T>
-void put(std::string& out, T value) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), &value, sizeof(T));
-  out.append(bytes.data(), bytes.size());
 }
 
 inline void put(std::string& out, const Eigen::Vector3d& v) {

@@ -7,22 +7,15 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "extras/splats/splat_shell.hpp"
+#include "support/put.hpp"
 
 namespace palpate::test {
-
-template <class T>
-void put(std::string& out, T value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  out.append(bytes, sizeof(T));
-}
 
 inline void put_byte(std::string& out, double value) {
   put(out, static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))));

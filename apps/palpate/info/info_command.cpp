@@ -94,6 +94,7 @@ constexpr const char* kInfoFooter = R"(Examples:
   palpate info depth.png --intrinsics 525,525,319.5,239.5
   palpate info - < scan.pcd
   palpate info sequence:recording camera:openni2
+  palpate info bunny.ply --tool box:20x30x10
 
 docs/touch.md explains each line of the report.
 
@@ -234,10 +235,11 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
   command
       .add_option("clouds", options.clouds,
                   wrapped(cloud_help() + "; or a camera or sequence as for touch"))
-      ->required()
       ->type_name("CLOUD");
   OptionTable table(command);
   add_reading_options(table, options.reading);
+  table.under("Tool");
+  add_tool_shape(table, options.tool);
   add_json_option(command, options.json)->group("Output");
   command
       .add_option("--picture", options.picture,
@@ -255,6 +257,11 @@ void add_info_options(CLI::App& command, InfoOptions& options) {
 }
 
 void info(const InfoOptions& options) {
+  const ToolPlan& tool = options.tool;
+  require(tool.turns() || !options.clouds.empty(), "clouds is required, or a --tool");
+  require(tool.turns() || !tool.spacing, "--tool-spacing is of a tool that turns; add --tool");
+  require(!options.clouds.empty() || (options.picture.empty() && options.write.empty()),
+          "--picture and --write need a cloud; name one");
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
   const std::vector<CloudArgument> arguments = clouds_of(options);
   std::vector<TrustPicture> pictures = pictures_of(arguments, options);
@@ -274,7 +281,13 @@ void info(const InfoOptions& options) {
     add_study(report, info);
     report.print(out);
     advice_of(info).print(out);
+    if (tool.turns()) report_tool(report, tool, info.prepared.radius, out);
     print_map(info.loaded.file.cloud, out);
+    clouds.push_back(report.data);
+  }
+  if (arguments.empty()) {
+    Report report("", "");
+    report_tool(report, tool, 0, out);
     clouds.push_back(report.data);
   }
   write_whole(options.json, text_of(clouds));

@@ -1,11 +1,13 @@
 // The command info, and what it finds out.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/options/tool_options.hpp"
 #include "apps/palpate/report/source_report.hpp"
 #include "apps/palpate/sources/cloud_facts.hpp"
 #include "apps/palpate/sources/load.hpp"
@@ -23,6 +25,7 @@ namespace palpate::app {
 /// The command line of `palpate info`.
 struct InfoOptions {
   std::vector<std::string> clouds;
+  ToolPlan tool;
   FileReading reading;
   std::string json;
   std::string picture;  ///< of several clouds the first one's: numbered_path()
@@ -75,6 +78,10 @@ struct InfoReport {
 
 /// Adds what a study found.
 void add_study(Report& report, const InfoReport& info);
+
+/// Prints what a tool is on a surface whose support radius is `radius` (m; 0: it is unknown), and
+/// adds it to the data of `report`. @throws Error as NamedTool does.
+void report_tool(Report& report, const ToolPlan& tool, double radius, std::FILE* out);
 
 /// What touch() would do by default, in the words of its options.
 [[nodiscard]] Report advice_of(const InfoReport& report);

@@ -7,7 +7,10 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/info/info_command.hpp"
 #include "apps/palpate/report/source_report.hpp"
+#include "apps/palpate/report/tool_report.hpp"
 #include "palpate/depth/depth_filter.hpp"
+#include "palpate/servo/guard.hpp"
+#include "palpate/servo/z_width.hpp"
 
 namespace palpate::app {
 
@@ -160,6 +163,22 @@ void add_study(Report& report, const InfoReport& info) {
                            {"radius_smallest_m", r.radius_smallest},
                            {"radius_largest_m", r.radius_largest},
                            {"points_felt", r.points_out}};
+}
+
+void report_tool(Report& report, const ToolPlan& plan, double radius, std::FILE* out) {
+  constexpr double kStiffness = 500;  // N/m of a surface, as touch has it by default
+  constexpr double kPeriod = 1e-3;    // s; a device of 1 kHz whose force comes a step late
+  const SampledTool tool = NamedTool(plan).sampled(radius);
+  Report part("tool", radius > 0 ? "on this cloud" : "");
+  add_tool(part, tool, kStiffness);
+  // Turns are springs as shifts are (docs/method.md 8.1).
+  const double held = GuardOptions().stiffness_share * passive_stiffness(1, kPeriod, kPeriod);
+  part.row("",
+           "a device of 1 kHz renders these turns with {tool/angular_damping_Nms_per_rad} "
+           "N m s/rad of damping and more",
+           tool.turns_with(kStiffness) / held);
+  part.print(out);
+  report.data.update(part.data);
 }
 
 Report advice_of(const InfoReport& info) {

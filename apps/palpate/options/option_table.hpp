@@ -18,7 +18,17 @@
 namespace palpate::app {
 
 /// What a key of a set-up file holds.
-enum class KeyKind { text, texts, path, number, integer, flag, numbers, numbers_or_text };
+enum class KeyKind {
+  text,
+  texts,
+  path,
+  mesh_or_text,
+  number,
+  integer,
+  flag,
+  numbers,
+  numbers_or_text
+};
 
 /// One option, and the key of a set-up file that means the same.
 struct Registration {

@@ -40,6 +40,8 @@ struct RunFacts {
   bool played = false;          ///< ... exactly, row by row
   bool has_duration = false;    ///< a hand explores, or has no end of its own
   bool has_rate = false;        ///< a hand's steps a second can be chosen
+  bool turns = false;           ///< the hands hold a tool that turns ...
+  bool points = false;          ///< ... or points
 };
 
 /// The part of a run that an option applies to; a run without it refuses the option.
@@ -52,5 +54,12 @@ struct Scope {
 inline constexpr Scope kGuarded{&RunFacts::guarded,
                                 "applies only to real-time runs; remove it: static sources and "
                                 "--simulated-time use no guard or servo thread"};
+
+/// For what is of a tool that turns.
+inline constexpr Scope kTurns{&RunFacts::turns, "is for a tool that turns; add --tool"};
+/// For what a tool that turns does not render.
+inline constexpr Scope kPoints{&RunFacts::points,
+                               "is for a point; a tool that turns does not have it: remove it or "
+                               "--tool"};
 
 }  // namespace palpate::app

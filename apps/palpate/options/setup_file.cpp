@@ -10,6 +10,7 @@
 #include "apps/palpate/cli/arguments.hpp"
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/options/option_table.hpp"
+#include "apps/palpate/options/tool_options.hpp"
 #include "apps/palpate/options/touch_options.hpp"
 #include "palpate/base/error.hpp"
 
@@ -91,7 +92,7 @@ toml::table SetupFile::parse() const {
 }
 
 std::string SetupFile::resolved(const std::string& path) const {
-  for (const std::string_view recorded : {kSequence, kBag}) {
+  for (const std::string_view recorded : {kSequence, kBag, kMeshTool}) {
     if (!path.starts_with(recorded)) continue;
     return std::string(recorded) + (folder_ / path.substr(recorded.size())).string();
   }
@@ -140,13 +141,16 @@ std::string SetupFile::text_of(std::string_view key, KeyKind kind, const toml::n
       break;
     case KeyKind::text:
     case KeyKind::path:
+    case KeyKind::mesh_or_text:
       break;
   }
   if (!node.is_string()) wrong("text in quotes");
   const std::string text = *node.value<std::string>();
   if (text.empty())
     fail(node.source(), fmt::format("'{}' is empty; give a value or remove it", key));
-  return kind == KeyKind::path ? resolved(text) : text;
+  const bool is_path =
+      kind == KeyKind::path || (kind == KeyKind::mesh_or_text && text.starts_with(kMeshTool));
+  return is_path ? resolved(text) : text;
 }
 
 // The values of a key as the option would get them on the command line.

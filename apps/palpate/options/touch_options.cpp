@@ -32,7 +32,7 @@ void add_field_options(OptionTable& table, TouchChoices& o) {
   table.add(described(field, field.gradient), o.gradient);
   table.add(described(field, field.threshold), o.threshold,
             number("between 0 and 1", [](double x) { return x > 0 && x < 1; }));
-  table.add(field, field.tool_radius);
+  table.add(field, field.tool_radius).only_for(kPoints);
   table.add(field, field.sharp_edges);
 }
 
@@ -44,15 +44,18 @@ void add_material_options(OptionTable& table, TouchChoices& o) {
             number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }));
   table.add("--soft-stiffness", surface.soft_stiffness, "N/M", not_negative(),
             "stiffness at the cloud's lowest intensity; rises to --stiffness at the highest");
-  table.add(described(proxy, proxy.friction.static_coefficient), o.friction_static);
-  table.add(proxy, proxy.friction.dynamic_coefficient);
-  table.add(proxy, proxy.friction.viscous);
-  table.add("--soft-friction", surface.soft_friction, "SHARE",
-            number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
-            "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
-            "friction at the highest");
-  table.add(proxy, proxy.texture.amplitude);
-  table.add(proxy, proxy.texture.wavelength);
+  table.add(described(proxy, proxy.friction.static_coefficient), o.friction_static)
+      .only_for(kPoints);
+  table.add(proxy, proxy.friction.dynamic_coefficient).only_for(kPoints);
+  table.add(proxy, proxy.friction.viscous).only_for(kPoints);
+  table
+      .add("--soft-friction", surface.soft_friction, "SHARE",
+           number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
+           "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
+           "friction at the highest")
+      .only_for(kPoints);
+  table.add(proxy, proxy.texture.amplitude).only_for(kPoints);
+  table.add(proxy, proxy.texture.wavelength).only_for(kPoints);
 }
 
 std::vector<std::string> list_of(const std::string& text) {
@@ -88,6 +91,9 @@ void add_hand_options(OptionTable& table, TouchPlan& plan) {
   table.under("Hand", "hand");
   add_trajectory_options(table, motion);
   add_device_option(table, plan.devices);
+  table.under("Hand", "tool");
+  add_tool_options(table, plan.tool);
+  table.under("Hand", "hand");
   table
       .add("--duration", motion.duration, "SECONDS",
            number("between 0.01 and 3600 s", [](double x) { return x >= 0.01 && x <= 3600; }),

@@ -52,6 +52,25 @@ void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
           "--preset paper uses a point tool; remove --tool-radius");
 }
 
+// Options of the command line are refused by their scopes; keys of a set-up file have none.
+void check_tool(const TouchPlan& plan) {
+  if (!plan.tool.turns()) return;
+  const SurfacePlan& surface = plan.surface;
+  const Friction& friction = surface.proxy.friction;
+  require(surface.field.tool_radius == 0,
+          "--tool-radius is of a point, and a --tool's shape is its own; remove one of them");
+  require(friction.static_coefficient == 0 && friction.viscous == 0 && !surface.soft_friction,
+          "friction is not rendered with a --tool that turns; remove friction_static, "
+          "friction_dynamic, friction_viscous and soft_friction, or --tool");
+  require(surface.proxy.texture.amplitude == 0,
+          "texture is not rendered with a --tool that turns; remove texture_amplitude, or --tool");
+  require(!surface.paper, "--preset paper uses a point tool; remove --tool");
+  require(!plan.ros.bridge.robot,
+          "--robot follows a point, and does not know where a --tool is; remove one of them");
+  require(plan.outputs.record.empty(),
+          "runs with a --tool that turns cannot be recorded yet; remove --record, or --tool");
+}
+
 // Where a cloud is explored, K is computed later, and checked again.
 void check_material(const SurfacePlan& surface, bool explored) {
   if (surface.stiffness || !explored) {
@@ -139,6 +158,8 @@ RunFacts facts_of(const TouchPlan& plan, const TouchChoices& choices) {
   facts.trajectory = facts.follows && !facts.explores;
   facts.played = facts.trajectory && any(DeviceKind::scripted) && !plan.time.real_time;
   facts.has_duration = facts.explores || any(DeviceKind::remote) || any(DeviceKind::hardware);
+  facts.turns = plan.tool.turns();
+  facts.points = !facts.turns;
   facts.has_rate = facts.explores || any(DeviceKind::remote) || any(DeviceKind::simulated);
   return facts;
 }
@@ -194,6 +215,7 @@ TouchPlan plan_touch(const CLI::App& command, TouchChoices choices) {
   const RunFacts facts = facts_of(plan, choices);
   check_scopes(table, given, facts);
   check_scopes(table, described, facts);
+  check_tool(plan);
   for (const DescribedSource& source : sources) {
     RunFacts its;
     add_facts(its, source.plan);

@@ -10,6 +10,7 @@
 #include "apps/palpate/options/device_options.hpp"
 #include "apps/palpate/options/ros_options.hpp"
 #include "apps/palpate/options/source_options.hpp"
+#include "apps/palpate/options/tool_options.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/field/field_options.hpp"
 #include "palpate/io/trajectory.hpp"
@@ -93,6 +94,7 @@ struct OutputPlan {
 struct TouchPlan {
   std::vector<SourcePlan> sources = {};
   std::vector<DevicePlan> devices = {};  ///< one a hand
+  ToolPlan tool = {};
   SurfacePlan surface = {};
   MotionPlan motion = {};
   TimePlan time = {};

@@ -5,6 +5,7 @@
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/report/source_report.hpp"
+#include "apps/palpate/report/tool_report.hpp"
 #include "field/description.hpp"
 
 namespace palpate::app {
@@ -92,6 +93,7 @@ void add_placement(Report& report, const Hand& hand) {
 
 void add_device(Report& report, const Hand& hand) {
   report.data["device"] = {{"name", hand.device->info().name}};
+  if (hand.tool) add_tool(report, *hand.tool, hand.stiffness);
   if (hand.plan) {
     report.row("explored",
                "an area up to {device/explored_m} across, pressing about {device/depth_m} deep",
@@ -122,6 +124,10 @@ void add_forces(Report& report, const HandReport& hand) {
   report.row("force",
              "at most {largest_force_N}, changing by at most {largest_force_step_N} per step",
              s.largest_force(), s.largest_jump());
+  if (hand.hand.tool) {
+    report.row("torque", "{largest_torque_Nm} at most[; grip {largest_grip_N} at most]",
+               s.largest_torque(), s.largest_grip());
+  }
   report.row("energy",
              "{energy_given_to_hand_J} given to the hand[{?} (negative: absorbed from it)], "
              "{energy_along_path_J} along the path",

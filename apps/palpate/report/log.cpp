@@ -15,7 +15,8 @@ constexpr std::size_t kFlush = 1 << 16;  // bytes a write; judgement
 
 }  // namespace
 
-TouchLog::TouchLog(const std::string& path) : file_(path, OutputFile::Unfinished::stays) {
+TouchLog::TouchLog(const std::string& path, bool turns)
+    : file_(path, OutputFile::Unfinished::stays), turns_(turns) {
   buffer_.reserve(kFlush + 1024);
 }
 
@@ -42,13 +43,19 @@ void TouchLog::begin(bool orientation, bool gripper) {
       "stiffness,iterations,evaluations,patch_points,source,notes,field_notes"));
   if (orientation) buffer_.append(std::string_view(",qx,qy,qz,qw"));
   if (gripper) buffer_.append(std::string_view(",gripper"));
+  if (turns_) {
+    buffer_.append(std::string_view(
+        ",tool_qx,tool_qy,tool_qz,tool_qw,tool_opening,torque_x,torque_y,torque_z,grip"));
+  }
   buffer_.push_back('\n');
   begun_ = true;
 }
 
 void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
   if (!problem_.empty()) return;
-  if (!begun_) begin(device.has_orientation, device.has_gripper);
+  const bool orientation = device.has_orientation || turns_;
+  const bool gripper = device.has_gripper || turns_;
+  if (!begun_) begin(orientation, gripper);
   const Contact& c = step.contact;
   const Eigen::Vector3d& h = step.hip;
   const Eigen::Vector3d& f = step.force;
@@ -60,18 +67,24 @@ void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
   fmt::format_to(std::back_inserter(buffer_), "{},{},{},{},{},{},{}", c.stiffness, c.iterations,
                  c.evaluations, step.patch_points, c.source, static_cast<unsigned>(c.notes),
                  static_cast<unsigned>(step.field_notes));
-  if (device.has_orientation) {
+  if (orientation) {
     const Eigen::Quaterniond& q = step.orientation;
     fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
   }
-  if (device.has_gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", step.gripper);
+  if (gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", step.gripper);
+  if (turns_) {
+    const Eigen::Quaterniond& q = step.tool.orientation;
+    const Eigen::Vector3d& torque = step.wrench.torque;
+    fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{},{},{},{},{},{}", q.x(), q.y(), q.z(),
+                   q.w(), step.tool.opening, torque.x(), torque.y(), torque.z(), step.wrench.grip);
+  }
   buffer_.push_back('\n');
   if (buffer_.size() >= kFlush) flush();
 }
 
 void TouchLog::close() {
   if (!problem_.empty()) throw Error(problem_);
-  if (!begun_) begin(false, false);
+  if (!begun_) begin(turns_, turns_);
   flush();
   file_.close();
 }

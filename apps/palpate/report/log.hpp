@@ -12,11 +12,13 @@ namespace palpate::app {
 
 /// The CSV log of a run: a header, then a row a step. Numbers are the shortest that read back to
 /// the same bits; `us` alone differs from run to run. The device, which is the same in every row,
-/// decides whether there are columns for orientation and gripper. What is not closed stays beside
-/// its target (OutputFile).
+/// decides whether there are columns for orientation and gripper; a log of a tool that turns has
+/// these, and more for the tool's pose and the wrench. What is not closed stays beside its target
+/// (OutputFile).
 class TouchLog {
  public:
-  explicit TouchLog(const std::string& path);
+  /// `turns`: the steps are those of a tool that turns.
+  explicit TouchLog(const std::string& path, bool turns = false);
   /// Writes the rest, unless close() was called.
   ~TouchLog();
   /// @throws Error when the file cannot be written, and takes nothing from then on.
@@ -29,6 +31,7 @@ class TouchLog {
   void flush();
 
   OutputFile file_;
+  bool turns_;
   fmt::memory_buffer buffer_;
   bool begun_ = false;
   std::string problem_;  // why it ended; empty: it did not

@@ -23,6 +23,8 @@ struct UnitWords {
 constexpr std::array kUnitWords = {
     UnitWords{"_N_per_m", [](double x) { return fmt::format("{:.4g} N/m", x); }},
     UnitWords{"_N_per_s", [](double x) { return fmt::format("{:.3g} N/s", x); }},
+    UnitWords{"_Nm_per_rad", [](double x) { return fmt::format("{:.3g} N m/rad", x); }},
+    UnitWords{"_Nm", [](double x) { return fmt::format("{:.3g} N m", x); }},
     UnitWords{"_N", [](double x) { return fmt::format("{:.3g} N", x); }},
     UnitWords{"_J", energy},
     UnitWords{"_Hz", [](double x) { return fmt::format("{:.4g} Hz", x); }},

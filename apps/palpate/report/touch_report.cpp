@@ -155,8 +155,8 @@ std::string subtitle(const HandReport& report) {
 
 }  // namespace
 
-HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand) {
-  if (!outputs.log.empty()) log_.emplace(numbered_path(outputs.log, hand));
+HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand, bool turns) {
+  if (!outputs.log.empty()) log_.emplace(numbered_path(outputs.log, hand), turns);
   if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
 }
 

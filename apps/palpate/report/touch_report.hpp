@@ -38,9 +38,9 @@ class Picture {
 /// Statistics, log and picture of one hand's steps.
 class HandOutputs {
  public:
-  /// The files that `outputs` names for the hand of that index, made at once.
-  /// @throws Error when they cannot be.
-  HandOutputs(const OutputPlan& outputs, std::size_t hand);
+  /// The files that `outputs` names for the hand of that index, made at once. `turns`: it holds a
+  /// tool that turns. @throws Error when they cannot be.
+  HandOutputs(const OutputPlan& outputs, std::size_t hand, bool turns);
 
   /// @throws Error once, when the log cannot be written; the rest goes on.
   void add(const ServoState& step, const DeviceInfo& device);

@@ -144,13 +144,15 @@ void put_at_surface(Hand& hand, const FieldOptions& field, const Scene& scene,
   place(hand.workspace, hand.chosen.placement, scene);
 }
 
-ExplorationOptions plan_options(const HandTask& task, const Trajectory& trajectory) {
+ExplorationOptions plan_options(const HandTask& task, const Trajectory& trajectory,
+                                const std::shared_ptr<const SampledTool>& tool) {
   ExplorationOptions plan;
   plan.duration = task.motion.duration.value_or(plan.duration);
   plan.stiffness = task.surface.stiffness.value_or(trajectory.empty() ? 0 : kStiffness);
   plan.tool_radius = task.surface.field.tool_radius;
   plan.seed = task.motion.seed;
   plan.rate = task.motion.rate.value_or(plan.rate);
+  if (tool) plan.tool = tool->balls();
   return plan;
 }
 
@@ -187,6 +189,11 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   options.workspace = hand.workspace;
   options.clutch_button = hand.chosen.placement.clutch;
   options.steps = steps;
+  if (hand.tool) {
+    options.tool = hand.tool->tool;
+    options.gyration = hand.tool->gyration(options.proxy.stiffness);
+    return options;  // its steps cannot be traced
+  }
   options.traces = run.recorder != nullptr ? run.recorder->add_hand() : nullptr;
   return options;
 }
@@ -219,8 +226,13 @@ std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const Motio
 
 void place_hands(std::vector<Hand>& hands, const HandTask& task, const Trajectory& trajectory,
                  const Scene& scene) {
-  ExplorationOptions plan = plan_options(task, trajectory);
+  std::shared_ptr<const SampledTool> tool;
+  if (task.tool) {
+    tool = std::make_shared<const SampledTool>(task.tool->sampled(smallest_radius(scene)));
+  }
+  ExplorationOptions plan = plan_options(task, trajectory, tool);
   for (Hand& hand : hands) {
+    hand.tool = tool;
     plan.scale = hand.chosen.placement.scale;
     if (!hand.chosen.follows_trajectory()) {
       put_at_surface(hand, task.surface.field, scene, plan);

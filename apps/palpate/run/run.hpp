@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/palpate/options/touch_plan.hpp"
+#include "apps/palpate/run/named_tool.hpp"
 #include "apps/palpate/sources/loaded_scene.hpp"
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
@@ -38,6 +39,7 @@ struct Hand {
   std::size_t steps = 0;                ///< that its trajectory takes
   std::optional<double> duration = {};  ///< s, of a device that never ends by itself
   std::optional<Placement> plan = {};   ///< of the built-in exploration, if it is that
+  std::shared_ptr<const SampledTool> tool = {};  ///< that it holds; null: a point
 };
 
 /// All that a run is made of: what is touched, who touches, and by which clock.
@@ -74,11 +76,12 @@ using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
                                            const MotionPlan& motion, const TimePlan& time,
                                            WaitingClock* clock);
 
-/// How hands are to move, on what, and whether a page may take their tools.
+/// How hands are to move, on what, whether a page may take their tools, and what these are.
 struct HandTask {
   const MotionPlan& motion;
   const SurfacePlan& surface;
   const PagePlan& page;
+  const NamedTool* tool = nullptr;  ///< null: points
 };
 
 /// Puts the hands into what `scene` shows. Those that no person or program leads get their device

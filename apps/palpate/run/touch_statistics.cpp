@@ -2,6 +2,7 @@
 #include "apps/palpate/run/touch_statistics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "palpate/servo/servo.hpp"
@@ -102,13 +103,15 @@ void TouchStatistics::add(const ServoState& step) {
     const Eigen::Vector3d path = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
     given_energy_ += last_.force.dot(path);
     path_energy_ += 0.5 * (last_.force + step.force).dot(path);
-    largest_jump_ = std::max(largest_jump_, (step.force - last_.force).norm());
+    largest_.jump = std::max(largest_.jump, (step.force - last_.force).norm());
   }
   if (contact.touching) {
     ++touching_;
     if (first || !last_.contact.touching) ++contacts_;
   }
-  largest_force_ = std::max(largest_force_, step.force.norm());
+  largest_.force = std::max(largest_.force, step.force.norm());
+  largest_.torque = std::max(largest_.torque, step.wrench.torque.norm());
+  largest_.grip = std::max(largest_.grip, std::abs(step.wrench.grip));
   static_assert(std::tuple_size_v<decltype(notes_)> == kNotes.size());
   for (std::size_t i = 0; i < kNotes.size(); ++i) notes_[i] += kNotes[i].is_in(step) ? 1 : 0;
   if (has(contact.notes, ContactNote::fault)) ++faults_;

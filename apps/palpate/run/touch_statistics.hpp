@@ -38,9 +38,12 @@ class TouchStatistics {
   /// Steps with touch.
   [[nodiscard]] std::size_t touching() const { return touching_; }
   /// Longest force, N.
-  [[nodiscard]] double largest_force() const { return largest_force_; }
+  [[nodiscard]] double largest_force() const { return largest_.force; }
   /// Largest change of the force from one step to the next, N.
-  [[nodiscard]] double largest_jump() const { return largest_jump_; }
+  [[nodiscard]] double largest_jump() const { return largest_.jump; }
+  /// Longest torque of a tool that turns, N m, and largest force on its opening, N.
+  [[nodiscard]] double largest_torque() const { return largest_.torque; }
+  [[nodiscard]] double largest_grip() const { return largest_.grip; }
   /// What a device gives the hand that holds each force until the next step, J: the sum of
   /// F_k . (h_{k+1} - h_k). Negative: taken from the hand. Sampling alone makes it positive: of a
   /// spring, by K / 2 |h_{k+1} - h_k|^2 a step.
@@ -56,14 +59,20 @@ class TouchStatistics {
   [[nodiscard]] StepTimes times() const;
 
  private:
+  struct Largest {
+    double force = 0;   // N
+    double jump = 0;    // N
+    double torque = 0;  // N m
+    double grip = 0;    // N
+  };
+
   std::size_t steps_ = 0;
   Durations times_;
   ServoState last_;
   double first_time_ = 0;
   std::size_t contacts_ = 0;
   std::size_t touching_ = 0;
-  double largest_force_ = 0;
-  double largest_jump_ = 0;
+  Largest largest_;
   double given_energy_ = 0;
   double path_energy_ = 0;
   std::size_t faults_ = 0;

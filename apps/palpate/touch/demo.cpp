@@ -73,6 +73,7 @@ void add_demo_options(CLI::App& command, DemoOptions& o) {
   add_record_option(table, plan.outputs);
   table.under("Hand, time and page");
   add_device_option(table, plan.devices);
+  add_tool_options(table, plan.tool);
   add_live_options(table, plan.time);
   add_page_options(table, plan.page);
 }

@@ -38,6 +38,9 @@ std::string hand_words(const HandMoment& moment) {
                         moment.force, moment.rate, 1e6 * moment.durations.computing.quantile(0.5),
                         1e6 * moment.durations.computing.quantile(0.99),
                         1e3 * moment.durations.lateness.quantile(0.99));
+  const Wrench& wrench = moment.servo.wrench;
+  if (!moment.ended && !wrench.torque.isZero(0))
+    words += fmt::format("  torque {:.3f} N m", wrench.torque.norm());
   const Guard::State& guard = moment.servo.guard;
   if (moment.servo.clutched) words += "  clutch held: the hand moves without the tool";
   if (guard.fault != Guard::Fault::none) {

@@ -46,7 +46,8 @@ struct TouchOutputs {
   TouchOutputs(const TouchPlan& plan, const Trajectory& trajectory) {
     if (plan.motion.reading.forces) measured.emplace(plan.motion.trajectory, trajectory);
     const OutputPlan& files = plan.outputs;
-    for (std::size_t i = 0; i < plan.devices.size(); ++i) hands.emplace_back(files, i);
+    for (std::size_t i = 0; i < plan.devices.size(); ++i)
+      hands.emplace_back(files, i, plan.tool.turns());
     if (!files.json.empty()) json.emplace(files.json);
     if (!files.record.empty() || plan.page.served) recorder.emplace(files.record);
   }
@@ -152,15 +153,12 @@ void write_report(const TouchReport& report, std::FILE* stream, TouchOutputs& ou
   }
 }
 
-}  // namespace
-
-namespace {
-
 // A run from its options to its first step: each thing is made in its turn.
 struct Start {
   Start(TouchPlan chosen, WaitingClock* clock)
       : plan(std::move(chosen)),
         trajectory(trajectory_of(plan.motion, plan.devices)),
+        tool(plan.tool.turns() ? std::optional<NamedTool>(plan.tool) : std::nullopt),
         outputs(plan, trajectory),
         hands(open_hands(plan.devices, plan.motion, plan.time, clock)),
         left(leave_to_servo(plan.time)),
@@ -171,7 +169,8 @@ struct Start {
                              .on_demand = clock != nullptr && plan.outputs.record.empty(),
                              .clock = clock})) {
     check_texture(plan.surface.proxy.texture.amplitude, loaded.scene);
-    place_hands(hands, {plan.motion, plan.surface, plan.page}, trajectory, loaded.scene);
+    place_hands(hands, {plan.motion, plan.surface, plan.page, tool ? &*tool : nullptr}, trajectory,
+                loaded.scene);
     begin_run(loaded, plan.surface.soft_material(hands.front().stiffness));
   }
 
@@ -182,6 +181,7 @@ struct Start {
 
   TouchPlan plan;
   Trajectory trajectory;
+  std::optional<NamedTool> tool;
   TouchOutputs outputs;
   std::vector<Hand> hands;
   std::optional<RealtimeReport::Request> left;

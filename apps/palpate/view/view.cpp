@@ -185,12 +185,15 @@ struct View::Parts {
       set(wanted, scope_of(run, servos), key, value);
       apply(wanted);
     };
-    controls.presets = session::preset_names();
+    controls.presets = session::preset_names(run.hands.front().tool != nullptr);
     controls.preset = [this](const std::string& name) {
       apply(preset(initial, name, scope_of(run, servos)));
     };
     controls.record = [this](bool on) {
       if (on) refuse_paged(run.loaded);
+      if (on && run.hands.front().tool) {
+        throw Error("a run with a tool that turns cannot be recorded yet; start without --tool");
+      }
       return run.recorder->record(on);
     };
     controls.recording = run.recorder->recording();

@@ -8,6 +8,7 @@
 #include "palpate/device/device.hpp"
 #include "palpate/device/simulated.hpp"
 #include "palpate/field/field_options.hpp"
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/scene/scene.hpp"
 
@@ -33,6 +34,7 @@ struct ExplorationOptions {
   double duration = 10;              ///< s
   double stiffness = 0;              ///< N/m in the world; 0: 500 at the hand
   double tool_radius = 0;            ///< m
+  std::vector<Ball> tool = {};       ///< a tool that turns, from its handle on, m
   std::uint64_t seed = 1;
   SimulatedDeviceOptions::Hand hand = {};
   double rate = 1000;                         ///< steps a second

@@ -1,6 +1,7 @@
 // Declares the readers and writers of cloud and depth image files.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -94,6 +95,20 @@ struct CloudFile {
 /// The cloud alone.
 [[nodiscard]] PointCloud read_cloud(const std::filesystem::path& path,
                                     const ReadOptions& options = {});
+
+/// The faces of a file as triangles.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices{};                ///< m
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< indices of vertices
+  std::string format{};                                   ///< such as "STL, binary"
+};
+
+/// Reads the faces of PLY, OBJ, STL, glTF and GLB, as Tool::mesh() takes them. Left out is what
+/// read_cloud_file() leaves out, too: faces without an area, or there twice. `options`: the scale.
+/// @throws Error as read_cloud_file() does, when there is no face, and for one of more than three
+/// corners that triangles from one of them do not cover.
+[[nodiscard]] TriangleMesh read_mesh(const std::filesystem::path& path,
+                                     const ReadOptions& options = {});
 
 struct WriteOptions {
   bool ascii = false;  ///< text instead of binary (little endian); digits enough to lose none

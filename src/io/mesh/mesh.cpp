@@ -198,6 +198,21 @@ CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::
   return file;
 }
 
+// The faces of use to who wants them instead of points.
+CloudFile hand_over(const Input& input, const Mesh& mesh, const FaceSurvey& survey,
+                    std::string format) {
+  Mesh& wanted = *input.faces;
+  wanted.vertices = mesh.vertices;
+  for (const std::size_t i : survey.used) {
+    for (const std::uint32_t corner : mesh.face(i)) wanted.add_corner(corner);
+    wanted.close_face();
+  }
+  CloudFile file;
+  file.format = std::move(format);
+  file.mesh = survey.facts;
+  return file;
+}
+
 }  // namespace
 
 MeshVertex mesh_vertex(const Row& row) {
@@ -223,12 +238,14 @@ CloudFile sample_faces(const Input& input, const Mesh& mesh, std::string format)
     fail(input, fmt::format("none of the {} faces is finite and has an area", mesh.ends.size()),
          "Check how the file was generated, and its units and scale");
   }
+  if (input.faces != nullptr) return hand_over(input, mesh, survey, std::move(format));
   return sample(input, mesh, survey, std::move(format));
 }
 
 CloudFile choose_cloud(const Input& input, const Mesh& mesh, CloudFile vertices) {
   if (mesh.ends.empty()) return vertices;
   FaceSurvey survey = survey_faces(input, mesh);
+  if (input.faces != nullptr) return hand_over(input, mesh, survey, std::move(vertices.format));
   const bool requested = input.options.mesh_spacing > 0;
   if (!survey.used.empty() && (requested || !vertices_suffice(mesh, survey))) {
     return sample(input, mesh, survey, std::move(vertices.format));

@@ -1,0 +1,20 @@
+// Reports on a tool that turns.
+#include "apps/palpate/report/tool_report.hpp"
+
+namespace palpate::app {
+
+void add_tool(Report& report, const SampledTool& tool, double stiffness) {
+  const bool balls = tool.is_of_balls();
+  report.row("tool",
+             "{tool/shape}[ ({tool/file})]: {tool/samples} [{?}balls|samples]"
+             "[{?}, {tool/spacing_m} apart][{?}; R of what it touches is {tool/radius_m}]",
+             tool.name, tool.unit, tool.tool->samples().size(), balls, !balls, tool.spacing,
+             tool.radius > 0, tool.radius);
+  report.row("", "{tool/extent_m} long from its handle on, radius of gyration {tool/gyration_m}",
+             tool.tool->extent(), tool.tool->gyration());
+  report.row("", "turns with {tool/turn_stiffness_Nm_per_rad} where it shifts with {_N_per_m}",
+             tool.turns_with(stiffness), stiffness);
+  report.row({"", Mark::warning}, "[{tool/warning}]", tool.warning());
+}
+
+}  // namespace palpate::app

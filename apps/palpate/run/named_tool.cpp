@@ -1,0 +1,158 @@
+// Makes the tool that a command line names.
+#include "apps/palpate/run/named_tool.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "apps/palpate/cli/errors.hpp"
+#include "apps/palpate/cli/terminal.hpp"
+#include "palpate/base/error.hpp"
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/tool/tool_proxy.hpp"
+#include "session/length_unit.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+constexpr double kWanted = 0.5;  // R between samples: nothing as large as R passes (Tool)
+constexpr int kSpacings = 12;  // tried to find a spacing that leaves few enough samples (judgement)
+// The share of samples that is left where they are farther apart: where more are, they are corners
+// and creases, which no spacing takes away (judgement).
+constexpr double kCorners = 0.95;
+// m: the range of ToolOptions::gyration
+constexpr double kLeastGyration = 1e-4;
+constexpr double kMostGyration = 10;
+
+Box box_around(const std::vector<Eigen::Vector3d>& vertices) {
+  Box box;
+  for (const Eigen::Vector3d& vertex : vertices) box.extend(vertex);
+  return box;
+}
+
+// The surface of a box, m^2.
+double surface_of(const Box& box) {
+  const Eigen::Vector3d size = box.size();
+  return 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+}
+
+Box box_around(const Tool& tool) {
+  Box box;
+  for (const Tool::Point& sample : tool.samples()) box.extend(sample.position);
+  return box;
+}
+
+}  // namespace
+
+double SampledTool::gyration(double stiffness) const {
+  if (!turn_stiffness) return 0;
+  const double gyration = std::sqrt(*turn_stiffness / stiffness);
+  if (gyration >= kLeastGyration && gyration <= kMostGyration) return gyration;
+  throw UsageError(
+      fmt::format("--turn-stiffness {} is out of range where the stiffness is {:.4g} N/m; give "
+                  "{:.2g} to {:.2g}",
+                  *turn_stiffness, stiffness, stiffness * kLeastGyration * kLeastGyration,
+                  stiffness * kMostGyration * kMostGyration));
+}
+
+double SampledTool::turns_with(double stiffness) const {
+  const ToolProxy proxy(tool, {.stiffness = stiffness, .gyration = gyration(stiffness)});
+  const double used = proxy.options().gyration;
+  return stiffness * used * used;
+}
+
+std::vector<Ball> SampledTool::balls() const {
+  std::vector<Ball> balls;
+  for (const Tool::Point& sample : tool->samples()) {
+    balls.push_back({sample.position, sample.radius});
+  }
+  return balls;
+}
+
+std::string SampledTool::warning() const {
+  const std::size_t samples = tool->samples().size();
+  if (radius > 0 && !is_of_balls() && spacing > 1.01 * kWanted * radius) {
+    return fmt::format(
+        "its samples are {} apart, which is more than half of R ({}): what is thinner can pass "
+        "between them; give a smaller tool, a larger --radius, or --tool-spacing {:.3g}, which "
+        "takes longer",
+        length(spacing), length(radius), kWanted * radius);
+  }
+  if (samples <= NamedTool::kMostSamples) return {};
+  return fmt::format(
+      "its {} samples can take longer than a millisecond; give a larger --tool-spacing, or a "
+      "simpler shape",
+      grouped(samples));
+}
+
+NamedTool::NamedTool(ToolPlan plan) : plan_(std::move(plan)) {
+  if (!plan_.text.starts_with(kMeshTool)) return;
+  const MeshName name = parse_mesh_tool(plan_.text);
+  ReadOptions options;
+  mesh_ = read_mesh(name.path, options);
+  const Eigen::Vector3d size = box_around(mesh_.vertices).size();
+  const double unit = name.unit.value_or(session::likely_unit(mesh_.format, size.maxCoeff()));
+  for (Eigen::Vector3d& vertex : mesh_.vertices) vertex *= unit;
+  const bool guessed = !name.unit && unit != 1;
+  unit_ =
+      fmt::format("{}{}, {} x {} x {}", mesh_.format, guessed ? session::kTakenAsMillimetres : "",
+                  length(unit * size.x()), length(unit * size.y()), length(unit * size.z()));
+  const Box box = box_around(mesh_.vertices);
+  const double farthest = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()).maxCoeff();
+  if (farthest <= Tool::kLongest) return;
+  throw Error(fmt::format(
+      "--tool: {} reaches {} from its origin, where the handle is; nobody holds more than {}: give "
+      "{}{},unit=0.001 if it is in millimetres, or move it to its origin",
+      name.path, length(farthest), length(Tool::kLongest), kMeshTool, name.path));
+}
+
+Tool NamedTool::with_spacing(double spacing) const {
+  if (mesh_.triangles.empty()) return Tool::from_text(plan_.text, spacing);
+  return Tool::mesh(mesh_.vertices, mesh_.triangles, spacing);
+}
+
+SampledTool NamedTool::sampled(double radius) const {
+  SampledTool result{.tool = nullptr,
+                     .name = plan_.text,
+                     .unit = unit_,
+                     .radius = radius,
+                     .turn_stiffness = plan_.turn_stiffness};
+  if (plan_.spacing) {
+    result.spacing = *plan_.spacing;
+    result.tool = std::make_shared<const Tool>(with_spacing(result.spacing));
+    return result;
+  }
+  const double area = surface_of(mesh_.triangles.empty() ? box_around(with_spacing(Tool::kLongest))
+                                                         : box_around(mesh_.vertices));
+  constexpr auto kMost = static_cast<double>(kMostSamples);
+  // A surface has a sample a square of its spacing, or twice as many.
+  double spacing = std::max(kWanted * radius, std::sqrt(area / (2 * kMost)));
+  if (!(spacing > 0)) spacing = Tool::kLongest;  // a line of balls has no area
+  std::size_t before = 0;
+  for (int i = 0; i < kSpacings; ++i) {
+    auto tool = std::make_shared<const Tool>(with_spacing(spacing));
+    const auto samples = static_cast<double>(tool->samples().size());
+    if (before > 0 && samples > kCorners * static_cast<double>(before)) break;
+    before = tool->samples().size();
+    result.tool = std::move(tool);
+    result.spacing = spacing;
+    if (samples <= kMost) break;
+    spacing *= std::clamp(std::sqrt(samples / kMost), 1.05, 2.0);
+  }
+  return result;
+}
+
+double smallest_radius(const Scene& scene) {
+  double smallest = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    const std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
+    if (!points || points->size() == 0) continue;
+    smallest = smallest > 0 ? std::min(smallest, points->radius) : points->radius;
+  }
+  return smallest;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,193 @@
+// The program with a tool that turns: what is felt, written, said and refused.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+#include "apps/setup_parsed.hpp"
+#include "support/mesh_files.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+
+// An STL file in millimetres of a box of 20 x 30 x 10, around its handle.
+std::string box_stl() {
+  return test::as_stl(test::box_mesh(Eigen::Vector3d(10, 15, 5)));
+}
+
+double largest(const std::vector<std::string>& cells) {
+  double most = 0;
+  for (const std::string& cell : cells) most = std::max(most, std::abs(number(cell)));
+  return most;
+}
+
+TEST(ToolProgram, ExploresWithABoxAndTellsPoseAndWrench) {
+  Shell shell;
+  const Outcome outcome = shell.run(
+      "touch synthetic:torus --tool box:20x30x10 --duration 3 --log log.csv --json report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("box:20x30x10: "));
+  EXPECT_THAT(outcome.out, HasSubstr("torque"));
+  auto log = columns(shell.read("log.csv"));
+  const std::size_t rows = log.at("t").size();
+  for (const char* name :
+       {"qw", "gripper", "tool_qx", "tool_qw", "tool_opening", "torque_x", "torque_z", "grip"}) {
+    ASSERT_EQ(log[name].size(), rows) << name;
+  }
+  EXPECT_GT(largest(log["torque_x"]), 1e-3);
+  EXPECT_GT(largest(log["tool_qx"]), 1e-3);
+  EXPECT_EQ(largest(log["tool_opening"]), 0);
+  const Json report = Json::parse(shell.read("report.json"));
+  EXPECT_EQ(report["tool"]["shape"], "box:20x30x10");
+  EXPECT_GT(report["tool"]["samples"].get<int>(), 50);
+  EXPECT_LE(report["tool"]["samples"].get<int>(), 500);
+  EXPECT_GT(report["largest_torque_Nm"].get<double>(), 1e-3);
+  EXPECT_GT(report["contacts"].get<int>(), 0);
+}
+
+// The box's middle is pushed 3 mm deeper than its lower face can be, by a hand that does not turn.
+TEST(ToolProgram, AFlatBoxIsHeldHalfItsHeightAboveAPlane) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  std::string way = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < 300; ++i) {
+    way += fmt::format("{},0,0,{}\n", 1e-3 * i, std::max(7e-3, 13e-3 - 5e-5 * i));
+  }
+  shell.write("way.csv", way);
+  const Outcome outcome =
+      shell.run("touch plane.xyz --trajectory way.csv --tool box:20x20x20 --log log.csv");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  auto log = columns(shell.read("log.csv"));
+  EXPECT_NEAR(number(log["proxy_z"].back()), 0.01, 1e-4);
+  EXPECT_NEAR(number(log["fz"].back()), 500 * 3e-3, 0.05);
+  EXPECT_NEAR(number(log["tool_qw"].back()), 1, 1e-4);
+}
+
+TEST(ToolProgram, SameInputTwiceGivesTheSameLogBitForBit) {
+  Shell shell;
+  const std::string arguments =
+      "touch camera:simulated --simulated-time --tool capsule:60x4 --turn-stiffness 0.2 "
+      "--duration 1.5 --log ";
+  ASSERT_EQ(shell.run(arguments + "a.csv").code, 0);
+  ASSERT_EQ(shell.run(arguments + "b.csv").code, 0);
+  const std::string a = without_times(shell, "a.csv");
+  EXPECT_GT(largest(columns(shell.read("a.csv"))["fz"]), 0.1);
+  EXPECT_TRUE(a == without_times(shell, "b.csv"));
+}
+
+TEST(ToolProgram, AMeshIsHeldAsTheShapeThatItIs) {
+  Shell shell;
+  shell.write("part.stl", box_stl());
+  const std::string rest = " --duration 1 --json report.json --log ";
+  const Outcome mesh = shell.run("touch synthetic:torus --tool mesh:part.stl" + rest + "a.csv");
+  ASSERT_EQ(mesh.code, 0) << mesh.err;
+  EXPECT_THAT(mesh.out, HasSubstr("taken as millimetres"));
+  const Json report = Json::parse(shell.read("report.json"));
+  EXPECT_NEAR(report["tool"]["extent_m"].get<double>(), Eigen::Vector3d(10, 15, 5).norm() * 1e-3,
+              1e-9);
+  EXPECT_GT(report["largest_force_N"].get<double>(), 0.1);
+  EXPECT_EQ(shell.run("touch synthetic:torus --tool mesh:part.stl,unit=0.01" + rest + "b.csv").code,
+            0);
+  EXPECT_NEAR(Json::parse(shell.read("report.json"))["tool"]["extent_m"].get<double>(),
+              Eigen::Vector3d(10, 15, 5).norm() * 1e-2, 1e-9);
+}
+
+TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
+  Shell shell;
+  shell.write("large.ply", test::as_ply(test::box_mesh(Eigen::Vector3d(30, 20, 10))));
+  shell.write("points.xyz", plane_xyz());
+  const auto refusal = [&shell](const std::string& options) {
+    const Outcome outcome = shell.run("touch synthetic:torus --duration 0.1 --tool " + options);
+    EXPECT_NE(outcome.code, 0) << options;
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal("box:20x30x10 --tool-radius 0.001"),
+              HasSubstr("--tool-radius is for a point"));
+  EXPECT_THAT(refusal("ball:4 --friction-dynamic 0.3"), HasSubstr("--friction-dynamic is for a"));
+  EXPECT_THAT(refusal("ball:4 --texture-amplitude 1e-4"),
+              HasSubstr("--texture-amplitude is for a"));
+  EXPECT_THAT(refusal("ball:4 --preset paper"), HasSubstr("--preset paper uses a point tool"));
+  EXPECT_THAT(refusal("bowl:4"), HasSubstr("give one of ball:R, capsule:LxR"));
+  EXPECT_THAT(refusal("bowl:4"), HasSubstr("or mesh:FILE"));
+  EXPECT_THAT(refusal("box:20x30"), HasSubstr("give box:XxYxZ in millimetres"));
+  EXPECT_THAT(refusal("mesh:"), HasSubstr("mesh: names no file"));
+  EXPECT_THAT(refusal("mesh:absent.stl"), HasSubstr("absent.stl"));
+  EXPECT_THAT(refusal("mesh:points.xyz"), HasSubstr("there are no faces in it"));
+  EXPECT_THAT(refusal("mesh:large.ply,unit=0"), HasSubstr("unit=0 is out of range"));
+  EXPECT_THAT(refusal("ball:4 --turn-stiffness 0"), HasSubstr("above 0"));
+  EXPECT_THAT(refusal("ball:4 --stiffness 1 --turn-stiffness 1000"),
+              HasSubstr("--turn-stiffness 1000 is out of range where the stiffness is 1 N/m"));
+  EXPECT_THAT(shell.run("touch synthetic:torus --turn-stiffness 1").err, HasSubstr("add --tool"));
+}
+
+TEST(ToolProgram, AdviceOfAMeshInMillimetresWorksWhenItIsFollowed) {
+  Shell shell;
+  shell.write("large.ply", test::as_ply(test::box_mesh(Eigen::Vector3d(30, 20, 10))));
+  const Outcome refused = shell.run("info --tool mesh:large.ply");
+  EXPECT_EQ(refused.code, 1);
+  const std::string advice = "mesh:large.ply,unit=0.001";
+  ASSERT_THAT(refused.err, HasSubstr("give " + advice));
+  EXPECT_EQ(shell.run("info --tool " + advice).code, 0);
+}
+
+TEST(ToolProgram, KeysOfASetUpFileAreItsOptions) {
+  const Shell shell;
+  const std::string keys =
+      "[tool]\ntool = \"gripper:6x12x40\"\ntool_spacing = 0.002\nturn_stiffness = 0.3\n";
+  const TouchPlan plan = planned(shell, keys, "synthetic:torus");
+  EXPECT_EQ(plan.tool.text, "gripper:6x12x40");
+  EXPECT_EQ(plan.tool.spacing, 0.002);
+  EXPECT_EQ(plan.tool.turn_stiffness, 0.3);
+  EXPECT_EQ(planned(shell, keys, "synthetic:torus --tool ball:3").tool.text, "ball:3");
+  EXPECT_EQ(planned(shell, "[tool]\ntool = \"mesh:part.stl\"\n", "synthetic:torus").tool.text,
+            "mesh:" + shell.path("part.stl"));
+}
+
+TEST(ToolProgram, FrictionAndTextureOfASetUpFileAreRefusedToo) {
+  Shell shell;
+  for (const char* keys :
+       {"[material]\nfriction_dynamic = 0.2\n", "[material]\ntexture_amplitude = 0.0001\n",
+        "[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
+    shell.write("set.toml", keys);
+    const Outcome outcome = shell.run("touch synthetic:torus --setup set.toml --tool ball:3");
+    EXPECT_EQ(outcome.code, 2) << keys;
+    EXPECT_THAT(outcome.err, HasSubstr("--tool")) << keys;
+  }
+}
+
+TEST(ToolProgram, InfoComparesSamplesWithACloudAndItsAdviceWorks) {
+  Shell shell;
+  const auto info = [&shell](const std::string& options) {
+    const Outcome outcome = shell.run("info --json info.json " + options);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Json::parse(shell.read("info.json"))[0]["tool"];
+  };
+  const Json alone = info("--tool box:20x30x10");
+  EXPECT_LE(alone["samples"].get<int>(), 500);
+  EXPECT_EQ(alone["warning"], "");
+  EXPECT_NEAR(alone["extent_m"].get<double>(), Eigen::Vector3d(10, 15, 5).norm() * 1e-3, 1e-12);
+  EXPECT_GT(alone["turn_stiffness_Nm_per_rad"].get<double>(), 0.01);
+  const Json fits = info("synthetic:torus --tool box:20x30x10");
+  EXPECT_LE(fits["spacing_m"].get<double>(), 0.5 * fits["radius_m"].get<double>());
+  EXPECT_EQ(fits["warning"], "");
+  const Json coarse = info("synthetic:torus --tool box:200x300x100");
+  const auto warning = coarse["warning"].get<std::string>();
+  ASSERT_THAT(warning, HasSubstr("more than half of R"));
+  const std::string option = "--tool-spacing ";
+  const std::size_t at = warning.find(option);
+  ASSERT_NE(at, std::string::npos);
+  const std::string advice = warning.substr(at, warning.find(',', at) - at);
+  const Json followed = info("synthetic:torus --tool box:200x300x100 " + advice);
+  EXPECT_THAT(followed["warning"].get<std::string>(), Not(HasSubstr("more than half of R")));
+  EXPECT_GT(followed["samples"].get<int>(), 500);
+}
+
+}  // namespace
+}  // namespace palpate::app
