@@ -84,7 +84,7 @@ void step(benchmark::State& state, const std::string& cloud) {
       const double start = thread_cpu_seconds();
       servo.step(hand, hand.time);
       times.push_back(1e6 * (thread_cpu_seconds() - start));
-      device.write(servo.device_force());
+      servo.write();
       servo.show();
     }
   }

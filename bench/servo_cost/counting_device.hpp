@@ -25,6 +25,7 @@ class CountingDevice final : public Device {
     return device_.read();
   }
   void write(const Eigen::Vector3d& force) noexcept override { device_.write(force); }
+  void write_wrench(const Wrench& wrench) noexcept override { device_.write_wrench(wrench); }
   [[nodiscard]] std::string reason() const override { return device_.reason(); }
 
   /// Times it slept for anything but the clock. After the last read.

@@ -11,12 +11,11 @@
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
 #include "device/remote_protocol.hpp"
+#include "geometry/wrench.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate {
 namespace {
-
-using Eigen::Vector3d;
 
 // Bytes: one more than a valid packet has, so that longer ones are recognised (derived).
 constexpr std::size_t kBuffer = kStatePacketSize + 1;
@@ -134,11 +133,11 @@ DeviceState RemoteDevice::read() noexcept {
   return in.state;
 }
 
-void RemoteDevice::write(const Vector3d& force) noexcept {
+void RemoteDevice::write_wrench(const Wrench& wrench) noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceState::Status::failed) return;
-  if (!force.allFinite()) return in.fail(0);
-  in.send(in.protocol.answer(force));
+  if (!is_finite(wrench)) return in.fail(0);
+  in.send(in.protocol.answer(wrench.force));
 }
 
 std::string RemoteDevice::reason() const {

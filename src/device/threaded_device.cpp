@@ -13,13 +13,12 @@
 
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
+#include "geometry/wrench.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/hardware.hpp"
 
 namespace palpate {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kStaleExchanges = 2.5;  // exchanges without a reading: silent (judgement)
 
@@ -57,7 +56,8 @@ bool is_possible(const DeviceState& reading) {
 }
 
 void check(const DeviceState& reading, const DeviceInfo& info) {
-  const bool tool = reading.orientation.coeffs().allFinite() && std::isfinite(reading.gripper);
+  const bool tool = reading.orientation.coeffs().allFinite() &&
+                    reading.angular_velocity.allFinite() && std::isfinite(reading.gripper);
   if (tool && is_possible(reading)) return;
   throw Error(
       fmt::format("{}: reported a position that is not a number or impossible for a hand, {}",
@@ -90,7 +90,7 @@ struct Reading {
 };
 
 struct Command {
-  Vector3d force = Vector3d::Zero();
+  Wrench wrench;
   double time = 0;                // s, when it was written
   Connection connection = kNone;  // whose position it answers
 };
@@ -113,7 +113,7 @@ struct Hardware {
   void check_move_to(const Reading& reading) const;
   void reopen() noexcept;
   void lose(const char* why) noexcept;
-  [[nodiscard]] Vector3d applicable(double now) const noexcept;
+  [[nodiscard]] Wrench applicable(double now) const noexcept;
 
   ThreadedDevice::Open open;
   WaitingClock& clock;
@@ -188,7 +188,7 @@ void Hardware::service() noexcept {
 void Hardware::exchange() noexcept {
   try {
     const double begin = clock.now();
-    const DeviceState reported = driver->exchange(applicable(begin));
+    const DeviceState reported = driver->exchange_wrench(applicable(begin));
     check(reported, info);
     const Reading reading{reported, begin, clock.now(), connection};
     check_move_to(reading);
@@ -213,14 +213,10 @@ void Hardware::check_move_to(const Reading& reading) const {
       info.name, 1e3 * move, 1e3 * time, kDistrust));
 }
 
-Vector3d Hardware::applicable(double now) const noexcept {
+Wrench Hardware::applicable(double now) const noexcept {
   const Command command = commands.get();
-  if (command.connection != connection || now - command.time > options.force_timeout) {
-    return Vector3d::Zero();
-  }
-  const double length = command.force.norm();
-  const double most = info.maximum_force;
-  return length > most ? Vector3d(most / length * command.force) : command.force;
+  if (command.connection != connection || now - command.time > options.force_timeout) return {};
+  return shortened(command.wrench, info.maximum_force, info.maximum_torque, info.maximum_grip);
 }
 
 void Hardware::lose(const char* why) noexcept {
@@ -261,6 +257,7 @@ DeviceState ThreadedDevice::read() noexcept {
   } else {
     in.state.status = DeviceState::Status::silent;
     in.state.velocity.setZero();
+    in.state.angular_velocity.setZero();
     in.state.buttons = 0;
     in.located = kNone;
   }
@@ -269,12 +266,12 @@ DeviceState ThreadedDevice::read() noexcept {
   return in.state;
 }
 
-void ThreadedDevice::write(const Vector3d& force) noexcept {
+void ThreadedDevice::write_wrench(const Wrench& wrench) noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceState::Status::failed) return;
-  if (force.allFinite()) {
+  if (is_finite(wrench)) {
     const bool felt = in.state.status == DeviceState::Status::ok;
-    in.hardware.commands.set({force, in.hardware.clock.now(), felt ? in.located : kNone});
+    in.hardware.commands.set({wrench, in.hardware.clock.now(), felt ? in.located : kNone});
     return;
   }
   in.hardware.commands.set({});

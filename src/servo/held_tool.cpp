@@ -1,7 +1,8 @@
-// Steps a tool, and makes of its contact what a guard of forces needs.
+// Steps a tool, and makes of its contact what a guard needs.
 #include "servo/held_tool.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "palpate/base/error.hpp"
 #include "tool/motion.hpp"
@@ -21,17 +22,24 @@ const ServoOptions& without_traces(const ServoOptions& options) {
 
 }  // namespace
 
-HeldTool::HeldTool(Scene& scene, const ServoOptions& options, double limit)
+HeldTool::HeldTool(Scene& scene, const ServoOptions& options, const DeviceInfo& device,
+                   double limit)
     : field_(scene, without_traces(options).tool, options.field, "a tool's field",
              options.workspace.scale),
       proxy_(options.tool, {.stiffness = std::min(options.proxy.stiffness, limit),
                             .friction = options.proxy.friction,
-                            .gyration = options.gyration}) {}
+                            .gyration = options.gyration}) {
+  const bool grips = device.maximum_grip > 0 && options.tool->opens();
+  if (!(device.maximum_torque > 0) && !grips) return;
+  const double scale = options.workspace.scale;
+  guard_.emplace(in_world(options.guard, scale), device, scale, proxy_.options().gyration);
+}
 
 void HeldTool::reset(const Pose& hand) noexcept {
   proxy_.reset(hand);
   hand_ = hand;
   wrench_ = {};
+  if (guard_) guard_->reset();
 }
 
 Contact HeldTool::step(double now, const Pose& hand, double dt) noexcept {
@@ -56,14 +64,24 @@ Contact HeldTool::step(double now, const Pose& hand, double dt) noexcept {
   return contact;
 }
 
-// F . v - F . drift = F . v + tau . w. No part of the tool moves faster by the turn than its extent
-// allows, so no lever is longer.
+// F . v - F . drift = F . v + tau . w + grip . do, but for what the device renders of the last two.
+// No part of the tool moves faster by the turn than its extent allows, so no lever is longer.
 Vector3d HeldTool::drift(const Pose& hand, double dt) const noexcept {
   const double force = wrench_.force.norm();
   if (!(dt > 0) || !(force > 0)) return Vector3d::Zero();
   const Vector3d turn = turn_between(hand_.orientation, hand.orientation) / dt;
-  const double fastest = proxy_.tool().extent() * turn.norm();
-  const double speed = std::clamp(-wrench_.torque.dot(turn) / force, -fastest, fastest);
+  const double opening = (hand.opening - hand_.opening) / dt;
+  double power = 0;  // that the hand does without feeling it, W
+  double fastest = 0;
+  if (!guard_ || !guard_->renders_torque()) {
+    power -= wrench_.torque.dot(turn);
+    fastest += proxy_.tool().extent() * turn.norm();
+  }
+  if (!guard_ || !guard_->renders_grip()) {
+    power -= wrench_.grip * opening;
+    fastest += 0.5 * std::abs(opening);
+  }
+  const double speed = std::clamp(power / force, -fastest, fastest);
   return speed / force * wrench_.force;
 }
 

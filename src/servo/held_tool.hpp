@@ -3,25 +3,27 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 
 #include "palpate/servo/servo.hpp"
 #include "palpate/tool/tool_field.hpp"
 #include "palpate/tool/tool_proxy.hpp"
+#include "servo/wrench_guard.hpp"
 
 namespace palpate {
 
-/// Renders a scene to a hand that holds a tool and feels forces, but no torques. Real-time but for
-/// construction.
+/// Renders a scene to a hand that holds a tool, and feels torque and grip where its device renders
+/// them. Real-time but for construction.
 class HeldTool {
  public:
-  /// `limit`: of the stiffness, N/m.
+  /// `options`: fitted to the device; `limit`: of the stiffness, N/m.
   /// @throws Error as ToolField and ToolProxy do, and where steps are to be traced.
-  HeldTool(Scene& scene, const ServoOptions& options, double limit);
+  HeldTool(Scene& scene, const ServoOptions& options, const DeviceInfo& device, double limit);
 
   /// A step to `hand` at `now` (s), `dt` (s) after the last one: what a point would report, at the
-  /// handle. The drift is the velocity along the force that the wrist's turning has the surface
-  /// push the handle with: a wrist without motors does that work, which is no gift to the hand
-  /// (docs/method.md 3.7).
+  /// handle. The drift is the velocity along the force that turning a wrist without motors has the
+  /// surface push the handle with, and the same of fingers: the wrist does that work, which is no
+  /// gift to the hand (docs/method.md 3.7).
   [[nodiscard]] Contact step(double now, const Pose& hand, double dt) noexcept;
   void reset(const Pose& hand) noexcept;
   void change(double stiffness, const Friction& friction) noexcept {
@@ -33,11 +35,22 @@ class HeldTool {
   [[nodiscard]] const Wrench& wrench() const noexcept { return wrench_; }
   [[nodiscard]] FieldNote notes() const noexcept { return field_.notes(); }
 
+  /// Does the hand feel more than a force? Then this guards its steps.
+  [[nodiscard]] bool is_felt_turning() const noexcept { return guard_.has_value(); }
+  /// What of the last step may go to the device, world. `touching`: the wrench counts; `velocity`:
+  /// of the hand's turns, rad/s.
+  [[nodiscard]] Wrench guarded(const Guard::Input& input, bool touching,
+                               const Eigen::Vector3d& velocity) noexcept {
+    return guard_->pass(input, {touching ? wrench_ : Wrench(), hand_, velocity});
+  }
+  [[nodiscard]] const Guard::State& guard_state() const noexcept { return guard_->state(); }
+
  private:
   [[nodiscard]] Eigen::Vector3d drift(const Pose& hand, double dt) const noexcept;
 
   ToolField field_;
   ToolProxy proxy_;
+  std::optional<WrenchGuard> guard_;
   Pose hand_;  // in the last step
   Wrench wrench_;
   bool started_ = false;

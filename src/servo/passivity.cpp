@@ -3,24 +3,27 @@
 
 #include <algorithm>
 
+#include "tool/motion.hpp"
+
 namespace palpate {
 
-using Eigen::Vector3d;
-
-const Vector3d& Passivity::sent(int steps_ago) const noexcept {
+template <int kAxes>
+const typename PassivityOf<kAxes>::Vector& PassivityOf<kAxes>::sent(int steps_ago) const noexcept {
   return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
 }
 
 // Is no force acting, and none in the delay line?
-bool Passivity::rests() const noexcept {
+template <int kAxes>
+bool PassivityOf<kAxes>::rests() const noexcept {
   for (int i = 0; i <= options_.delay; ++i) {
     if (!sent(i).isZero(0)) return false;
   }
   return true;
 }
 
-void Passivity::account(const Vector3d& force, const Vector3d& displacement, double stored,
-                        double dt) noexcept {
+template <int kAxes>
+void PassivityOf<kAxes>::account(const Vector& force, const Vector& displacement, double stored,
+                                 double dt) noexcept {
   if (!options_.on) return;
   newest_ = (newest_ + 1) % sent_.size();
   sent_[newest_] = force;
@@ -34,30 +37,38 @@ void Passivity::account(const Vector3d& force, const Vector3d& displacement, dou
   energy_ = -stored - std::min(dissipated / (1 + dt / options_.forget), options_.memory);
 }
 
-void Passivity::reset() noexcept {
+template <int kAxes>
+void PassivityOf<kAxes>::reset() noexcept {
   energy_ = 0;
-  sent_.fill(Vector3d::Zero());
+  sent_.fill(Vector::Zero());
 }
 
-double Passivity::committed(const Vector3d& displacement) const noexcept {
+template <int kAxes>
+double PassivityOf<kAxes>::committed(const Vector& displacement) const noexcept {
   double energy = energy_;
   for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(displacement);
   return energy;
 }
 
-Vector3d Passivity::brake(const Vector3d& force, const Vector3d& displacement, double dt,
-                          double damping) const noexcept {
+template <int kAxes>
+typename PassivityOf<kAxes>::Vector PassivityOf<kAxes>::brake(const Vector& force,
+                                                              const Vector& displacement, double dt,
+                                                              double damping) const noexcept {
   const double square = displacement.squaredNorm();
-  if (!options_.on || !(square > 0) || !(dt > 0)) return Vector3d::Zero();
+  if (!options_.on || !(square > 0) || !(dt > 0)) return Vector::Zero();
   const double energy = committed(displacement) + force.dot(displacement);
-  if (!(energy > 0)) return Vector3d::Zero();
+  if (!(energy > 0)) return Vector::Zero();
   // With the displacement d and v = d / dt: E / (|v|^2 dt) v = E / |d|^2 d, B v = B / dt d.
   return -std::min(energy / square, strongest(dt, damping) / dt) * displacement;
 }
 
 // Strongest brake, as a damper beside another of `damping`, N s/m.
-double Passivity::strongest(double dt, double damping) const noexcept {
+template <int kAxes>
+double PassivityOf<kAxes>::strongest(double dt, double damping) const noexcept {
   return std::max(0.0, options_.mass / (2 * std::max(2, options_.delay + 1) * dt) - damping);
 }
+
+template class PassivityOf<3>;
+template class PassivityOf<kFreedoms>;
 
 }  // namespace palpate

@@ -18,12 +18,15 @@ namespace palpate {
 /// not counted. n = max(2, delay + 1) steps: sampled and delayed dampers that are stronger than
 /// about M / (n dt) together shake the hand. Half of that is safe with a mass that was guessed up
 /// to twice too large. B is the damper that acts beside the brake. Real-time.
-class Passivity {
+template <int kAxes>
+class PassivityOf {
  public:
+  using Vector = Eigen::Matrix<double, kAxes, 1>;
+
   static constexpr int kMaximumDelay = 16;
 
   /// Options in their ranges.
-  explicit Passivity(const GuardOptions::Passivity& options) noexcept : options_(options) {
+  explicit PassivityOf(const GuardOptions::Passivity& options) noexcept : options_(options) {
     reset();
   }
 
@@ -31,33 +34,33 @@ class Passivity {
   /// `displacement` (m) against the surface. `stored` (J): energy in the stretched spring, which it
   /// will give back; never forgotten. Energy taken beyond that is forgotten with the time constant
   /// `forget`, and at once when no force acts any more: no contact pays for the next one.
-  void account(const Eigen::Vector3d& force, const Eigen::Vector3d& displacement, double stored,
-               double dt) noexcept;
+  void account(const Vector& force, const Vector& displacement, double stored, double dt) noexcept;
 
   /// Braking force, N, to add to `force` before it is sent, if the hand keeps moving by
   /// `displacement` (m) per step. Zero unless committed(), with `force`, is above zero. `damping`,
   /// N s/m: B of a damper that is part of `force`.
-  [[nodiscard]] Eigen::Vector3d brake(const Eigen::Vector3d& force,
-                                      const Eigen::Vector3d& displacement, double dt,
-                                      double damping = 0) const noexcept;
+  [[nodiscard]] Vector brake(const Vector& force, const Vector& displacement, double dt,
+                             double damping = 0) const noexcept;
 
   /// Predicted ledger, J, after the forces in the delay line have acted, if the hand keeps moving
   /// by `displacement` (m) per step.
-  [[nodiscard]] double committed(const Eigen::Vector3d& displacement) const noexcept;
+  [[nodiscard]] double committed(const Vector& displacement) const noexcept;
 
   /// J; above zero: given to the hand, below: taken from it recently.
   [[nodiscard]] double energy() const noexcept { return energy_; }
   void reset() noexcept;
 
  private:
-  [[nodiscard]] const Eigen::Vector3d& sent(int steps_ago) const noexcept;
+  [[nodiscard]] const Vector& sent(int steps_ago) const noexcept;
   [[nodiscard]] bool rests() const noexcept;
   [[nodiscard]] double strongest(double dt, double damping) const noexcept;
 
   GuardOptions::Passivity options_;
-  std::array<Eigen::Vector3d, kMaximumDelay + 1> sent_;  // ring
+  std::array<Vector, kMaximumDelay + 1> sent_;  // ring
   std::size_t newest_ = 0;
   double energy_ = 0;
 };
+
+using Passivity = PassivityOf<3>;
 
 }  // namespace palpate

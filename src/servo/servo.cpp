@@ -21,11 +21,6 @@ using Eigen::Vector3d;
 // Duration of the first step, s, for a device without a stated rate: 1 kHz is usual (judgement).
 constexpr double kFirstStep = 1e-3;
 
-ProxyOptions softened(ProxyOptions proxy, double limit) {
-  proxy.stiffness = std::min(proxy.stiffness, limit);
-  return proxy;
-}
-
 double first_step(const DeviceInfo& device) noexcept {
   return device.rate > 0 ? 1 / device.rate : kFirstStep;
 }
@@ -38,22 +33,6 @@ Guard::Fault fault_of(const ServoState& state) noexcept {
 
 }  // namespace
 
-// A point on surfaces that are no stiffer than the hand's device bears.
-struct LimitedProxy {
-  LimitedProxy(const ProxyOptions& options, double its_limit)
-      : limit(its_limit), is_softened(options.stiffness > limit), proxy(softened(options, limit)) {}
-
-  void change(const ContactSettings& wanted) noexcept {
-    is_softened = wanted.stiffness > limit;
-    proxy.change(std::min(wanted.stiffness, limit), wanted.friction, wanted.texture);
-  }
-
-  double limit;      // of the stiffness, N/m
-  bool is_softened;  // a stiffer surface is requested
-  Proxy proxy;
-  std::optional<SceneField> field;  // none: a tool is held in its place
-};
-
 struct Servo::Inside {
   Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
       : device(its_device),
@@ -62,7 +41,7 @@ struct Servo::Inside {
         guard(in_world(options.guard, options.workspace.scale)),
         requests(options) {
     if (options.tool) {
-      tool = std::make_unique<HeldTool>(scene, options, limited.limit);
+      tool = std::make_unique<HeldTool>(scene, options, device.info(), limited.limit);
     } else {
       limited.field.emplace(scene, options.field, "a field", options.workspace.scale);
     }
@@ -77,7 +56,8 @@ struct Servo::Inside {
     return {state.hip, state.orientation, options.workspace.scale * state.gripper};
   }
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
-  [[nodiscard]] Vector3d guarded() noexcept;
+  [[nodiscard]] Guard::Input felt() noexcept;
+  void let_through(const Guard::Input& input) noexcept;
 
   Device& device;
   ServoOptions options;
@@ -100,7 +80,7 @@ Servo::~Servo() = default;
 
 const ServoState& Servo::tick(double now) noexcept {
   step(device().read(), now);
-  device().write(device_force());
+  write();
   show();
   return inside_->state;
 }
@@ -108,7 +88,7 @@ const ServoState& Servo::tick(double now) noexcept {
 const ServoState& Servo::tick() noexcept {
   const DeviceState read = device().read();
   step(read, read.time);
-  device().write(device_force());
+  write();
   show();
   return inside_->state;
 }
@@ -133,8 +113,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   } else {
     touch_with_point();
   }
-  state.force = guarded();
-  state.guard = guard.state();
+  let_through(felt());
   ++state.step;
 }
 
@@ -191,7 +170,7 @@ void Servo::Inside::apply_pending() noexcept {
   if (basis.field && limited.field) limited.field->change(*basis.field);
 }
 
-Vector3d Servo::Inside::guarded() noexcept {
+Guard::Input Servo::Inside::felt() noexcept {
   Guard::Input input;
   input.felt = !state.paused && state.device != DeviceState::Status::silent;
   input.softened = limited.is_softened;
@@ -210,7 +189,22 @@ Vector3d Servo::Inside::guarded() noexcept {
   }
   basis.added = requests.added.add_to(input.force, state.time);
   input.fault = fault_of(state);
-  return guard.pass(input);
+  return input;
+}
+
+void Servo::Inside::let_through(const Guard::Input& input) noexcept {
+  if (!tool || !tool->is_felt_turning()) {
+    state.force = guard.pass(input);
+    state.guard = guard.state();
+    return;
+  }
+  const Vector3d turning =
+      options.workspace.T_world_device.linear() * basis.device.angular_velocity;
+  const Wrench felt = tool->guarded(input, !state.clutched, turning);
+  state.force = felt.force;
+  state.torque = felt.torque;
+  state.grip = felt.grip;
+  state.guard = tool->guard_state();
 }
 
 void Servo::show(const ServoState::Timing& timing) noexcept {
@@ -230,9 +224,15 @@ void ServoTrace::show(const ServoState& state) noexcept {
   servo_->show(state.timing);
 }
 
-Vector3d Servo::device_force() const noexcept {
-  if (inside_->device.info().maximum_force == 0) return Vector3d::Zero();
-  return inside_->options.workspace.force_to_device(inside_->state.force);
+void Servo::write() noexcept {
+  const Inside& in = *inside_;
+  const Workspace& workspace = in.options.workspace;
+  const bool pushes = in.device.info().maximum_force > 0;
+  const Vector3d force = pushes ? in.state.force : Vector3d::Zero();
+  if (!in.tool || !in.tool->is_felt_turning()) {
+    return in.device.write(pushes ? workspace.force_to_device(force) : force);
+  }
+  in.device.write_wrench(workspace.wrench_to_device({force, in.state.torque, in.state.grip}));
 }
 
 Device& Servo::device() const noexcept {

@@ -6,6 +6,7 @@
 
 #include "base/requirement.hpp"
 #include "palpate/servo/z_width.hpp"
+#include "palpate/tool/tool_proxy.hpp"
 #include "servo/passivity.hpp"
 
 namespace palpate {
@@ -29,6 +30,38 @@ double middle_of(std::size_t bin) noexcept {
 }
 
 constexpr int kButtons = 32;  // bits of DeviceState::buttons
+
+// m at the hand: a stiffness is lowered rather than a gyration below it, as fingers are as far from
+// the axis of what they turn (judgement).
+constexpr double kLeastGyration = 0.01;
+
+bool turns(const DeviceInfo& device, const ServoOptions& options) noexcept {
+  return options.tool && options.guard.on && device.maximum_torque > 0;
+}
+
+// The stiffness at the hand up to which turns are passive: K g^2 <= 2 (b + B g^2) / (T + 2 T_d), in
+// the metric of a gyration g (m), at the hand as well.
+double turning_limit(DeviceInfo device, const GuardOptions& guard, double gyration) noexcept {
+  device.damping = device.angular_damping / (gyration * gyration);
+  return guard.stiffness_share * passive_stiffness(device, guard.damping);
+}
+
+// The largest gyration up to the tool's with which turns are passive, but kLeastGyration; m, world.
+double passive_gyration(const DeviceInfo& device, const ServoOptions& options) {
+  const double scale = options.workspace.scale;
+  const double wanted = ToolProxy(options.tool).options().gyration / scale;
+  const double felt =
+      std::min(options.proxy.stiffness, stiffness_limit_of(device, options)) * scale;
+  DeviceInfo turning = device;
+  turning.damping = 0;
+  const double damped =
+      options.guard.stiffness_share * passive_stiffness(turning, options.guard.damping);
+  if (!(felt > damped)) return wanted * scale;
+  turning.damping = device.angular_damping;
+  const double by_device = options.guard.stiffness_share * passive_stiffness(turning, 0);
+  const double stable = std::sqrt(by_device / (felt - damped));
+  return scale * std::max(std::min(wanted, stable), std::min(wanted, kLeastGyration));
+}
 
 }  // namespace
 
@@ -118,7 +151,12 @@ ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   const int button = options.clutch_button.value_or(0);
   Requirement{"servo"}(button >= 0 && button < kButtons, "clutch_button", button,
                        "give a button from 0 to 31");
+  Requirement{"device"}(device.maximum_torque >= 0, "maximum_torque (N m)", device.maximum_torque,
+                        "give what it can hold, 0 for none");
   options.guard = guard_for(device, options.guard);
+  if (turns(device, options) && options.gyration == 0) {
+    options.gyration = passive_gyration(device, options);
+  }
   return options;
 }
 
@@ -127,7 +165,11 @@ double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options)
   if (!guard.on) return std::numeric_limits<double>::infinity();
   double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
   if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
-  return felt / options.workspace.scale;
+  const double scale = options.workspace.scale;
+  if (turns(device, options) && options.gyration > 0) {
+    felt = std::min(felt, turning_limit(device, guard, options.gyration / scale));
+  }
+  return felt / scale;
 }
 
 GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {

@@ -146,11 +146,35 @@ struct Requests {
   std::atomic<bool> reset{false};
 };
 
-/// The options with a guard that is fitted to the device.
+/// A point on surfaces that are no stiffer than the hand's device bears.
+struct LimitedProxy {
+  LimitedProxy(const ProxyOptions& options, double its_limit)
+      : limit(its_limit), is_softened(options.stiffness > limit), proxy(softened(options, limit)) {}
+
+  void change(const ContactSettings& wanted) noexcept {
+    is_softened = wanted.stiffness > limit;
+    proxy.change(std::min(wanted.stiffness, limit), wanted.friction, wanted.texture);
+  }
+
+  // The options with no more stiffness than that.
+  [[nodiscard]] static ProxyOptions softened(ProxyOptions proxy, double limit) {
+    proxy.stiffness = std::min(proxy.stiffness, limit);
+    return proxy;
+  }
+
+  double limit;      // of the stiffness, N/m
+  bool is_softened;  // a stiffer surface is requested
+  Proxy proxy;
+  std::optional<SceneField> field;  // none: a tool is held in its place
+};
+
+/// The options with a guard that is fitted to the device, and a gyration with which it holds the
+/// turns of a tool if it renders torque.
 /// @throws Error for a clutch that is no button, and a maximum force below 0.
 [[nodiscard]] ServoOptions options_for(const DeviceInfo& device, ServoOptions options);
 
-/// Stiffness limit in the world, N/m: the hand's limit divided by the magnification.
+/// Stiffness limit in the world, N/m: the hand's limit divided by the magnification, that of turns
+/// too if the device renders torque.
 [[nodiscard]] double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options);
 
 }  // namespace palpate

@@ -269,7 +269,7 @@ bool ServoThread::step(ServoThread::Deadlines& deadlines) noexcept {
   const double start = thread_cpu_seconds();
   servo_.step(state, now);
   timing.computing = thread_cpu_seconds() - start;
-  device.write(servo_.device_force());
+  servo_.write();
   servo_.show(timing);
   return state.status != DeviceState::Status::failed;
 }

@@ -59,10 +59,13 @@ void members(auto f, ServoOptions& o) {
     clutch);
 }
 void members(auto f, DeviceInfo& o) {
-  auto& [name, force, stiffness, damping, mass, rate, delay, radius, keeps, turns, grips] = o;
-  f({"name", "maximum_force", "maximum_stiffness", "damping", "mass", "rate", "delay",
-     "workspace_radius", "keeps_time", "has_orientation", "has_gripper"},
-    name, force, stiffness, damping, mass, rate, delay, radius, keeps, turns, grips);
+  auto& [name, force, stiffness, damping, mass, torque, grip, turn_damping, inertia, rate, delay,
+         radius, keeps, turns, grips] = o;
+  f({"name", "maximum_force", "maximum_stiffness", "damping", "mass", "maximum_torque",
+     "maximum_grip", "angular_damping", "inertia", "rate", "delay", "workspace_radius",
+     "keeps_time", "has_orientation", "has_gripper"},
+    name, force, stiffness, damping, mass, torque, grip, turn_damping, inertia, rate, delay, radius,
+    keeps, turns, grips);
 }
 void members(auto f, Box& o) {
   f({"lower", "upper"}, o.lower, o.upper);

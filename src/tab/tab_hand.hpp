@@ -51,7 +51,7 @@ struct TabHand {
     before(read.time);
     elsewhere += clock.now() - begin;
     servo.step(read, read.time);
-    device.write(servo.device_force());
+    servo.write();
     servo.show({.lateness = lateness, .computing = computing});
     ++steps;
   }

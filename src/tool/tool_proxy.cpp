@@ -7,6 +7,7 @@
 
 #include "base/requirement.hpp"
 #include "contact/limit.hpp"
+#include "geometry/wrench.hpp"
 #include "tool/tool_proxy_inside.hpp"
 
 namespace palpate {
@@ -57,10 +58,6 @@ bool in_range(const Pose& pose) {
 Pose wanted_of(const Pose& given, const Tool& tool) {
   return {given.position, given.orientation.normalized(),
           tool.opens() ? std::max(0.0, given.opening) : 0.0};
-}
-
-bool is_finite(const Wrench& wrench) {
-  return wrench.force.allFinite() && wrench.torque.allFinite() && std::isfinite(wrench.grip);
 }
 
 // A field that serves all samples alike.

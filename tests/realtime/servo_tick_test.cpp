@@ -119,5 +119,35 @@ TEST_F(ServoTick, KeepsTheContractWhileOthersWatchAndChangeIt) {
   press();
 }
 
+// Torque and grip, too: every link on all axes, until a fault and after it.
+TEST_F(ServoTick, KeepsTheContractWithAGripperThatIsFelt) {
+  device_.info().maximum_torque = 0.02;
+  device_.info().maximum_grip = 0.2;
+  ServoOptions options;
+  options.guard.soft_start = 0.02;
+  options.guard.slew = 10;
+  options.tool = std::make_shared<const Tool>(Tool::gripper({6e-3, 12e-3, 30e-3}, 4e-3));
+  servo_ = std::make_unique<Servo>(device_, scene_, options);
+  double torque = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double turn = 0.8 + 0.5 * std::sin(0.01 * i);
+    device_.state().orientation = Eigen::AngleAxisd(turn, Vector3d::UnitY());
+    device_.state().angular_velocity.y() = 5 * std::cos(0.01 * i);
+    device_.state().gripper = 0.01 + 0.01 * std::sin(0.02 * i);
+    if (i == 1500) device_.state().orientation.x() = std::numeric_limits<double>::quiet_NaN();
+    if (i == 1600) servo_->reset();
+    servo_->pause(i % 500 > 450);
+    const ServoState& state =
+        tick(i < 50 ? 0.06 : 0.02 - 0.005 * std::sin(0.007 * i), i % 400 == 399 ? 9e-3 : 1e-3);
+    torque = std::max(torque, state.torque.norm());
+  }
+  const Guard::State::Counts& counts = servo_->state().guard.counts;
+  EXPECT_GT(torque, 1e-3);
+  EXPECT_GT(counts.clamped, 10u);
+  EXPECT_GT(counts.slewed, 10u);
+  EXPECT_GT(counts.silences, 3u);
+  EXPECT_EQ(counts.faults, 1u);
+}
+
 }  // namespace
 }  // namespace palpate::realtime

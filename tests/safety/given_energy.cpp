@@ -82,7 +82,7 @@ GivenEnergy given_energy(SimulatedDevice& device, Scene& scene, const ServoOptio
     if (prepare) prepare(i / device.info().rate);
     const ServoState& state = servo.tick();
     const Vector3d drift = state.contact.drift / options.workspace.scale;
-    surface.add(servo.device_force(),
+    surface.add(options.workspace.force_to_device(state.force),
                 options.workspace.T_world_device.linear().transpose() * Vector3d(state.dt * drift));
     const double work = device.work() - surface.now();
     given.in_all = std::max(given.in_all, work);

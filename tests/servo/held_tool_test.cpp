@@ -1,4 +1,5 @@
-// A servo whose hand holds a tool that turns: forces at the handle, and what a wrist may get.
+// A servo whose hand holds a tool that turns: forces and torques at the handle, and what a wrist
+// may get.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -144,6 +145,117 @@ TEST_F(HandWithAWrist, RestsWhereItIsWhileTheClutchIsHeld) {
   EXPECT_LT(held.force.norm(), 1e-6);
   device_.state().buttons = 0;
   EXPECT_LT(go(-0.039, 0, 10).force.norm(), 0.05);
+}
+
+// A box whose corner the wrist turns into the sheet, on a device with motors for that.
+class HandThatFeelsTorque : public HandWithAWrist {
+ protected:
+  void hold_box(double maximum_torque, ServoOptions options = test::first_links()) {
+    device_.info().maximum_torque = maximum_torque;
+    options.gyration = 0.03;
+    hold(holding("box:20x30x10", options));
+    go(0.06, 0, 10);
+  }
+  const ServoState& press() { return go(3e-3, 0.2, 600); }
+};
+
+TEST_F(HandThatFeelsTorque, GetsTheToolsTorque) {
+  hold_box(1);
+  const ServoState& state = press();
+  EXPECT_GT(state.torque.norm(), 5e-3);
+  EXPECT_LT((state.torque - state.wrench.torque).norm(), 1e-9);
+  EXPECT_EQ(device_.wrench().force, state.force);
+  EXPECT_EQ(device_.wrench().torque, state.torque);
+  EXPECT_EQ(state.contact.drift, Vector3d::Zero());
+}
+
+TEST_F(HandThatFeelsTorque, GetsNoMoreThanItHolds) {
+  hold_box(5e-3);
+  const ServoState& state = press();
+  EXPECT_GT(state.wrench.torque.norm(), 5e-3);
+  EXPECT_NEAR(state.torque.norm(), 4e-3, 1e-9);
+  EXPECT_TRUE(has(state.guard.notes, GuardNote::clamped));
+}
+
+TEST_F(HandThatFeelsTorque, LosesItWhilePausedOrSilentAndAtAFault) {
+  hold_box(1);
+  press();
+  const auto is_free = [this](int steps) {
+    for (int i = 0; i < steps; ++i) tick(3e-3, 0.2);
+    return device_.wrench().torque.norm() + device_.wrench().force.norm() < 1e-9;
+  };
+  servo_->pause(true);
+  EXPECT_FALSE(is_free(1));
+  EXPECT_TRUE(is_free(30));
+  servo_->pause(false);
+  EXPECT_FALSE(is_free(30));
+  device_.state().status = DeviceState::Status::silent;
+  EXPECT_TRUE(is_free(30));
+  device_.state().status = DeviceState::Status::ok;
+  EXPECT_FALSE(is_free(30));
+  device_.state().orientation.x() = std::nan("");
+  servo_->tick(now_ += 1e-3);
+  EXPECT_EQ(device_.wrench().torque, Vector3d::Zero());
+  EXPECT_EQ(device_.wrench().force, Vector3d::Zero());
+  EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::proxy);
+  device_.state().orientation = Eigen::AngleAxisd(0.2, Vector3d::UnitY());
+  EXPECT_TRUE(is_free(30));
+  servo_->reset();
+  is_free(1);
+  EXPECT_EQ(servo_->state().guard.fault, Guard::Fault::none);
+}
+
+TEST_F(HandThatFeelsTorque, LosesItWhileTheClutchIsHeld) {
+  ServoOptions options = test::first_links();
+  options.clutch_button = 0;
+  hold_box(1, options);
+  press();
+  device_.state().buttons = 1;
+  for (int i = 0; i < 100; ++i) tick(3e-3, 0.2);
+  EXPECT_EQ(device_.wrench().torque, Vector3d::Zero());
+}
+
+// A magnified hand has longer levers in the world than at the hand.
+TEST_F(HandThatFeelsTorque, GetsItSmallerWhereItIsMagnified) {
+  ServoOptions options = test::first_links();
+  options.workspace.scale = 2;
+  options.workspace.T_world_device.translation().x() = 0.04;
+  hold_box(1, options);
+  const ServoState& state = go(1.5e-3, 0.2, 600);
+  EXPECT_GT(state.torque.norm(), 5e-3);
+  EXPECT_LT((2 * device_.wrench().torque - state.torque).norm(), 1e-12);
+}
+
+// The gyration is lowered to where turns are passive, but not below 10 mm; then the stiffness is.
+TEST_F(HandThatFeelsTorque, HasAGyrationWithWhichTurnsArePassive) {
+  device_.info().maximum_torque = 1;
+  device_.info().damping = 2;
+  ServoOptions options = holding("capsule:80x2");
+  options.guard.damping = 0;
+  hold(options);
+  const double pace = 0.8 * 2 / 3e-3;  // N/m for 1 N s/m: a step of 1 ms, and one of delay
+  const auto limit_of = [&] { return pace * device_.info().angular_damping / 1e-4; };
+  EXPECT_NEAR(servo_->options().gyration, 0.01, 1e-12);
+  EXPECT_EQ(servo_->stiffness_limit(), 0);
+  device_.info().angular_damping = 5e-5;
+  hold(options);
+  EXPECT_NEAR(servo_->options().gyration, 0.01, 1e-12);
+  EXPECT_NEAR(servo_->stiffness_limit(), limit_of(), 1e-9);
+  device_.info().angular_damping = 5e-4;
+  hold(options);
+  EXPECT_NEAR(servo_->options().gyration, std::sqrt(pace * 5e-4 / 500), 1e-12);
+  EXPECT_NEAR(servo_->stiffness_limit(), 500, 1e-9);
+  device_.info().angular_damping = 5e-2;
+  hold(options);
+  EXPECT_NEAR(servo_->options().gyration, 0.041, 2e-3);  // the tool's: half of its extent
+  EXPECT_NEAR(servo_->stiffness_limit(), 2 * pace, 1e-9);
+  device_.info().angular_damping = 0;
+  options.guard.damping = 1;  // holds 500 N/m by itself, whatever the gyration
+  hold(options);
+  EXPECT_NEAR(servo_->options().gyration, 0.041, 2e-3);
+  options.gyration = 0.02;
+  hold(options);
+  EXPECT_EQ(servo_->options().gyration, 0.02);
 }
 
 TEST_F(HandWithAWrist, RefusesToBeTraced) {

@@ -47,7 +47,8 @@ inline Trajectory visit() {
   return rows;
 }
 
-/// A device that renders no force and has no time of its own, wherever it is told to be.
+/// A device that renders nothing unless it is told to and has no time of its own, wherever it is
+/// told to be.
 class FreeDevice final : public Device {
  public:
   explicit FreeDevice(const Eigen::Vector3d& position = Eigen::Vector3d::Zero()) {
@@ -61,18 +62,20 @@ class FreeDevice final : public Device {
     ++reads_;
     return state_;
   }
-  void write(const Eigen::Vector3d& force) noexcept override { force_ = force; }
+  void write(const Eigen::Vector3d& force) noexcept override { wrench_ = {.force = force}; }
+  void write_wrench(const Wrench& wrench) noexcept override { wrench_ = wrench; }
   [[nodiscard]] std::string reason() const override { return "told to"; }
 
   DeviceInfo& info() noexcept { return info_; }
   DeviceState& state() noexcept { return state_; }
   void finish_after(int reads) noexcept { last_step_ = reads - 1; }
-  [[nodiscard]] const Eigen::Vector3d& force() const noexcept { return force_; }
+  [[nodiscard]] const Eigen::Vector3d& force() const noexcept { return wrench_.force; }
+  [[nodiscard]] const Wrench& wrench() const noexcept { return wrench_; }
 
  private:
   DeviceInfo info_;
   DeviceState state_;
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  Wrench wrench_;
   int reads_ = 0;
   int last_step_ = -1;
 };

@@ -64,7 +64,7 @@ bool run_simulated(Run& run, const EachStep& each) {
     const double start = thread_cpu_seconds();
     const ServoState& step = servo.step(state, state.time);
     const double computing = thread_cpu_seconds() - start;
-    device.write(servo.device_force());
+    servo.write();
     servo.show({.computing = computing});
     if (run.recorder != nullptr) run.recorder->keep_up();
     each(0, step);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/geometry/pose.hpp"
+
 namespace palpate {
 
 /// Abilities and limits of one device.
@@ -17,7 +19,12 @@ struct DeviceInfo {
   double maximum_stiffness = 0;  ///< N/m at the hand that its maker allows; 0: unknown
   double damping = 0;            ///< viscous, of the device by itself, N s/m; 0: unknown
   double mass = 0;               ///< that the hand moves with it, kg; 0: unknown
-  double rate = 1000;            ///< steps per second that it is made for, Hz
+  /// N m about any axis, continuous. 0: the device renders no torque, and a Servo sends it none.
+  double maximum_torque = 0;
+  double maximum_grip = 0;     ///< N between its fingers, continuous; 0: it renders none
+  double angular_damping = 0;  ///< viscous, of its turns, N m s/rad; 0: unknown
+  double inertia = 0;  ///< that the hand turns with it, about the lightest axis, kg m2; 0: unknown
+  double rate = 1000;  ///< steps per second that it is made for, Hz
   /// s from reading a position to its force's effect, without the time that the force is held;
   /// unset: unknown
   std::optional<double> delay = {};
@@ -49,6 +56,9 @@ struct DeviceState {
   /// held along the device's axes, and where the device does not measure it.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   double gripper = 0;  ///< opening between its fingers, m; 0 where there is none
+  /// rad/s, in the device's axes; where torque is rendered, damping and brake depend on it.
+  /// Estimate it from orientations where it is not measured.
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
 };
 
 /// True when there will be no more steps.
@@ -57,13 +67,13 @@ struct DeviceState {
 }
 
 /// A haptic device: measures where the hand is and applies a force to it. It may measure more
-/// (orientation, gripper), but the output has three degrees of freedom: no torque is rendered.
+/// (orientation, gripper), and apply torque and grip where its info() has a maximum of them.
 ///
-/// One thread uses it, as a sequence of steps: read() once, then write() once. An implementation
-/// may talk to its hardware in either; one whose hardware only answers requests sends in write()
-/// and receives in the next read(). Construction opens the device and throws Error; the destructor
-/// sets zero force. Between them nothing throws: a failure is latched, read() then repeats the last
-/// state with status `failed`, and write() does nothing.
+/// One thread uses it, as a sequence of steps: read() once, then write() or write_wrench() once. An
+/// implementation may talk to its hardware in either; one whose hardware only answers requests
+/// sends in write() and receives in the next read(). Construction opens the device and throws
+/// Error; the destructor sets zero force. Between them nothing throws: a failure is latched, read()
+/// then repeats the last state with status `failed`, and write() does nothing.
 class Device {
  public:
   virtual ~Device() = default;
@@ -76,7 +86,13 @@ class Device {
 
   /// Applies a force to the hand, N, device frame, until the next write(). A force that is not
   /// finite is a failure; the device shortens forces above its maximum.
+  /// A device that renders torque or grip lets them go to zero.
   virtual void write(const Eigen::Vector3d& force) noexcept = 0;
+
+  /// The same with a torque about the handle (N m, in the device's axes) and a grip (N; above 0 it
+  /// opens). By default the force alone is written. It has a name of its own since whoever
+  /// overrides one function hides all others of its name.
+  virtual void write_wrench(const Wrench& wrench) noexcept { write(wrench.force); }
 
   /// Why the status is `failed`, or `silent`, and what to do; empty otherwise. Not real-time.
   [[nodiscard]] virtual std::string reason() const = 0;
@@ -130,7 +146,8 @@ struct DeviceProfile {
 ///  - the hand feels a surface of K N/m in the world as scale * K N/m (felt_stiffness()); for it to
 ///    feel K, give the surface K / scale;
 ///  - work done on the hand is the world's work F . dh divided by `scale`; its sign, which
-///    passivity depends on, is the same in both.
+///    passivity depends on, is the same in both. Turns are not magnified, so a torque is divided
+///    by `scale`: its levers are so much shorter at the hand.
 struct Workspace {
   Eigen::Isometry3d T_world_device = Eigen::Isometry3d::Identity();  ///< pose of the device's frame
   double scale = 1;  ///< metres in the world for one metre of the device; > 0
@@ -154,6 +171,9 @@ struct Workspace {
   }
   [[nodiscard]] Eigen::Vector3d force_to_device(const Eigen::Vector3d& world) const noexcept {
     return T_world_device.linear().transpose() * world;
+  }
+  [[nodiscard]] Wrench wrench_to_device(const Wrench& world) const noexcept {
+    return {force_to_device(world.force), force_to_device(world.torque) / scale, world.grip};
   }
   /// The stiffness that the hand feels, N/m, of a surface with `world` N/m.
   [[nodiscard]] double felt_stiffness(double world) const noexcept { return scale * world; }

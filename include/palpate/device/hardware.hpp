@@ -31,6 +31,11 @@ class DeviceDriver {
   /// info().maximum_force.
   /// @throws Error that states what failed and what to do. The driver is then closed.
   [[nodiscard]] virtual DeviceState exchange(const Eigen::Vector3d& force) = 0;
+  /// The same with torque and grip, finite and no larger than info() has them; by default the force
+  /// alone is applied.
+  [[nodiscard]] virtual DeviceState exchange_wrench(const Wrench& wrench) {
+    return exchange(wrench.force);
+  }
 
  protected:
   DeviceDriver() = default;
@@ -71,7 +76,8 @@ class ThreadedDevice final : public Device {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override;
   [[nodiscard]] DeviceState read() noexcept override;
-  void write(const Eigen::Vector3d& force) noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override { write_wrench({.force = force}); }
+  void write_wrench(const Wrench& wrench) noexcept override;
   /// Also why the device is silent. Any thread but the servo's.
   [[nodiscard]] std::string reason() const override;
 

@@ -14,6 +14,10 @@ struct RemoteDeviceOptions {
   std::string path = {};          ///< of the socket; empty: default_remote_path()
   double maximum_force = 5;       ///< of the hardware, continuous, N; longer forces are shortened
   double maximum_stiffness = 0;   ///< N/m that its maker allows; 0: unknown
+  double maximum_torque = 0;      ///< of the hardware, continuous, N m; 0: it renders none
+  double maximum_grip = 0;        ///< the same of its gripper, N
+  double angular_damping = 0;     ///< viscous, of its turns, N m s/rad; 0: unknown
+  bool turns = false;             ///< clients tell orientation and opening (version 2)
   double workspace_radius = 0.1;  ///< m; only reported, never enforced
   double rate = 1000;             ///< steps a second, Hz
   double client_timeout = 0.1;    ///< s without a valid packet after which the client is lost
@@ -52,7 +56,8 @@ class RemoteDevice final : public Device {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override;
   [[nodiscard]] DeviceState read() noexcept override;
-  void write(const Eigen::Vector3d& force) noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override { write_wrench({.force = force}); }
+  void write_wrench(const Wrench& wrench) noexcept override;
   /// Also why the device is silent. Any thread.
   [[nodiscard]] std::string reason() const override;
 

@@ -109,8 +109,10 @@ struct ServoState {
   double gripper = 0;                                               ///< its opening at the hand, m
   Contact contact;  ///< its force is the proxy's own
   Pose tool;      ///< where ServoOptions::tool is, outside of the surface; its handle is the proxy
-  Wrench wrench;  ///< of the tool's proxy; torque and grip go to no device
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what the guard let through, N
+  Wrench wrench;  ///< of the tool's proxy, before the guard
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< what the guard let through, N
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< the same, N m; 0: the device renders none
+  double grip = 0;                                   ///< the same, N; 0: the device renders none
   Guard::State guard;
   FieldNote field_notes = FieldNote::none;
   DeviceState::Status device = DeviceState::Status::ok;
@@ -162,10 +164,12 @@ struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
   /// What the hand holds; null: a point. Experimental. A device that measures its orientation turns
-  /// it, but feels the force alone; texture is not rendered, and its steps cannot be
-  /// traced.
+  /// it, and gets torque and grip where it renders them; texture is not rendered, and its steps
+  /// cannot be traced.
   std::shared_ptr<const Tool> tool = {};
-  double gyration = 0;      ///< ToolOptions::gyration
+  /// ToolOptions::gyration. Where torque is rendered, 0 stands for the largest up to the tool's
+  /// with which turns are stable on the device, at least 10 mm at the hand (docs/method.md 8.1).
+  double gyration = 0;
   GuardOptions guard = {};  ///< at the hand; fitted to the device by guard_for()
   Workspace workspace = {};
   /// While this button of the device is down, 0 to 31, the hand moves without the tool.
@@ -215,21 +219,24 @@ class Servo {
   /// A step at the device's own time: for simulated time.
   const ServoState& tick() noexcept;
 
-  /// The computing part of a step alone: the force for the device is in state().force, world frame.
-  /// Publishes nothing yet. Real-time (docs/architecture.md, contract 1).
+  /// The computing part of a step alone: what it returns has the force for the device, world frame;
+  /// write() sends it. Publishes nothing yet. Real-time (docs/architecture.md, contract 1).
   const ServoState& step(const DeviceState& device, double now) noexcept;
 
   /// Publishes the last step to other threads, with its measured timing. Real-time.
   void show(const ServoState::Timing& timing = {}) noexcept;
 
-  /// `state.force` in the device's frame; zero for a device without force.
-  [[nodiscard]] Eigen::Vector3d device_force() const noexcept;
+  /// Writes what the last step computed to the device, in its frame: the force (zero for a device
+  /// without force), and torque and grip where a tool is held and the device renders them.
+  /// Real-time, apart from what the device does.
+  void write() noexcept;
 
   [[nodiscard]] Device& device() const noexcept;
   [[nodiscard]] const ServoOptions& options() const noexcept;
 
-  /// The stiffest surface that this device can hold in this workspace, N/m in the world; stiffer
-  /// settings are reduced to it (docs/method.md 8.1). Infinite for devices without force.
+  /// The stiffest surface that this device can hold in this workspace, N/m in the world, also in
+  /// turns if it renders torque; stiffer settings are reduced to it (docs/method.md 8.1). Infinite
+  /// for devices without force.
   [[nodiscard]] double stiffness_limit() const noexcept;
 
   /// The newest state. Any thread.
