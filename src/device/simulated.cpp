@@ -9,33 +9,18 @@
 #include <utility>
 
 #include "base/requirement.hpp"
+#include "device/held_mass.hpp"
+#include "device/held_wrist.hpp"
 #include "device/target_motion.hpp"
+#include "geometry/turn.hpp"
+#include "geometry/wrench.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kParts = 16;  // of a step; dry friction's direction is constant in each (judgement)
-constexpr int kEvents = 4;  // stops and starts followed in one part (judgement)
-constexpr int kBisections = 48;    // of a part, to find when the device stops (judgement)
-constexpr double kAtRest = 1e-12;  // m/s; slower counts as at rest (judgement)
-constexpr int kMostDelay = 16;     // steps of delay, at most (judgement)
-
-// e^A by Taylor's series of A / 2^n, squared n times: exact to rounding for these small matrices.
-Eigen::Matrix4d exponential(const Eigen::Matrix4d& a) {
-  const double norm = a.cwiseAbs().rowwise().sum().maxCoeff();
-  const int squarings = norm > 0.5 ? std::ilogb(norm) + 2 : 0;
-  const Eigen::Matrix4d scaled = std::ldexp(1.0, -squarings) * a;
-  Eigen::Matrix4d term = Eigen::Matrix4d::Identity();
-  Eigen::Matrix4d sum = term;
-  for (int i = 1; i <= 16; ++i) {
-    term = Eigen::Matrix4d(term * scaled) / i;
-    sum += term;
-  }
-  for (int i = 0; i < squarings; ++i) sum = Eigen::Matrix4d(sum * sum);
-  return sum;
-}
+constexpr int kMostDelay = 16;  // steps of delay, at most (judgement)
 
 SimulatedDeviceOptions checked(const SimulatedDeviceOptions& o) {
   const Requirement require{"simulated device"};
@@ -66,45 +51,16 @@ DeviceInfo info_of(const SimulatedDeviceOptions& options) {
   info.delay = options.delay / options.rate;
   info.workspace_radius = options.workspace_radius;
   info.keeps_time = true;
+  if (options.wrist) {
+    info.has_orientation = info.has_gripper = true;
+    info.maximum_torque = options.wrist->maximum_torque;
+    info.angular_damping = options.wrist->damping;
+    info.inertia = options.wrist->inertia.minCoeff();
+  }
   return info;
 }
 
-// Matrix A of d/dt (x, v, push, push rate) = A (x, v, push, push rate).
-Eigen::Matrix4d generator_of(const SimulatedDeviceOptions& options) {
-  Eigen::Matrix4d generator = Eigen::Matrix4d::Zero();
-  generator(0, 1) = 1;
-  generator(1, 0) = -options.hand.stiffness / options.mass;
-  generator(1, 1) = -(options.damping + options.hand.damping) / options.mass;
-  generator(1, 2) = 1 / options.mass;
-  generator(2, 3) = 1;
-  return generator;
-}
-
 }  // namespace
-
-// A mass on the hand's spring and damper, with dry friction. Moves exactly between stops and
-// starts.
-struct HeldMass {
-  explicit HeldMass(const SimulatedDeviceOptions& the_options)
-      : options(the_options),
-        generator(generator_of(options)),
-        whole_step(exponential(generator / options.rate)),
-        part_step(exponential(generator / (options.rate * kParts))),
-        position(options.position),
-        velocity(options.velocity) {}
-
-  void advance(const Vector3d& push, const Vector3d& push_rate) noexcept;
-  void slide(double duration, Vector3d push, const Vector3d& push_rate) noexcept;
-  void flow(const Eigen::Matrix4d& transition, const Vector3d& push,
-            const Vector3d& push_rate) noexcept;
-
-  const SimulatedDeviceOptions& options;
-  Eigen::Matrix4d generator;
-  Eigen::Matrix4d whole_step;  // its exponential over one step
-  Eigen::Matrix4d part_step;   // ... and over 1/16 of one
-  Vector3d position;
-  Vector3d velocity;
-};
 
 struct SimulatedDevice::Inside {
   Inside(const SimulatedDeviceOptions& the_options, Trajectory rows)
@@ -113,7 +69,7 @@ struct SimulatedDevice::Inside {
     trajectory = Playback(std::move(rows));
     if (!options.duration && !trajectory.empty()) options.duration = trajectory.end();
     if (!trajectory.empty()) mass.position = trajectory.front().position;
-    forces.fill(Vector3d::Zero());
+    if (options.wrist) wrist.emplace(*options.wrist);
   }
 
   [[nodiscard]] TargetSource::Target target_at(double time) noexcept;
@@ -121,7 +77,12 @@ struct SimulatedDevice::Inside {
     if (options.resolution == 0) return mass.position;
     return (mass.position / options.resolution).array().round().matrix() * options.resolution;
   }
+  [[nodiscard]] Eigen::Quaterniond resting() const noexcept {
+    return options.wrist ? options.wrist->orientation : Eigen::Quaterniond::Identity();
+  }
   [[nodiscard]] bool fetch(double time) noexcept;
+  void begin() noexcept;
+  void show() noexcept;
   void advance() noexcept;
   void fail(const char* what) noexcept;
 
@@ -131,8 +92,8 @@ struct SimulatedDevice::Inside {
   TargetSource::Target target;  // at the current time
   DeviceInfo info;
   HeldMass mass;
-  std::array<Vector3d, kMostDelay + 1> forces;  // ring of written forces
-  double work = 0;
+  std::optional<HeldWrist> wrist;
+  std::array<Wrench, kMostDelay + 1> wrenches;  // ring of written ones
   std::uint64_t steps = 0;
   DeviceState state;
   bool started = false;
@@ -162,7 +123,7 @@ const Vector3d& SimulatedDevice::true_velocity() const noexcept {
 }
 
 double SimulatedDevice::work() const noexcept {
-  return inside_->work;
+  return inside_->mass.work + (inside_->wrist ? inside_->wrist->work() : 0);
 }
 
 DeviceState SimulatedDevice::read() noexcept {
@@ -170,14 +131,11 @@ DeviceState SimulatedDevice::read() noexcept {
   if (in.wrong != nullptr || in.state.status == DeviceState::Status::finished) return in.state;
   if (in.started) {
     in.advance();
-  } else if (in.fetch(0) && in.source != nullptr) {
-    in.mass.position = in.target.position;
+  } else {
+    in.begin();
   }
   if (in.wrong != nullptr) return in.state;
-  const Vector3d shown = in.quantised();
-  if (in.started) in.state.velocity = (shown - in.state.position) * in.options.rate;
-  in.state.position = shown;
-  in.state.buttons = in.target.buttons;
+  in.show();
   in.state.time = static_cast<double>(in.steps) / in.options.rate;
   in.started = true;
   // Half a step of slack: the end of a trajectory need not be a whole number of steps.
@@ -187,16 +145,20 @@ DeviceState SimulatedDevice::read() noexcept {
   return in.state;
 }
 
-void SimulatedDevice::write(const Vector3d& force) noexcept {
+void SimulatedDevice::write_wrench(const Wrench& wrench) noexcept {
   Inside& in = *inside_;
   if (in.wrong != nullptr) return;
-  if (!force.allFinite()) {
-    in.fail("the force written was not finite");
+  if (!is_finite(wrench)) {
+    in.fail("the force or torque written was not finite");
     return;
   }
-  const double length = force.norm();
-  const double shorten = length > in.options.maximum_force ? in.options.maximum_force / length : 1;
-  in.forces[in.steps % in.forces.size()] = shorten * force;
+  in.wrenches[in.steps % in.wrenches.size()] =
+      shortened(wrench, in.options.maximum_force, in.info.maximum_torque, 0);
+}
+
+const Eigen::Quaterniond& SimulatedDevice::true_orientation() const noexcept {
+  static const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
+  return inside_->wrist ? inside_->wrist->orientation() : straight;
 }
 
 std::string SimulatedDevice::reason() const {
@@ -212,8 +174,10 @@ void SimulatedDevice::Inside::fail(const char* what) noexcept {
 
 TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   if (source != nullptr) return source->target(time, mass.position);
-  if (trajectory.empty()) return {options.position};
-  return {trajectory.at(time)};
+  TargetSource::Target along;
+  along.position = trajectory.empty() ? options.position : trajectory.at(time);
+  along.orientation = resting();
+  return along;
 }
 
 // Fetches the target at `time`; false if it is not valid.
@@ -221,14 +185,38 @@ bool SimulatedDevice::Inside::fetch(double time) noexcept {
   target = target_at(time);
   if (!target.position.allFinite()) fail("the target of the hand was not finite");
   if (!(target.maximum_force > 0)) fail("the largest force of the hand was not above 0");
+  constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
+  if (!(std::abs(target.orientation.norm() - 1) <= kNotUnit) || !std::isfinite(target.opening)) {
+    fail("the orientation or opening of the hand's target was not valid");
+  }
   return wrong == nullptr;
+}
+
+void SimulatedDevice::Inside::begin() noexcept {
+  if (!fetch(0) || source == nullptr) return;
+  mass.position = target.position;
+  if (wrist) wrist->put(target.orientation.normalized());
+}
+
+// What the encoders read, and how fast it changes.
+void SimulatedDevice::Inside::show() noexcept {
+  const Vector3d shown = quantised();
+  if (started) state.velocity = (shown - state.position) * options.rate;
+  state.position = shown;
+  state.buttons = target.buttons;
+  if (!wrist) return;
+  const Eigen::Quaterniond turned = wrist->shown();
+  if (started) state.angular_velocity = turn_between(state.orientation, turned) * options.rate;
+  state.orientation = turned;
+  state.gripper = target.opening;
 }
 
 void SimulatedDevice::Inside::advance() noexcept {
   const TargetSource::Target from = target;
   if (!fetch(static_cast<double>(steps + 1) / options.rate)) return;
   const auto delay = static_cast<std::size_t>(options.delay);
-  const Vector3d held = forces[(steps + forces.size() - delay) % forces.size()];
+  const Wrench& sent = wrenches[(steps + wrenches.size() - delay) % wrenches.size()];
+  const Vector3d held = sent.force;
   const Vector3d goal_rate = (target.position - from.position) * options.rate;
   const Vector3d drive = options.hand.damping * goal_rate;
   Vector3d push = held + options.hand.stiffness * from.position + drive;
@@ -241,60 +229,14 @@ void SimulatedDevice::Inside::advance() noexcept {
     push = held + options.hand.stiffness * mass.position + most * pull.normalized();
     push_rate.setZero();
   }
-  const Vector3d before = mass.position;
-  mass.advance(push, push_rate);
-  work += held.dot(mass.position - before);
-  // A step without a write() repeats the force before it.
-  forces[(steps + 1) % forces.size()] = forces[steps % forces.size()];
-  ++steps;
-}
-
-// Advances one step; `push` is at its beginning.
-void HeldMass::advance(const Vector3d& push, const Vector3d& push_rate) noexcept {
-  if (options.coulomb == 0) return flow(whole_step, push, push_rate);
-  const double part = 1 / (options.rate * kParts);
-  for (int i = 0; i < kParts; ++i) slide(part, push + i * part * push_rate, push_rate);
-}
-
-// Advances one part of a step. The device may stop in it, and start again.
-void HeldMass::slide(double duration, Vector3d push, const Vector3d& push_rate) noexcept {
-  const double whole = duration;
-  for (int event = 0; event < kEvents && duration > 0; ++event) {
-    Vector3d direction = velocity;
-    if (velocity.norm() <= kAtRest) {
-      velocity.setZero();
-      direction = push - options.hand.stiffness * position;
-      if (direction.norm() <= options.coulomb) return;  // held by dry friction
-    }
-    direction.normalize();
-    const Vector3d sliding_push = push - options.coulomb * direction;
-    const Vector3d x = position;
-    const Vector3d v = velocity;
-    flow(duration == whole ? part_step : exponential(generator * duration), sliding_push,
-         push_rate);
-    if (velocity.dot(direction) > 0) return;
-    double moving = 0;
-    double stopped = duration;
-    for (int i = 0; i < kBisections; ++i) {
-      const double middle = 0.5 * (moving + stopped);
-      position = x;
-      velocity = v;
-      flow(exponential(generator * middle), sliding_push, push_rate);
-      (velocity.dot(direction) > 0 ? moving : stopped) = middle;
-    }
-    velocity -= direction.dot(velocity) * direction;
-    push += stopped * push_rate;
-    duration -= stopped;
+  mass.advance(held, push, push_rate);
+  if (wrist) {
+    wrist->advance(from.orientation.normalized(), target.orientation.normalized(), sent.torque,
+                   1 / options.rate);
   }
-}
-
-void HeldMass::flow(const Eigen::Matrix4d& transition, const Vector3d& push,
-                    const Vector3d& push_rate) noexcept {
-  const Vector3d x = transition(0, 0) * position + transition(0, 1) * velocity +
-                     transition(0, 2) * push + transition(0, 3) * push_rate;
-  velocity = transition(1, 0) * position + transition(1, 1) * velocity + transition(1, 2) * push +
-             transition(1, 3) * push_rate;
-  position = x;
+  // A step without a write() repeats the one before it.
+  wrenches[(steps + 1) % wrenches.size()] = wrenches[steps % wrenches.size()];
+  ++steps;
 }
 
 }  // namespace palpate

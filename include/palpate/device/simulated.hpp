@@ -57,6 +57,29 @@ struct SimulatedDeviceOptions {
     double maximum_force = 8;  ///< N; a hand that is held back harder yields: it pulls no more
   };
 
+  /// A wrist that turns about the handle. The defaults are those of the device at a lever of
+  /// 30 mm, half of a stylus.
+  struct Wrist {
+    /// The hand as a spring and a damper that turn the tool towards the hand's orientation.
+    struct Hand {
+      double stiffness = 0.27;       ///< N m/rad; 0 and no damping: nobody holds it
+      double damping = 2.7e-3;       ///< N m s/rad
+      double maximum_torque = 0.24;  ///< N m; a hand that is held back harder yields
+    };
+
+    /// About the tool's axes, which are its principal ones, kg m2; > 0
+    Eigen::Vector3d inertia = Eigen::Vector3d::Constant(9e-5);
+    double damping = 4.5e-4;     ///< viscous, N m s/rad
+    double coulomb = 1.5e-3;     ///< dry friction, N m; holds a resting wrist
+    double resolution = 2.5e-4;  ///< a step of the encoders, rad (0.014 degrees); 0: continuous
+    double maximum_torque =
+        0;  ///< of its motors, N m; larger torques are shortened; 0: it has none
+    Hand hand = {};
+    /// at time 0; a source's first target takes precedence
+    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, rad/s, device's axes
+  };
+
   double mass = 0.1;          ///< moved by the hand, kg; > 0
   double damping = 0.5;       ///< viscous, N s/m
   double coulomb = 0.05;      ///< dry friction, N; holds a resting device against smaller forces
@@ -66,6 +89,7 @@ struct SimulatedDeviceOptions {
   double maximum_force = 20;  ///< N; longer forces are shortened to it
   double workspace_radius = 0.1;  ///< m; only reported, never enforced
   Hand hand = {};
+  std::optional<Wrist> wrist = {};  ///< unset: it does not turn
   /// at time 0, m; a trajectory's start and a source's first target take precedence
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
@@ -83,8 +107,12 @@ struct SimulatedDeviceOptions {
 /// k_h (g - x) + b_h g', would be more than its largest force it is shortened to that; what is left
 /// of the damper, -b_h x', only brakes. Integration is exact (matrix exponential) but for the
 /// direction of dry friction, which is held for 1/16 of a step; on a straight line that is exact
-/// too. Every step takes one read() and one write(); read() brings the device to the next step's
-/// time, the first one to time 0. Same input, same bits.
+/// too. A wrist turns in the same way, with its moments of inertia in the place of the mass and the
+/// turns from the tool to the hand's orientation in that of g - x; it is integrated in 16 parts of
+/// a step, with damping and friction implicit. Position and turn are coupled by what is touched
+/// alone. A gripper is as far open as the hand has it. Every step takes one read() and one write();
+/// read() brings the device to the next step's time, the first one to time 0. Same input, same
+/// bits.
 class SimulatedDevice final : public Device {
  public:
   /// `target`: the hand's target, device frame, times from 0; empty: the starting position.
@@ -98,14 +126,18 @@ class SimulatedDevice final : public Device {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override;
   [[nodiscard]] DeviceState read() noexcept override;
-  void write(const Eigen::Vector3d& force) noexcept override;
+  void write(const Eigen::Vector3d& force) noexcept override { write_wrench({.force = force}); }
+  void write_wrench(const Wrench& wrench) noexcept override;
   [[nodiscard]] std::string reason() const override;
 
   /// The true position and velocity, without encoders, m and m/s.
   [[nodiscard]] const Eigen::Vector3d& true_position() const noexcept;
   [[nodiscard]] const Eigen::Vector3d& true_velocity() const noexcept;
 
-  /// Work that the applied forces did on the hand so far, J; negative: taken from it.
+  /// The true orientation, without encoders; the identity without a wrist.
+  [[nodiscard]] const Eigen::Quaterniond& true_orientation() const noexcept;
+
+  /// Work that the applied forces and torques did on the hand so far, J; negative: taken from it.
   [[nodiscard]] double work() const noexcept;
 
  private:
@@ -151,6 +183,7 @@ class PacedDevice final : public Device {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState read() noexcept override;
   void write(const Eigen::Vector3d& force) noexcept override { device_.write(force); }
+  void write_wrench(const Wrench& wrench) noexcept override { device_.write_wrench(wrench); }
   [[nodiscard]] std::string reason() const override { return device_.reason(); }
 
  private:
