@@ -181,7 +181,15 @@ void define_touches(py::class_<ToolContact>& type) {
             return of_touches(contact, {},
                               [](const Touch& touch) { return std::span(&touch.force, 1); });
           },
-          "(n,) along the normals, N");
+          "(n,) along the normals, N")
+      .def_property_readonly(
+          "frictions",
+          [](const ToolContact& contact) {
+            return of_touches(contact, {3}, [](const Touch& touch) {
+              return std::span<const double>(touch.friction.data(), 3);
+            });
+          },
+          "(n, 3) along the surface, N");
 }
 
 void define_contact(py::module_& module) {
@@ -207,6 +215,7 @@ void define_contact(py::module_& module) {
       .def_property_readonly(
           "opening", [](const ToolContact& contact) { return contact.proxy.opening; }, "m")
       .def_readonly("touching", &ToolContact::touching)
+      .def_readonly("sliding", &ToolContact::sliding, "friction yielded")
       .def_readonly("stiffness", &ToolContact::stiffness, "N/m")
       .def_property_readonly(
           "notes",
@@ -215,21 +224,29 @@ void define_contact(py::module_& module) {
   define_touches(type);
 }
 
-std::unique_ptr<HeldTool> in_scene(std::shared_ptr<Tool> tool, std::shared_ptr<SharedScene> scene,
-                                   double stiffness, double gyration) {
-  SharedScene& shared = *scene;
-  const Away away(shared.mutex);
-  return std::make_unique<HeldTool>(std::move(tool), std::move(scene),
-                                    ToolOptions{.stiffness = stiffness, .gyration = gyration});
+ToolOptions options_of(double stiffness, double gyration, double friction_dynamic,
+                       std::optional<double> friction_static, double friction_viscous) {
+  return {
+      .stiffness = stiffness,
+      .friction = {friction_static.value_or(friction_dynamic), friction_dynamic, friction_viscous},
+      .gyration = gyration};
 }
 
+template <class... Options>
+std::unique_ptr<HeldTool> in_scene(std::shared_ptr<Tool> tool, std::shared_ptr<SharedScene> scene,
+                                   Options... options) {
+  SharedScene& shared = *scene;
+  const Away away(shared.mutex);
+  return std::make_unique<HeldTool>(std::move(tool), std::move(scene), options_of(options...));
+}
+
+template <class... Options>
 std::unique_ptr<HeldTool> on_formula(std::shared_ptr<Tool> tool, std::shared_ptr<AnyField> field,
-                                     double stiffness, double gyration) {
+                                     Options... options) {
   if (field->of_scene() != nullptr) {
     throw py::type_error("a Field serves one point; give the scene itself: ToolProxy(tool, scene)");
   }
-  return std::make_unique<HeldTool>(std::move(tool), std::move(field),
-                                    ToolOptions{.stiffness = stiffness, .gyration = gyration});
+  return std::make_unique<HeldTool>(std::move(tool), std::move(field), options_of(options...));
 }
 
 }  // namespace
@@ -239,17 +256,24 @@ void define_tools(py::module_& module) {
   define_tool(module);
   define_contact(module);
   constexpr const char* kOptions =
-      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the tool's";
+      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the tool's. "
+      "friction_dynamic, friction_static (default: the dynamic one): coefficients. "
+      "friction_viscous: N s/m";
+  using Maybe = std::optional<double>;
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
   py::class_<HeldTool>(
       module, "ToolProxy",
       "A tool that follows the hand, turns, and stays outside of a scene's surface or "
       "of a formula's. Experimental. Input that is not finite is a fault: no wrench "
       "until reset()")
-      .def(py::init(&in_scene), arg("tool").none(false), arg("scene").none(false), py::kw_only(),
-           arg("stiffness") = 500.0, arg("gyration") = 0.0, kOptions)
-      .def(py::init(&on_formula), arg("tool").none(false), arg("field").none(false), py::kw_only(),
-           arg("stiffness") = 500.0, arg("gyration") = 0.0, kOptions)
+      .def(py::init(&in_scene<double, double, double, Maybe, double>), arg("tool").none(false),
+           arg("scene").none(false), py::kw_only(), arg("stiffness") = 500.0, arg("gyration") = 0.0,
+           arg("friction_dynamic") = 0.0, arg("friction_static") = py::none(),
+           arg("friction_viscous") = 0.0, kOptions)
+      .def(py::init(&on_formula<double, double, double, Maybe, double>), arg("tool").none(false),
+           arg("field").none(false), py::kw_only(), arg("stiffness") = 500.0,
+           arg("gyration") = 0.0, arg("friction_dynamic") = 0.0,
+           arg("friction_static") = py::none(), arg("friction_viscous") = 0.0, kOptions)
       .def("__repr__",
            [](const HeldTool& held) {
              return fmt::format("<palpate.ToolProxy: {} N/m, gyration {:.3g} m>",

@@ -139,10 +139,8 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
       choice("field", "Surface", names_of(kFields), name_in(kFields, settings.field.kind)));
   list.push_back(number("stiffness", "Stiffness", "N/m", 0, scope.stiffest,
                         round_step(scope.stiffest / kSliderSteps), settings.feel.stiffness));
-  if (!scope.turns) {
-    list.push_back(number("friction", "Friction", "", 0, 1.5, 0.05,
-                          settings.feel.friction.dynamic_coefficient));
-  }
+  list.push_back(
+      number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
   if (!scope.turns && scope.deepest_texture > 0) {
     list.push_back(length_setting("texture", "Texture", unit, scope.deepest_texture,
                                   settings.feel.texture.amplitude));
@@ -210,10 +208,7 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
   } else if (name != "default") {
     throw Error(fmt::format("unknown preset '{}'", name));
   }
-  if (scope.turns) {
-    set_friction(feel, 0);
-    feel.texture.amplitude = 0;
-  }
+  if (scope.turns) feel.texture.amplitude = 0;
   feel.stiffness = std::min(feel.stiffness, scope.stiffest);
   feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
   return result;

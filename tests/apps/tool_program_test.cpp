@@ -70,6 +70,25 @@ TEST(ToolProgram, AFlatBoxIsHeldHalfItsHeightAboveAPlane) {
   EXPECT_NEAR(number(log["tool_qw"].back()), 1, 1e-4);
 }
 
+// Dragged flat by a hand that is 3 mm deep, it is held back by 0.4 of its load.
+TEST(ToolProgram, ABoxRubsOnAPlane) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  std::string way = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < 400; ++i) {
+    way += fmt::format("{},{},0,{}\n", 1e-3 * i, 2e-5 * std::max(0, i - 200),
+                       std::max(7e-3, 13e-3 - 5e-5 * i));
+  }
+  shell.write("way.csv", way);
+  const Outcome outcome = shell.run(
+      "touch plane.xyz --trajectory way.csv --tool box:20x20x20 --friction-dynamic 0.4 --log "
+      "log.csv");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  auto log = columns(shell.read("log.csv"));
+  EXPECT_NEAR(number(log["fz"].back()), 500 * 3e-3, 0.05);
+  EXPECT_NEAR(number(log["fx"].back()), -0.4 * number(log["fz"].back()), 5e-3);
+}
+
 TEST(ToolProgram, SameInputTwiceGivesTheSameLogBitForBit) {
   Shell shell;
   const std::string arguments =
@@ -110,7 +129,6 @@ TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   };
   EXPECT_THAT(refusal("box:20x30x10 --tool-radius 0.001"),
               HasSubstr("--tool-radius is for a point"));
-  EXPECT_THAT(refusal("ball:4 --friction-dynamic 0.3"), HasSubstr("--friction-dynamic is for a"));
   EXPECT_THAT(refusal("ball:4 --texture-amplitude 1e-4"),
               HasSubstr("--texture-amplitude is for a"));
   EXPECT_THAT(refusal("ball:4 --preset paper"), HasSubstr("--preset paper uses a point tool"));
@@ -150,10 +168,10 @@ TEST(ToolProgram, KeysOfASetUpFileAreItsOptions) {
             "mesh:" + shell.path("part.stl"));
 }
 
-TEST(ToolProgram, FrictionAndTextureOfASetUpFileAreRefusedToo) {
+TEST(ToolProgram, TextureOfASetUpFileIsRefusedToo) {
   Shell shell;
   for (const char* keys :
-       {"[material]\nfriction_dynamic = 0.2\n", "[material]\ntexture_amplitude = 0.0001\n",
+       {"[material]\ntexture_amplitude = 0.0001\n",
         "[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
     shell.write("set.toml", keys);
     const Outcome outcome = shell.run("touch synthetic:torus --setup set.toml --tool ball:3");

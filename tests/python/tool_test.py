@@ -52,6 +52,15 @@ class Tools(unittest.TestCase):
         self.assertGreater(abs(contact.torque[0]), 1e-3)
         self.assertLess(np.abs(contact.torque[1:]).max(), 1e-9)
 
+    def test_a_tool_rubs_on_a_plane(self):
+        proxy = pp.ToolProxy(pp.Tool("box:40x60x20", spacing=0.004), pp.Plane(), stiffness=500, friction_dynamic=0.5)
+        pressed(proxy, 0.007)
+        for x in np.linspace(0, 0.02, 400):
+            contact = proxy.step(at((x, 0, 0.007)))
+        self.assertTrue(contact.sliding)
+        self.assertAlmostEqual(contact.force[0], -0.75, delta=1e-3)
+        np.testing.assert_allclose(contact.frictions.sum(axis=0), (-0.75, 0, 0), atol=1e-3)
+
     def test_a_mesh_is_a_tool(self):
         corners = 0.01 * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         faces = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),

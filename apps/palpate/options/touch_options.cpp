@@ -44,16 +44,13 @@ void add_material_options(OptionTable& table, TouchChoices& o) {
             number("above 0 and at most 1e9", [](double x) { return x > 0 && x <= 1e9; }));
   table.add("--soft-stiffness", surface.soft_stiffness, "N/M", not_negative(),
             "stiffness at the cloud's lowest intensity; rises to --stiffness at the highest");
-  table.add(described(proxy, proxy.friction.static_coefficient), o.friction_static)
-      .only_for(kPoints);
-  table.add(proxy, proxy.friction.dynamic_coefficient).only_for(kPoints);
-  table.add(proxy, proxy.friction.viscous).only_for(kPoints);
-  table
-      .add("--soft-friction", surface.soft_friction, "SHARE",
-           number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
-           "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
-           "friction at the highest")
-      .only_for(kPoints);
+  table.add(described(proxy, proxy.friction.static_coefficient), o.friction_static);
+  table.add(proxy, proxy.friction.dynamic_coefficient);
+  table.add(proxy, proxy.friction.viscous);
+  table.add("--soft-friction", surface.soft_friction, "SHARE",
+            number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
+            "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
+            "friction at the highest");
   table.add(proxy, proxy.texture.amplitude).only_for(kPoints);
   table.add(proxy, proxy.texture.wavelength).only_for(kPoints);
 }

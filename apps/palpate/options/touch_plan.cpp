@@ -56,12 +56,8 @@ void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
 void check_tool(const TouchPlan& plan) {
   if (!plan.tool.turns()) return;
   const SurfacePlan& surface = plan.surface;
-  const Friction& friction = surface.proxy.friction;
   require(surface.field.tool_radius == 0,
           "--tool-radius is of a point, and a --tool's shape is its own; remove one of them");
-  require(friction.static_coefficient == 0 && friction.viscous == 0 && !surface.soft_friction,
-          "friction is not rendered with a --tool that turns; remove friction_static, "
-          "friction_dynamic, friction_viscous and soft_friction, or --tool");
   require(surface.proxy.texture.amplitude == 0,
           "texture is not rendered with a --tool that turns; remove texture_amplitude, or --tool");
   require(!surface.paper, "--preset paper uses a point tool; remove --tool");

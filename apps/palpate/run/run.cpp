@@ -68,6 +68,10 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
              info.rate, late, info.maximum_force);
 }
 
+// m: the motors of a simulated wrist are those of its handle at half of a stylus, as its masses are
+// (SimulatedDeviceOptions::Wrist).
+constexpr double kWristLever = 0.03;
+
 // The hand is where `trajectory` says, whatever the force.
 void play_back(Hand& hand, Trajectory trajectory) {
   hand.steps = trajectory.size();
@@ -92,6 +96,9 @@ void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Traj
 void simulate(Hand& hand, const HandTask& task, Trajectory target) {
   SimulatedDeviceOptions device;
   device.rate = task.motion.rate.value_or(device.rate);
+  if (task.tool != nullptr) {
+    device.wrist.emplace().maximum_torque = kWristLever * device.maximum_force;
+  }
   if (!task.page.served) {
     hand.steps = static_cast<std::size_t>(target.back().time * device.rate) + 2;
   }
