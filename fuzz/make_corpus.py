@@ -364,7 +364,10 @@ def remote():
     seed("remote_state", "leaving", state(flags=2))
     seed("remote_state", "not_a_number", state(x=float("nan")))
     seed("remote_state", "too_far", state(x=1e9))
-    seed("remote_state", "newer", state(version=2, reserved=1))
+    seed("remote_state", "newer", state(version=3, reserved=1))
+    turns = struct.pack("<4d3dd", 0.5, -0.5, 0.5, 0.5, 1, -2, 3, 0.02)
+    seed("remote_state", "turns", state(version=2, flags=29) + turns)
+    seed("remote_state", "no_rotation", state(version=2, flags=1) + bytes(64))
 
     def frame(flags=0, version=1, size=(6, 7), unit=1e-3, fx=300.0, stamp=1.5, w=1.0, depth=None):
         steps = [0, 65535, 700, 701, 65534, 1] * 7

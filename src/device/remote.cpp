@@ -18,12 +18,15 @@ namespace palpate {
 namespace {
 
 // Bytes: one more than a valid packet has, so that longer ones are recognised (derived).
-constexpr std::size_t kBuffer = kStatePacketSize + 1;
+constexpr std::size_t kBuffer = kLargestPacket + 1;
 
 RemoteDeviceOptions checked(RemoteDeviceOptions o) {
   const Requirement require{"remote device"};
   require.positive("maximum_force", o.maximum_force, "give a positive force in newtons");
   require.not_negative("maximum_stiffness", o.maximum_stiffness, "give 0 or more N/m");
+  require.not_negative("maximum_torque", o.maximum_torque, "give 0 or more N m");
+  require.not_negative("maximum_grip", o.maximum_grip, "give 0 or more newtons");
+  require.not_negative("angular_damping", o.angular_damping, "give 0 or more N m s/rad");
   require.not_negative("workspace_radius", o.workspace_radius, "give 0 or more metres");
   require.positive("rate", o.rate, "give a positive number of steps per second");
   require.positive("client_timeout", o.client_timeout, "give a positive time in seconds");
@@ -38,6 +41,10 @@ DeviceInfo info_of(const RemoteDeviceOptions& options) {
   info.name = "remote";
   info.maximum_force = options.maximum_force;
   info.maximum_stiffness = options.maximum_stiffness;
+  info.maximum_torque = options.maximum_torque;
+  info.maximum_grip = options.maximum_grip;
+  info.angular_damping = options.angular_damping;
+  info.has_orientation = info.has_gripper = options.turns;
   info.rate = options.rate;
   info.workspace_radius = options.workspace_radius;
   return info;
@@ -137,7 +144,7 @@ void RemoteDevice::write_wrench(const Wrench& wrench) noexcept {
   Inside& in = *inside_;
   if (in.state.status == DeviceState::Status::failed) return;
   if (!is_finite(wrench)) return in.fail(0);
-  in.send(in.protocol.answer(wrench.force));
+  in.send(in.protocol.answer(wrench));
 }
 
 std::string RemoteDevice::reason() const {

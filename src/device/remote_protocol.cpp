@@ -1,120 +1,18 @@
-// Implements the packets and states of the remote device's protocol.
+// Keeps the state of a remote device's client, and limits the force that it gets.
 #include "device/remote_protocol.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/little_endian.hpp"
+#include "geometry/turn.hpp"
+#include "geometry/wrench.hpp"
 
 namespace palpate {
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr std::uint32_t kStateMagic = 0x53706C70;  // "plpS"
-constexpr std::uint32_t kForceMagic = 0x46706C70;  // "plpF"
-
 // Packets closer than this give no velocity, s.
 constexpr double kShortest = 1e-4;
 
-constexpr unsigned kHasVelocity = 1;
-constexpr unsigned kLeaving = 2;
-constexpr unsigned kLive = 1;
-constexpr unsigned kClosing = 2;
-
-bool within(const Vector3d& value, double largest) noexcept {
-  return value.cwiseAbs().maxCoeff() <= largest;
-}
-
-PacketFlaw judge(const StatePacket& packet) noexcept {
-  const bool finite =
-      std::isfinite(packet.stamp) && packet.position.allFinite() && packet.velocity.allFinite();
-  if (!finite) return PacketFlaw::number;
-  const bool in_range = std::abs(packet.stamp) <= StatePacket::kLargestStamp &&
-                        within(packet.position, StatePacket::kLargestPosition) &&
-                        within(packet.velocity, StatePacket::kLargestVelocity);
-  return in_range ? PacketFlaw::none : PacketFlaw::range;
-}
-
 }  // namespace
-
-ParsedState parse_state(std::span<const std::byte> bytes) noexcept {
-  if (bytes.size() != kStatePacketSize) return {PacketFlaw::length, {}};
-  LittleEndianReader reader(bytes);
-  if (reader.take<std::uint32_t>() != kStateMagic) return {PacketFlaw::magic, {}};
-  if (reader.take<std::uint16_t>() != kRemoteVersion) return {PacketFlaw::version, {}};
-  const unsigned flags = reader.take<std::uint16_t>();
-  StatePacket packet;
-  packet.sequence = reader.take<std::uint64_t>();
-  packet.stamp = reader.take_double();
-  packet.position = reader.take_vector();
-  packet.velocity = reader.take_vector();
-  packet.buttons = reader.take<std::uint32_t>();
-  const auto reserved = reader.take<std::uint32_t>();
-  if ((flags & ~(kHasVelocity | kLeaving)) != 0 || reserved != 0) return {PacketFlaw::flags, {}};
-  packet.has_velocity = (flags & kHasVelocity) != 0;
-  packet.leaving = (flags & kLeaving) != 0;
-  if (!packet.has_velocity) packet.velocity.setZero();
-  const PacketFlaw flaw = judge(packet);
-  return flaw == PacketFlaw::none ? ParsedState{flaw, packet} : ParsedState{flaw, {}};
-}
-
-std::array<std::byte, kStatePacketSize> encode(const StatePacket& packet) noexcept {
-  std::array<std::byte, kStatePacketSize> bytes{};
-  LittleEndianWriter writer(bytes);
-  writer.put(kStateMagic);
-  writer.put(kRemoteVersion);
-  writer.put(static_cast<std::uint16_t>((packet.has_velocity ? kHasVelocity : 0) |
-                                        (packet.leaving ? kLeaving : 0)));
-  writer.put(packet.sequence);
-  writer.put(packet.stamp);
-  writer.put(packet.position);
-  writer.put(packet.velocity);
-  writer.put(packet.buttons);
-  return bytes;
-}
-
-std::array<std::byte, kForcePacketSize> encode(const ForcePacket& packet) noexcept {
-  std::array<std::byte, kForcePacketSize> bytes{};
-  LittleEndianWriter writer(bytes);
-  writer.put(kForceMagic);
-  writer.put(kRemoteVersion);
-  writer.put(
-      static_cast<std::uint16_t>((packet.live ? kLive : 0) | (packet.closing ? kClosing : 0)));
-  writer.put(packet.sequence);
-  writer.put(packet.answered);
-  writer.put(packet.stamp);
-  writer.put(packet.force);
-  return bytes;
-}
-
-std::string_view explain(PacketFlaw flaw) noexcept {
-  switch (flaw) {
-    case PacketFlaw::none:
-      return {};
-    case PacketFlaw::length:
-      return "it is not 80 bytes long; send one state per datagram";
-    case PacketFlaw::magic:
-      return "it does not start with plpS; is the client meant for another program?";
-    case PacketFlaw::version:
-      return "its version is not 1; use a client for this version of palpate";
-    case PacketFlaw::flags:
-      return "it has unknown flags or nonzero reserved bytes; send version 1";
-    case PacketFlaw::number:
-      return "it contains a number that is not finite; send nothing while the hand's position is "
-             "unknown";
-    case PacketFlaw::range:
-      return "it contains a number that is too large; use metres and seconds";
-    case PacketFlaw::order:
-      return "its sequence number or timestamp did not increase; wait for the timeout before "
-             "restarting";
-    case PacketFlaw::other_client:
-      return "the device is in use by another client; stop that one";
-    case PacketFlaw::no_address:
-      return "its socket has no return address; bind it";
-  }
-  return {};
-}
 
 bool RemoteProtocol::is_silent(double now) const noexcept {
   return !connected_ || now - received_ > options_.client_timeout;
@@ -138,9 +36,15 @@ PacketFlaw RemoteProtocol::receive(std::span<const std::byte> bytes, const Socke
     take(packet);
   }
   received_ = now;
+  show(packet);
+  return PacketFlaw::none;
+}
+
+void RemoteProtocol::show(const StatePacket& packet) noexcept {
   state_.position = packet.position;
   state_.buttons = packet.buttons;
-  return PacketFlaw::none;
+  state_.orientation = packet.turns.orientation;
+  state_.gripper = packet.turns.opening;
 }
 
 // Begins with a client: keeps no state of the last one, and no force that was allowed for it.
@@ -148,6 +52,7 @@ void RemoteProtocol::begin(const StatePacket& packet, const SocketAddress& from)
   client_ = from;
   newest_ = packet;
   state_.velocity = packet.velocity;
+  state_.angular_velocity = packet.turns.velocity;
   state_.status = DeviceState::Status::silent;
   limit_ = 0;
   connected_ = true;
@@ -161,6 +66,12 @@ void RemoteProtocol::take(const StatePacket& packet) noexcept {
     state_.velocity = packet.velocity;
   } else if (dt >= kShortest) {
     state_.velocity = (packet.position - newest_.position) / dt;
+  }
+  if (packet.turns.has_velocity || packet.version == RemoteVersion::kForces) {
+    state_.angular_velocity = packet.turns.velocity;
+  } else if (dt >= kShortest) {
+    state_.angular_velocity =
+        turn_between(newest_.turns.orientation, packet.turns.orientation) / dt;
   }
   connected_ = !packet.leaving;
   confirmed_ = true;
@@ -179,6 +90,7 @@ DeviceState RemoteProtocol::state(double now) noexcept {
   located_ = !lost;
   if (lost) {
     state_.velocity.setZero();
+    state_.angular_velocity.setZero();
     state_.buttons = 0;
   }
   return state_;
@@ -200,17 +112,27 @@ ForcePacket RemoteProtocol::next_packet() noexcept {
   packet.sequence = ++sequence_;
   packet.answered = newest_.sequence;
   packet.stamp = newest_.stamp;
+  packet.version = newest_.version;
   return packet;
 }
 
-std::optional<ForcePacket> RemoteProtocol::answer(const Vector3d& force) noexcept {
+Wrench RemoteProtocol::allowed(const Wrench& wrench) const noexcept {
+  const double share = limit_ / options_.maximum_force;
+  const StatePacket::Turns& turns = newest_.turns;
+  return shortened(wrench, limit_, turns.renders_torque ? share * options_.maximum_torque : 0,
+                   turns.renders_grip ? share * options_.maximum_grip : 0);
+}
+
+std::optional<ForcePacket> RemoteProtocol::answer(const Wrench& wrench) noexcept {
   const bool live = state_.status == DeviceState::Status::ok;
   if (client_.size == 0 || (!live && sent_zero_)) return std::nullopt;
   ForcePacket packet = next_packet();
-  const double length = force.norm();
-  packet.force = length > limit_ ? Vector3d(limit_ / length * force) : force;
+  const Wrench sent = allowed(wrench);
+  packet.force = sent.force;
+  packet.torque = sent.torque;
+  packet.grip = sent.grip;
   packet.live = live;
-  sent_zero_ = packet.force.isZero(0);
+  sent_zero_ = sent.force.isZero(0) && sent.torque.isZero(0) && sent.grip == 0;
   return packet;
 }
 

@@ -59,16 +59,19 @@ class RemoteClient {
 
   struct Heard {
     unsigned flags = 0;
-    double z = 0;  // N
+    double z = 0;       // N
+    double torque = 0;  // about z, N m; of version 2
   };
   /// The newest force that waits; none when there is none.
   std::optional<Heard> hear() {
     std::optional<Heard> heard;
-    std::array<unsigned char, 64> bytes{};
-    while (::recv(handle_, bytes.data(), bytes.size(), 0) == kForcePacketSize) {
+    std::array<unsigned char, kLargestPacket> bytes{};
+    while (::recv(handle_, bytes.data(), bytes.size(), 0) ==
+           static_cast<ssize_t>(force_packet_size(packet_.version))) {
       heard.emplace();
       heard->flags = bytes[6];
       std::memcpy(&heard->z, &bytes[48], sizeof heard->z);
+      std::memcpy(&heard->torque, &bytes[72], sizeof heard->torque);
     }
     return heard;
   }

@@ -48,7 +48,7 @@ class RemoteProtocolTest : public testing::Test {
     return state;
   }
   double felt(double force = 100) {
-    const auto packet = link_.answer({0, 0, force});
+    const auto packet = link_.answer({.force = {0, 0, force}});
     return packet ? packet->force.z() : -1;
   }
 
@@ -60,7 +60,7 @@ class RemoteProtocolTest : public testing::Test {
 
 TEST_F(RemoteProtocolTest, IsSilentUntilSomebodySpeaks) {
   EXPECT_EQ(step().status, DeviceState::Status::silent);
-  EXPECT_FALSE(link_.answer({0, 0, 1})) << "nobody to answer to";
+  EXPECT_FALSE(link_.answer({.force = {0, 0, 1}})) << "nobody to answer to";
   EXPECT_FALSE(link_.farewell());
 }
 
@@ -99,7 +99,7 @@ TEST_F(RemoteProtocolTest, SilenceFadesTheForceAndTellsItsEndOnce) {
   bool fading = false;
   for (int i = 0; i < 60; ++i) {
     step();
-    const auto packet = link_.answer({0, 0, 100});
+    const auto packet = link_.answer({.force = {0, 0, 100}});
     if (!packet) break;
     EXPECT_FALSE(packet->live);
     ASSERT_LE(packet->force.z(), last);
@@ -109,7 +109,7 @@ TEST_F(RemoteProtocolTest, SilenceFadesTheForceAndTellsItsEndOnce) {
   EXPECT_TRUE(fading);
   EXPECT_EQ(last, 0);
   step();
-  EXPECT_FALSE(link_.answer({0, 0, 100})) << "the last packet said zero";
+  EXPECT_FALSE(link_.answer({.force = {0, 0, 100}})) << "the last packet said zero";
 }
 
 TEST_F(RemoteProtocolTest, ComesBackSoftly) {
@@ -207,7 +207,7 @@ TEST_F(RemoteProtocolTest, VelocityIsToldOrThatOfTheLastTwoPlaces) {
 
 TEST_F(RemoteProtocolTest, AnswersWithWhatItAnswers) {
   talk(0.01);
-  const auto packet = link_.answer({0, 0, 0.001});
+  const auto packet = link_.answer({.force = {0, 0, 0.001}});
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->answered, packet_.sequence);
   EXPECT_EQ(packet->stamp, packet_.stamp);
@@ -218,6 +218,70 @@ TEST_F(RemoteProtocolTest, AnswersWithWhatItAnswers) {
   EXPECT_GT(last->sequence, packet->sequence);
   EXPECT_TRUE(last->closing);
   EXPECT_EQ(last->force, Vector3d::Zero());
+}
+
+class RemoteTurnsTest : public RemoteProtocolTest {
+ protected:
+  RemoteTurnsTest() {
+    options_.maximum_torque = 0.2;
+    options_.maximum_grip = 4;
+    link_ = RemoteProtocol(options_);
+    packet_.version = RemoteVersion::kTurns;
+    packet_.turns.renders_torque = packet_.turns.renders_grip = true;
+  }
+  [[nodiscard]] std::optional<ForcePacket> answer() {
+    return link_.answer({{0, 0, 100}, {0, 100, 0}, -100});
+  }
+};
+
+TEST_F(RemoteTurnsTest, TellsTurnsAndOpening) {
+  talk(0.002);
+  packet_.turns.orientation = Eigen::AngleAxisd(0.01, Vector3d::UnitY());
+  packet_.turns.opening = 0.03;
+  say(0.01);
+  const DeviceState guessed = step();
+  EXPECT_NEAR(guessed.orientation.angularDistance(packet_.turns.orientation), 0, 1e-12);
+  EXPECT_EQ(guessed.gripper, 0.03);
+  EXPECT_NEAR(guessed.angular_velocity.y(), 10, 1e-6) << "from the last two packets";
+  packet_.turns.has_velocity = true;
+  packet_.turns.velocity = {1, 2, 3};
+  say(0.01);
+  EXPECT_EQ(step().angular_velocity, Vector3d(1, 2, 3));
+  EXPECT_EQ(step(0.2).angular_velocity, Vector3d::Zero()) << "silent";
+}
+
+TEST_F(RemoteTurnsTest, LimitsTorqueAndGripToTheShareOfTheForce) {
+  EXPECT_EQ(talk(0.25).status, DeviceState::Status::ok);
+  const ForcePacket half = *answer();
+  EXPECT_NEAR(half.torque.y() / 0.2, half.force.z() / 5, 1e-12);
+  EXPECT_NEAR(half.grip / -4, half.force.z() / 5, 1e-12);
+  EXPECT_GT(half.force.z(), 1);
+  EXPECT_LT(half.force.z(), 4);
+  talk(1);
+  EXPECT_NEAR(answer()->torque.y(), 0.2, 1e-12);
+  EXPECT_NEAR(answer()->grip, -4, 1e-12);
+  step(0.2);  // silent, and faded
+  EXPECT_EQ(answer()->torque, Vector3d::Zero());
+  EXPECT_FALSE(answer()) << "all is zero, and was said";
+}
+
+TEST_F(RemoteTurnsTest, SendsNoTorqueToAClientThatHasNoMotorsForIt) {
+  packet_.turns.renders_torque = packet_.turns.renders_grip = false;
+  talk(1);
+  const ForcePacket sent = *answer();
+  EXPECT_EQ(sent.version, RemoteVersion::kTurns);
+  EXPECT_EQ(sent.torque, Vector3d::Zero());
+  EXPECT_EQ(sent.grip, 0);
+  EXPECT_NEAR(sent.force.z(), 5, 1e-12);
+}
+
+TEST_F(RemoteTurnsTest, AnswersAClientOfThreeAxesInItsVersion) {
+  packet_ = {};
+  talk(1);
+  const ForcePacket sent = *answer();
+  EXPECT_EQ(sent.version, RemoteVersion::kForces);
+  EXPECT_EQ(sent.torque, Vector3d::Zero());
+  EXPECT_EQ(encode(sent).size, 56u);
 }
 
 }  // namespace

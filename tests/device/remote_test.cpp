@@ -72,6 +72,31 @@ TEST_F(RemoteDeviceTest, TellsWhereTheClientsHandIsAndTheClientTheForce) {
   EXPECT_EQ(device.counts().taken, 1001u);
 }
 
+TEST_F(RemoteDeviceTest, TellsAClientThatTurnsTheTorque) {
+  RemoteDeviceOptions turning = options();
+  turning.maximum_torque = 0.3;
+  turning.turns = true;
+  RemoteDevice device(clock_, turning);
+  EXPECT_TRUE(device.info().has_orientation);
+  EXPECT_EQ(device.info().maximum_torque, 0.3);
+  RemoteClient client(device.path(), folder_ / "client");
+  client.packet().version = RemoteVersion::kTurns;
+  client.packet().turns.renders_torque = true;
+  client.packet().turns.orientation = Eigen::AngleAxisd(0.4, Vector3d::UnitX());
+  talk(device, client);
+  client.say(0.02);
+  clock_.time += 1e-3;
+  EXPECT_NEAR(device.read().orientation.angularDistance(client.packet().turns.orientation), 0,
+              1e-12);
+  device.write_wrench({{0, 0, -1.5}, {0, 0, 0.25}, 0});
+  const auto heard = client.hear();
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->z, -1.5);
+  EXPECT_EQ(heard->torque, 0.25);
+  device.write_wrench({.torque = {0, std::numeric_limits<double>::quiet_NaN(), 0}});
+  EXPECT_EQ(device.read().status, DeviceState::Status::failed);
+}
+
 TEST_F(RemoteDeviceTest, TakesTheNewestOfWhatWaitsAndABoundedNumber) {
   RemoteDevice device(clock_, options());
   RemoteClient client(device.path(), folder_ / "client");
