@@ -17,6 +17,9 @@ using Samples = std::vector<Tool::Point>;
 
 constexpr Requirement kRequireTool{"tool"};  // the name that errors begin with
 constexpr double kDense = 0.28;       // radii between a stylus's balls: sqrt(1 - 0.14^2) is 0.99
+// Spacings of half of R: balls of more than 0.3 R sink in where only their middle is within R.
+constexpr double kSmallBall = 0.6;
+constexpr int kLeastAround = 12;      // samples around a ball: flat to 3 % of its radius
 constexpr int kLeastRing = 8;         // samples around a thin cylinder (judgement)
 constexpr double kRounded = 1e-9;     // of a step: 0.03 / 0.01 is three steps
 constexpr double kMillimetre = 1e-3;  // m, the unit of texts
@@ -68,6 +71,25 @@ void add_ring(Samples& samples, double radius, double spacing, const Vector3d& c
     const double angle = around * i / count;
     samples.push_back({center + radius * Vector3d(std::cos(angle), std::sin(angle), 0), 0, 0});
   }
+}
+
+// The surface of a ball (length 0) or a stylus: rings from pole to pole.
+Tool round_tool(double length, double radius, double spacing) {
+  const double step = std::min(spacing, 2 * std::numbers::pi / kLeastAround * radius);
+  const double quarter = std::numbers::pi / 2;
+  const int rings = steps(quarter * radius, step);
+  const int along = steps(length, step);
+  Samples samples;
+  for (int i = 0; i < rings; ++i) {
+    const double angle = quarter * i / rings;
+    const Vector3d up(0, 0, radius * std::cos(angle));
+    add_ring(samples, radius * std::sin(angle), step, up);
+    add_ring(samples, radius * std::sin(angle), step, -up - length * Vector3d::UnitZ());
+  }
+  for (int i = 0; i <= (length > 0 ? along : 0); ++i) {
+    add_ring(samples, radius, step, -length * i / along * Vector3d::UnitZ());
+  }
+  return Tool(std::move(samples));
 }
 
 // A name, how many sizes follow it, and how errors write them.
@@ -170,6 +192,11 @@ Tool Tool::gripper(const Vector3d& finger, double spacing) {
 Tool Tool::from_text(std::string_view text, double spacing) {
   const Shape& shape = shape_of(text);
   const std::vector<double> sizes = sizes_of(text, shape);
+  const bool is_round = shape.name == "ball" || shape.name == "capsule";
+  if (is_round && sizes.back() > kSmallBall * spacing) {
+    require_length("spacing", spacing);
+    return round_tool(shape.name == "ball" ? 0 : sizes[0], sizes.back(), spacing);
+  }
   if (shape.name == "ball") return ball(sizes[0]);
   if (shape.name == "capsule") return capsule(sizes[0], sizes[1], spacing);
   if (shape.name == "cylinder") return cylinder(sizes[0], sizes[1], spacing);

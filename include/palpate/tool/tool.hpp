@@ -78,7 +78,8 @@ class Tool {
   [[nodiscard]] static Tool mesh(std::span<const Eigen::Vector3d> vertices,
                                  std::span<const Triangle> triangles, double spacing);
   /// A shape by name, sizes in millimetres: ball:R, capsule:LxR, cylinder:LxR, box:XxYxZ,
-  /// gripper:XxYxZ; as above, R a radius and L a length.
+  /// gripper:XxYxZ; as above, R a radius and L a length. Of a ball or a stylus whose radius is more
+  /// than 0.6 spacings the surface is sampled: a ball of a sample would sink into points.
   /// @throws Error that names what is wrong, and how to write it.
   [[nodiscard]] static Tool from_text(std::string_view text, double spacing);
 

@@ -88,6 +88,7 @@ export class HoldPanel {
     if (!this.hand.held) say(byId("take-words"), this.session.tool?.has("taken") ? "Take the tool over" : "Take the tool");
     const shape = this.world.tools[this.session.device]?.shape;
     byId("turn").hidden = shape === undefined;
+    byId("view-area").classList.toggle("turns", shape !== undefined);
     for (const id of ["widen", "grip"]) byId(id).hidden = shape?.opens !== true;
     byId("by-itself").hidden = button.disabled || held || this.session.tool?.has("taken") === true;
     byId("tour-offer").hidden = button.disabled || held;

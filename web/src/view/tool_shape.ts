@@ -1,8 +1,8 @@
 // What a hand holds in the place of a point: a mesh, or the convex hull of its samples, one for each finger.
 
 import {
-  BufferAttribute, BufferGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
-  type Color,
+  BufferAttribute, BufferGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
+  MeshLambertMaterial, Quaternion, SphereGeometry, Vector3, type Color, type Object3D,
 } from "three";
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import type { ToolMessage } from "../protocol/decode";
@@ -13,6 +13,13 @@ const kGhost = 0.3; // opacity of the hand's (judgement)
 interface Part {
   side: number; // -1, 0, 1
   geometry: BufferGeometry;
+  edges: BufferGeometry; // that are sharp
+}
+
+const kSharp = 20; // degrees, as of the samples along creases
+
+function part(side: number, geometry: BufferGeometry): Part {
+  return { side, geometry, edges: new EdgesGeometry(geometry, kSharp) };
 }
 
 function faceted(corners: Float32Array): BufferGeometry {
@@ -34,10 +41,10 @@ function hull(samples: Float32Array, side: number): BufferGeometry | undefined {
 }
 
 function partsOf({ samples, faces }: ToolMessage): Part[] {
-  if (faces.length > 0) return [{ side: 0, geometry: faceted(faces) }];
+  if (faces.length > 0) return [part(0, faceted(faces))];
   return [-1, 0, 1].flatMap((side) => {
     const geometry = hull(samples, side);
-    return geometry === undefined ? [] : [{ side, geometry }];
+    return geometry === undefined ? [] : [part(side, geometry)];
   });
 }
 
@@ -48,6 +55,7 @@ export class ToolShape {
   readonly extent: number; // from the handle, m
   readonly opens: boolean;
   private readonly solid = new MeshLambertMaterial({ side: DoubleSide });
+  private readonly line = new LineBasicMaterial();
   private readonly ghost = new MeshLambertMaterial({ transparent: true, opacity: kGhost, depthWrite: false, side: DoubleSide });
   private readonly axis: Vector3;
   private opening = 0; // of the proxy, m
@@ -58,10 +66,10 @@ export class ToolShape {
     this.axis = new Vector3(...message.axis);
     this.parts = partsOf(message);
     this.solid.color = proxy;
-    this.ghost.color = hand;
-    for (const { geometry } of this.parts) {
-      this.proxy.add(new Mesh(geometry, this.solid));
-      this.hand.add(new Mesh(geometry, this.ghost));
+    this.ghost.color = this.line.color = hand;
+    for (const { geometry, edges } of this.parts) {
+      this.add(this.proxy, new Mesh(geometry, this.solid), new LineSegments(edges, this.line));
+      this.add(this.hand, new Mesh(geometry, this.ghost));
     }
     const { samples } = message;
     let extent = 0;
@@ -72,11 +80,11 @@ export class ToolShape {
     }
     this.extent = extent;
     this.opens = opens;
-    for (const mesh of [...this.proxy.children, ...this.hand.children]) mesh.renderOrder = 4;
   }
 
   dispose(): void {
-    for (const each of [this.solid, this.ghost, ...this.parts.map(({ geometry }) => geometry)]) each.dispose();
+    for (const each of [this.solid, this.line, this.ghost]) each.dispose();
+    for (const { geometry, edges } of this.parts) for (const each of [geometry, edges]) each.dispose();
   }
 
   placeProxy(position: Vector3, orientation: Quaternion, opening: number): void {
@@ -102,9 +110,14 @@ export class ToolShape {
     return most;
   }
 
+  private add(group: Group, ...objects: Object3D[]): void {
+    for (const object of objects) object.renderOrder = 4;
+    group.add(new Group().add(...objects));
+  }
+
   private place(group: Group, position: Vector3, orientation: Quaternion, opening: number): void {
     group.position.copy(position);
     group.quaternion.copy(orientation);
-    group.children.forEach((mesh, i) => mesh.position.copy(this.axis).multiplyScalar(0.5 * this.parts[i]!.side * opening));
+    group.children.forEach((finger, i) => finger.position.copy(this.axis).multiplyScalar(0.5 * this.parts[i]!.side * opening));
   }
 }
