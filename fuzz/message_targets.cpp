@@ -5,6 +5,7 @@
 #include "message/cdr.hpp"
 #include "message/depth_images.hpp"
 #include "message/display_types.hpp"
+#include "message/palpate_types.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
@@ -110,7 +111,7 @@ void check_messages(std::span<const std::byte> bytes) {
   check_types<Bool, Int32, Float64, Float32MultiArray, Float64MultiArray, Point, Vector3,
               PoseStamped, WrenchStamped, TwistStamped, TFMessage, PointCloud2, Image,
               CompressedImage, message::CameraInfo, Joy, JointState, DiagnosticArray, Marker,
-              MarkerArray, OmniFeedback, OmniButtonEvent>(same);
+              MarkerArray, OmniFeedback, OmniButtonEvent, Tick, ToolStep>(same);
 }
 
 }  // namespace palpate::fuzz

@@ -74,6 +74,29 @@ struct Tick {
   }
 };
 
+/// What a step of a tool that turns has beside its Tick, which follows.
+struct ToolStep {
+  static constexpr auto kName = "palpate_msgs/ToolStep";
+  static constexpr auto kHash = "";
+  Header header;
+  std::uint64_t step = 0;
+  Quaternion orientation;  // of the tool, outside of the surface; its handle is the proxy
+  double opening = 0;      // of its fingers, m
+  Vector3 force;           // of the tool's proxy, before the guard, N
+  Vector3 torque;          // about the handle, N m
+  double grip = 0;         // on the opening, N
+
+  static void each(auto& m, auto&& f) {
+    f("header", m.header);
+    f("step", m.step);
+    f("orientation", m.orientation);
+    f("opening", m.opening);
+    f("force", m.force);
+    f("torque", m.torque);
+    f("grip", m.grip);
+  }
+};
+
 /// Fate of a camera's frame, and what that depended on besides the frame.
 struct FrameUse {
   static constexpr auto kName = "palpate_msgs/FrameUse";

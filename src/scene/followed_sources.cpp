@@ -91,4 +91,13 @@ bool FollowedSources::misses(const Ball& ball) const noexcept {
                              [&](const FollowedSource& each) { return each.view.misses(ball); });
 }
 
+SceneField::Found FollowedSources::found() const noexcept {
+  SceneField::Found found;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    found.publications[i] = sources_[i].view.taken();
+    found.least_radii[i] = sources_[i].view.least_radius();
+  }
+  return found;
+}
+
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "field/evaluate.hpp"
+#include "palpate/scene/scene_field.hpp"
 #include "scene/source_view.hpp"
 #include "scene/tool_reach.hpp"
 
@@ -46,6 +47,9 @@ class FollowedSources {
   [[nodiscard]] const SourceView& view(std::size_t source) const noexcept {
     return sources_[source].view;
   }
+
+  /// What the last advance() found.
+  [[nodiscard]] SceneField::Found found() const noexcept;
 
   /// One source, confident of it, no materials, no motion: every surface is the same.
   [[nodiscard]] bool plain() const noexcept;

@@ -167,12 +167,7 @@ Field::Traits SceneField::traits() const noexcept {
 }
 
 SceneField::Found SceneField::found() const noexcept {
-  Found found;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(state_->followed.sources()); ++i) {
-    found.publications[i] = state_->followed.view(i).taken();
-    found.least_radii[i] = state_->followed.view(i).least_radius();
-  }
-  return found;
+  return state_->followed.found();
 }
 FieldNote SceneField::notes() const noexcept {
   return state_->notes | state_->patches.work().notes;

@@ -4,28 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "palpate/base/error.hpp"
 #include "tool/motion.hpp"
 
 namespace palpate {
-namespace {
 
 using Eigen::Vector3d;
 
-const ServoOptions& without_traces(const ServoOptions& options) {
-  if (options.traces != nullptr) {
-    throw Error(
-        "servo: steps of a tool that turns cannot be traced; leave out the tool or the traces");
-  }
-  return options;
-}
-
-}  // namespace
-
 HeldTool::HeldTool(Scene& scene, const ServoOptions& options, const DeviceInfo& device,
                    double limit)
-    : field_(scene, without_traces(options).tool, options.field, "a tool's field",
-             options.workspace.scale),
+    : field_(scene, options.tool, options.field, "a tool's field", options.workspace.scale),
       proxy_(options.tool, {.stiffness = std::min(options.proxy.stiffness, limit),
                             .friction = options.proxy.friction,
                             .gyration = options.gyration}) {

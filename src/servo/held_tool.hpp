@@ -17,7 +17,7 @@ namespace palpate {
 class HeldTool {
  public:
   /// `options`: fitted to the device; `limit`: of the stiffness, N/m.
-  /// @throws Error as ToolField and ToolProxy do, and where steps are to be traced.
+  /// @throws Error as ToolField and ToolProxy do.
   HeldTool(Scene& scene, const ServoOptions& options, const DeviceInfo& device, double limit);
 
   /// A step to `hand` at `now` (s), `dt` (s) after the last one: what a point would report, at the
@@ -33,6 +33,7 @@ class HeldTool {
 
   [[nodiscard]] const Pose& pose() const noexcept { return proxy_.pose(); }
   [[nodiscard]] const Wrench& wrench() const noexcept { return wrench_; }
+  [[nodiscard]] SceneField::Found found() const noexcept { return field_.found(); }
   [[nodiscard]] FieldNote notes() const noexcept { return field_.notes(); }
 
   /// Does the hand feel more than a force? Then this guards its steps.

@@ -129,6 +129,7 @@ void Servo::Inside::touch_with_point() noexcept {
 void Servo::Inside::touch_with_tool() noexcept {
   state.contact = tool->step(state.time, pose(), state.dt);
   state.field_notes = tool->notes();
+  if (options.traces != nullptr) basis.found = tool->found();
   state.tool = tool->pose();
   state.wrench = tool->wrench();
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@
 #include "prepare/description.hpp"
 #include "scene/description.hpp"
 #include "servo/description.hpp"
+#include "session/tool_json.hpp"
 
 /// Options as JSON and back, bit for bit, by what describe() lists of them. members() names those
 /// of structs that are no options; a member that is new there does not compile before it is named
@@ -53,10 +55,9 @@ void members(auto f, Workspace& o) {
   f({"T_world_device", "scale"}, pose, scale);
 }
 void members(auto f, ServoOptions& o) {
-  // Steps of a tool that turns are not recorded.
   auto& [field, proxy, tool, gyration, guard, workspace, clutch, steps, traces] = o;
-  f({"field", "proxy", "guard", "workspace", "clutch_button"}, field, proxy, guard, workspace,
-    clutch);
+  f({"field", "proxy", "tool", "gyration", "guard", "workspace", "clutch_button"}, field, proxy,
+    tool, gyration, guard, workspace, clutch);
 }
 void members(auto f, DeviceInfo& o) {
   auto& [name, force, stiffness, damping, mass, torque, grip, turn_damping, inertia, rate, delay,
@@ -112,6 +113,8 @@ template <class T>
     json = name_in(choices(value), value);
   } else if constexpr (IsOptional<T>::value) {
     if (value) json = exact_json(*value);
+  } else if constexpr (std::is_same_v<T, std::shared_ptr<const Tool>>) {
+    if (value) json = tool_json(*value);
   } else if constexpr (Numbers<T>) {
     for (const double number : value) json.push_back(exact_json(number));
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
@@ -165,6 +168,8 @@ void take_exact(const Json& json, T& value) {
   } else if constexpr (IsOptional<T>::value) {
     value.reset();
     if (!json.is_null()) take_exact(json, value.emplace());
+  } else if constexpr (std::is_same_v<T, std::shared_ptr<const Tool>>) {
+    value = tool_in(json);
   } else if constexpr (Numbers<T>) {
     for (std::size_t i = 0; i < 3; ++i) take_exact(json.at(i), value.data()[i]);
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {

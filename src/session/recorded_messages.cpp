@@ -63,7 +63,20 @@ message::Tick tick_of(const StepTrace& step, std::size_t sources) {
   return tick;
 }
 
-ServoState state_of(const message::Tick& tick, const ServoOptions& options) {
+message::ToolStep tool_step_of(const ServoState& state) {
+  const Eigen::Quaterniond& q = state.tool.orientation;
+  message::ToolStep step;
+  step.step = state.step;
+  step.orientation = {q.x(), q.y(), q.z(), q.w()};
+  step.opening = state.tool.opening;
+  step.force = message::vector_of(state.wrench.force);
+  step.torque = message::vector_of(state.wrench.torque);
+  step.grip = state.wrench.grip;
+  return step;
+}
+
+ServoState state_of(const message::Tick& tick, const std::optional<message::ToolStep>& tool,
+                    const ServoOptions& options) {
   const Workspace& workspace = options.workspace;
   const message::Quaternion& q = tick.orientation;
   ServoState state;
@@ -94,6 +107,10 @@ ServoState state_of(const message::Tick& tick, const ServoOptions& options) {
   state.paused = tick.paused;
   state.clutched = options.clutch_button && ((tick.buttons >> *options.clutch_button) & 1u) != 0;
   state.timing.computing = tick.computing;
+  if (!tool) return state;
+  const message::Quaternion& turned = tool->orientation;
+  state.tool = {contact.proxy, {turned.w, turned.x, turned.y, turned.z}, tool->opening};
+  state.wrench = {message::eigen(tool->force), message::eigen(tool->torque), tool->grip};
   return state;
 }
 

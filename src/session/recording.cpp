@@ -111,7 +111,9 @@ Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(fil
   try {
     const bag::Attachment text = attachment(kSetupName);
     const Json setup = Json::parse(text.data.begin(), text.data.end());
-    if (setup.at("kind") != kSetupKind) throw Error("another version of palpate recorded it");
+    const Json& kind = setup.at("kind");
+    if (kind != kSetupKind && kind != kToolSetupKind)
+      throw Error("another version of palpate recorded it");
     epoch_ = setup.at("epoch_ns").get<std::int64_t>();
     in_picture_axes_ = setup.value("picture_axes", false);
     for (const Json& json : setup.at("hands")) hands_.push_back(hand_of(json));
@@ -202,6 +204,7 @@ Recording::Steps::Steps(const Recording& recording, std::optional<std::size_t> h
     if (hand && *hand != i) continue;
     topics_[recording.hands_[i].topic + "/tick"] = i;
     topics_[recording.hands_[i].topic + "/change"] = i;
+    topics_[recording.hands_[i].topic + "/tool"] = i;
   }
   seek(-kEver);
 }
@@ -209,6 +212,7 @@ Recording::Steps::Steps(const Recording& recording, std::optional<std::size_t> h
 void Recording::Steps::seek(double time) {
   upcoming_.reset();
   changes_.assign(recording_->hands_.size(), {});
+  tools_.assign(recording_->hands_.size(), {});
   reader_.choose([&](const bag::Channel& each) { return topics_.contains(each.topic); },
                  recording_->logged_at(time));
 }
@@ -223,12 +227,20 @@ std::optional<Recording::Step> Recording::Steps::next(double until) {
       changes_[hand].push_back(std::move(change));
       continue;
     }
+    if (topic.ends_with("/tool")) {
+      read(recording_->path(), "a step",
+           [&] { message::decode(message.data, tools_[hand].emplace()); });
+      continue;
+    }
     message::Tick tick;
     read(recording_->path(), "a step", [&] {
       message::decode(message.data, tick);
       if (!std::isfinite(tick.time)) throw Error("it has no time");
     });
-    upcoming_ = {hand, std::move(tick), std::exchange(changes_[hand], {})};
+    std::optional<message::ToolStep>& tool = tools_[hand];
+    if (tool && tool->step != tick.step) tool.reset();  // its own tick is lost
+    upcoming_ = {hand, std::move(tick), std::move(tool), std::exchange(changes_[hand], {})};
+    tool.reset();
   }
   if (!upcoming_ || upcoming_->tick.time > until) return std::nullopt;
   return std::exchange(upcoming_, std::nullopt);

@@ -39,6 +39,7 @@ class Recording {
   struct Step {
     std::size_t hand = 0;
     message::Tick tick;
+    std::optional<message::ToolStep> tool = {};  ///< of a tool that turns
     std::vector<message::Change> changes;
   };
   class Steps;
@@ -96,9 +97,10 @@ class Recording::Steps {
  private:
   const Recording* recording_;
   bag::McapReader reader_;
-  std::map<std::string, std::size_t> topics_;          // with their hand
-  std::vector<std::vector<message::Change>> changes_;  // of each hand, before its next step
-  std::optional<Step> upcoming_;                       // read, but not given yet
+  std::map<std::string, std::size_t> topics_;            // with their hand
+  std::vector<std::vector<message::Change>> changes_;    // of each hand, before its next step
+  std::vector<std::optional<message::ToolStep>> tools_;  // the same
+  std::optional<Step> upcoming_;                         // read, but not given yet
 };
 
 /// The frames of a source that lives, in order. One thread; the recording outlives it.

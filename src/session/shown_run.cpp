@@ -48,7 +48,7 @@ ShownHand::ShownHand(const Recording& recording, std::size_t index, Scene& scene
       servo_(device_, scene, hand_->options) {}
 
 void ShownHand::show(const Recording::Step& step) {
-  ServoState state = state_of(step.tick, hand_->options);
+  ServoState state = state_of(step.tick, step.tool, hand_->options);
   count(state.guard.notes, counts_);
   state.guard.counts = counts_;
   ServoTrace(servo_).show(state);

@@ -272,6 +272,9 @@ double ToolField::moved() const noexcept {
 bool ToolField::serves(const Tool& tool) const noexcept {
   return tool.samples().size() == inside_->samples();
 }
+SceneField::Found ToolField::found() const noexcept {
+  return inside_->scene().followed.found();
+}
 FieldNote ToolField::notes() const noexcept {
   return inside_->notes();
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
 #include "support/mesh_files.hpp"
@@ -15,7 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-using Json = nlohmann::json;
 
 // An STL file in millimetres of a box of 20 x 30 x 10, around its handle.
 std::string box_stl() {

@@ -39,7 +39,7 @@ FLOORS = CORE | {
     "servo": {"base", "geometry", "field", "contact", "prepare", "scene", "tool", "device"},
     "viewer": {"base", "geometry", "field", "contact", "prepare", "scene", "sensor", "tool", "device",
                "servo"},
-    "session": {"base", "geometry", "io", "depth", "message", "bag", "field", "contact", "prepare", "scene", "sensor", "device", "servo", "viewer"},
+    "session": {"base", "geometry", "io", "depth", "message", "bag", "field", "contact", "prepare", "scene", "tool", "sensor", "device", "servo", "viewer"},
     "tab": {"base", "geometry", "io", "bag", "depth", "field", "contact", "prepare", "scene", "sim", "sensor", "device", "servo", "viewer",
             "session"},
     "ros": {"base", "geometry", "message", "bag", "dds", "field", "contact", "prepare", "scene",

@@ -1,6 +1,7 @@
 // The real-time contract of Servo::tick: field, proxy, guard, and what it shows to others.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -55,6 +56,21 @@ class ServoTick : public testing::Test {
   std::unique_ptr<Servo> servo_;
   double now_ = 0;
 };
+
+TEST_F(ServoTick, KeepsTheContractWithAToolThatIsTraced) {
+  ServoOptions options = servo_->options();
+  options.tool = std::make_shared<const Tool>(Tool::box({8e-3, 12e-3, 4e-3}, 2e-3));
+  StepTraces traces(1024);
+  options.traces = &traces;
+  servo_ = std::make_unique<Servo>(device_, scene_, options);
+  double torque = 0;
+  for (int i = 0; i < 200; ++i) {
+    torque = std::max(torque, tick(4e-3 - 10e-3 * std::sin(i * M_PI / 200)).wrench.torque.norm());
+  }
+  EXPECT_GT(torque, 0);
+  EXPECT_EQ(traces.dropped(), 0u);
+  servo_.reset();  // before the traces that it puts steps into
+}
 
 TEST_F(ServoTick, KeepsTheContractInContactAndAtTheClamp) {
   press();

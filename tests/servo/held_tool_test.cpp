@@ -258,12 +258,36 @@ TEST_F(HandThatFeelsTorque, HasAGyrationWithWhichTurnsArePassive) {
   EXPECT_EQ(servo_->options().gyration, 0.02);
 }
 
-TEST_F(HandWithAWrist, RefusesToBeTraced) {
-  Ring<StepTrace> traces(16);
-  ServoOptions options = holding("ball:4");
+TEST_F(HandWithAWrist, DoesItsStepsAgainFromTheirTraces) {
+  StepTraces traces(1024);
+  ServoOptions options = holding("box:20x30x10");
   options.traces = &traces;
-  EXPECT_THROW(Servo(device_, scene_, options), Error);
+  hold(options, 0.3);
+  go(0.06, 0.3, 10);
+  go(3e-3, 0.1, 300);
+  go(2e-3, -0.4, 300);
   options.traces = nullptr;
+  Servo again(device_, scene_, options);
+  SceneField of_a_point(scene_);
+  of_a_point.update(now_, Vector3d::Zero(), Vector3d::Zero());
+  double torque = 0;
+  int steps = 0;
+  for (; const StepTrace* const trace = traces.front(); traces.drop(), ++steps) {
+    const ServoState& before = trace->state;
+    const ServoState& state = again.step(trace->input.device, before.time);
+    ASSERT_EQ(state.force, before.force) << before.step;
+    ASSERT_EQ(state.wrench.torque, before.wrench.torque) << before.step;
+    ASSERT_EQ(state.tool.orientation.coeffs(), before.tool.orientation.coeffs()) << before.step;
+    ASSERT_EQ(trace->input.found.publications, of_a_point.found().publications);
+    ASSERT_EQ(trace->input.found.least_radii, of_a_point.found().least_radii);
+    torque = std::max(torque, before.wrench.torque.norm());
+  }
+  EXPECT_EQ(steps, 610);
+  EXPECT_GT(torque, 1e-3);
+}
+
+TEST_F(HandWithAWrist, RefusesOptionsOfAPoint) {
+  ServoOptions options = holding("ball:4");
   options.field.tool_radius = 1e-3;
   EXPECT_THROW(Servo(device_, scene_, options), Error);
 }

@@ -40,6 +40,47 @@ TEST(OptionsJson, OptionsComeBackAsTheyWere) {
   EXPECT_EQ(servo_again.proxy.rise_time, std::numeric_limits<double>::infinity());
 }
 
+TEST(OptionsJson, AToolComesBackBitForBit) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, -3) / 7;
+  std::vector<Tool::Point> points;
+  for (int i = 0; i < 60; ++i) {
+    points.push_back({{0.1 / (i + 1), 0.01 * (i % 7), 1. / 3}, 1e-3 * (i % 2), i % 3 - 1});
+  }
+  for (const Tool& tool : {Tool::gripper({6e-3, 12e-3, 40e-3}, 3e-3), Tool(points, axis)}) {
+    ServoOptions servo{.tool = std::make_shared<const Tool>(tool), .gyration = 0.1 + 0.2};
+    const Json json = Json::parse(exact_json(servo).dump());
+    ServoOptions again;
+    take_exact(json, again);
+    ASSERT_TRUE(again.tool);
+    EXPECT_EQ(again.gyration, 0.1 + 0.2);
+    EXPECT_EQ(again.tool->axis(), tool.axis());
+    EXPECT_EQ(again.tool->gyration(), tool.gyration());
+    ASSERT_EQ(again.tool->samples().size(), tool.samples().size());
+    for (std::size_t i = 0; i < tool.samples().size(); ++i) {
+      EXPECT_EQ(again.tool->samples()[i].position, tool.samples()[i].position);
+      EXPECT_EQ(again.tool->samples()[i].radius, tool.samples()[i].radius);
+      EXPECT_EQ(again.tool->samples()[i].side, tool.samples()[i].side);
+    }
+  }
+  ServoOptions point{.tool = std::make_shared<const Tool>(Tool::ball(1))};
+  take_exact(exact_json(ServoOptions()), point);
+  EXPECT_FALSE(point.tool);
+}
+
+TEST(OptionsJson, WhatIsNoToolIsRefused) {
+  for (const char* tool :
+       {R"({"axis": [1, 0, 0], "samples": []})", R"({"axis": [0, 0, 0], "samples": [[0,0,0,0,0]]})",
+        R"({"axis": [1, 0, 0], "samples": [[0,0,0,0,0.5]]})",
+        R"({"axis": [1, 0, 0], "samples": [[0,0,0,-1,0]]})",
+        R"({"axis": [1, 0, 0], "samples": [[1e9,0,0,0,0]]})"}) {
+    ServoOptions servo;
+    EXPECT_THROW(take_exact(Json{{"tool", Json::parse(tool)}}, servo), Error) << tool;
+  }
+  ServoOptions servo;
+  const Json few = Json::parse(R"({"axis": [1, 0, 0], "samples": [[0,0,0]]})");
+  EXPECT_THROW(take_exact(Json{{"tool", few}}, servo), Json::exception);
+}
+
 TEST(OptionsJson, ChoicesAreNamesAndNumbersOfEarlierVersionsAreRead) {
   EXPECT_EQ(exact_json(PolicyOptions{.policy = Policy::morph}).at("policy"), "morph");
   PolicyOptions options;

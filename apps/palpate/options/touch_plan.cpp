@@ -63,8 +63,6 @@ void check_tool(const TouchPlan& plan) {
   require(!surface.paper, "--preset paper uses a point tool; remove --tool");
   require(!plan.ros.bridge.robot,
           "--robot follows a point, and does not know where a --tool is; remove one of them");
-  require(plan.outputs.record.empty(),
-          "runs with a --tool that turns cannot be recorded yet; remove --record, or --tool");
 }
 
 // Where a cloud is explored, K is computed later, and checked again.

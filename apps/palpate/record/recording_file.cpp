@@ -83,7 +83,9 @@ RecordedSetup setup_of(const LoadedScene& loaded, const std::vector<const Servo*
     const std::string number = servos.size() > 1 ? std::to_string(hands.size() + 1) : "";
     hands.push_back(hand_json(*servo, "/palpate/hand" + number));
   }
-  setup.json = {{"kind", session::kSetupKind},
+  const bool turns = std::ranges::any_of(
+      servos, [](const Servo* each) { return each->options().tool != nullptr; });
+  setup.json = {{"kind", turns ? session::kToolSetupKind : session::kSetupKind},
                 {"palpate", std::string(version())},
                 {"epoch_ns", epoch},
                 {"picture_axes", in_picture_axes(loaded)},
@@ -97,7 +99,9 @@ void RecordingFile::begin(const RecordedSetup& setup) {
   for (const Json& source : setup.json.at("sources")) {
     add_source(source.at("topic").get<std::string>(), source.at("lives").get<bool>());
   }
-  for (const Json& hand : setup.json.at("hands")) add_hand(hand.at("topic").get<std::string>());
+  for (const Json& hand : setup.json.at("hands")) {
+    add_hand(hand.at("topic").get<std::string>(), !hand.at("options").at("tool").is_null());
+  }
   transforms_ = writer_.add_topic<message::TFMessage>("/tf", {.reliable = true, .depth = 100});
   bag::Bytes bytes;
   for (std::size_t i = 0; i < live_.size(); ++i) {
@@ -113,9 +117,10 @@ void RecordingFile::begin(const RecordedSetup& setup) {
   attach(session::kSetupName, {text.begin(), text.end()}, "application/json");
 }
 
-void RecordingFile::add_hand(const std::string& topic) {
+void RecordingFile::add_hand(const std::string& topic, bool turns) {
   HandTopics& hand = hands_.emplace_back();
   hand.name = last_part(topic);
+  if (turns) hand.tool = writer_.add_topic<message::ToolStep>(topic + "/tool");
   hand.tick = writer_.add_topic<message::Tick>(topic + "/tick");
   hand.change = writer_.add_topic<message::Change>(topic + "/change");
   hand.pose = writer_.add_topic<message::PoseStamped>(topic + "/pose");
@@ -167,6 +172,11 @@ void RecordingFile::write(std::size_t index, const StepTrace& step) {
   if (input.contact) change(hand, state, "contact", session::exact_json(*input.contact));
   if (input.field) change(hand, state, "field", session::exact_json(*input.field));
   if (input.added) change(hand, state, "force", session::exact_json(*input.added));
+  if (hand.tool) {
+    message::ToolStep tool = session::tool_step_of(state);
+    tool.header = header(state.time, kWorld);
+    put(*hand.tool, state.time, tool);
+  }
   message::Tick tick = session::tick_of(step, live_.size());
   tick.header = header(state.time, kWorld);
   put(hand.tick, state.time, tick);

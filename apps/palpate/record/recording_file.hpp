@@ -57,7 +57,8 @@ class RecordingFile {
   struct HandTopics {
     std::string name;
     std::uint16_t tick, change, pose, proxy, wrench, joy;
-    double shown = -1e300;  // last message but ticks, s
+    std::optional<std::uint16_t> tool;  // of one that turns
+    double shown = -1e300;              // last message but ticks, s
   };
   struct SourceTopics {
     std::string name;
@@ -65,7 +66,7 @@ class RecordingFile {
     double time = 0;  // of its last message, s
   };
 
-  void add_hand(const std::string& topic);
+  void add_hand(const std::string& topic, bool turns);
   void add_source(const std::string& topic, bool lives);
   void attach(const std::string& name, const bag::Bytes& bytes, const char* type);
   template <class T>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -52,14 +53,34 @@ void apply(const message::Change& change, Servo& servo) {
   }
 }
 
-void compare(const message::Tick& tick, const Eigen::Vector3d& force, double start,
+double distance(const Eigen::Vector3d& a, const message::Vector3& b) {
+  const double norm = (a - message::eigen(b)).norm();
+  return std::isnan(norm) ? std::numeric_limits<double>::infinity() : norm;
+}
+
+bool is_same(const message::ToolStep& a, const message::ToolStep& b) {
+  const auto values = [](const message::ToolStep& step) {
+    const auto& [x, y, z, w] = step.orientation;
+    return std::array{x, y, z, w, step.opening, step.grip};
+  };
+  return values(a) == values(b) && distance(message::eigen(a.force), b.force) == 0 &&
+         distance(message::eigen(a.torque), b.torque) == 0;
+}
+
+void compare(const session::Recording::Step& step, const ServoState& state, double start,
              ForceDifference& difference) {
-  const double norm = (force - message::eigen(tick.force)).norm();
-  const double error = std::isnan(norm) ? std::numeric_limits<double>::infinity() : norm;
+  const message::Tick& tick = step.tick;
+  const double error = distance(state.force, tick.force);
   ++difference.steps;
   difference.squares += error * error;
   difference.largest = std::max(difference.largest, error);
-  if (error == 0) return;
+  bool same = error == 0;
+  if (step.tool) {
+    same = same && is_same(session::tool_step_of(state), *step.tool);
+    difference.largest_torque = std::max(difference.largest_torque.value_or(0),
+                                         distance(state.wrench.torque, step.tool->torque));
+  }
+  if (same) return;
   if (difference.differing++ > 0) return;
   difference.first = tick.step;
   difference.first_time = tick.time - start;
@@ -148,7 +169,7 @@ class HandReplay {
       const std::optional<session::Recording::Step> step = steps_.next();
       if (!step) break;
       for (const message::Change& change : step->changes) apply(change, *servo_);
-      take(step->tick, each);
+      take(*step, each);
     }
     const std::vector<std::string>& losses = steps_.losses();
     if (ended.empty() && !losses.empty()) ended = "damaged: " + losses.front();
@@ -157,7 +178,8 @@ class HandReplay {
   }
 
  private:
-  void take(const message::Tick& tick, const Replay::EachStep& each) {
+  void take(const session::Recording::Step& recorded, const Replay::EachStep& each) {
+    const message::Tick& tick = recorded.tick;
     if (tick.step != difference_.steps + 1) {
       difference_.ended = words_without(tick.step, difference_.steps);
       return;
@@ -176,7 +198,7 @@ class HandReplay {
     ServoState state = servo_->step(device_state(tick), tick.time);
     state.timing.computing = thread_cpu_seconds() - begin;
     servo_->show();
-    compare(tick, state.force, start_, difference_);
+    compare(recorded, state, start_, difference_);
     state.time -= start_;
     each(state, device_.info());
   }
@@ -217,7 +239,7 @@ void Replay::show(std::size_t hand, const EachStep& each) const {
     session::Recording::Steps steps(recording_, hand);
     std::optional<double> start;
     while (const std::optional<session::Recording::Step> step = steps.next()) {
-      ServoState state = session::state_of(step->tick, its.options);
+      ServoState state = session::state_of(step->tick, step->tool, its.options);
       if (!start) start = state.time;
       state.time -= *start;
       each(state, its.device);

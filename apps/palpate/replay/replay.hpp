@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "palpate/servo/servo.hpp"
@@ -9,16 +10,18 @@
 
 namespace palpate::app {
 
-/// How the forces of a replayed hand compare with the recorded ones.
+/// How the forces of a replayed hand compare with the recorded ones; of a tool that turns its
+/// torques, grip and pose, too.
 struct ForceDifference {
   std::string topic;
   std::uint64_t steps = 0;
-  std::uint64_t differing = 0;  ///< steps
-  double largest = 0;           ///< |F - F recorded|, N
-  double squares = 0;           ///< their sum, N^2
-  std::uint64_t first = 0;      ///< the first step that differs; 0: none does
-  double first_time = 0;        ///< s since the hand's first step
-  std::string ended;            ///< why it could not be done to the end; empty: it was
+  std::uint64_t differing = 0;                ///< steps
+  double largest = 0;                         ///< |F - F recorded|, N
+  std::optional<double> largest_torque = {};  ///< the same of a tool that turns, N m
+  double squares = 0;                         ///< their sum, N^2
+  std::uint64_t first = 0;                    ///< the first step that differs; 0: none does
+  double first_time = 0;                      ///< s since the hand's first step
+  std::string ended;  ///< why it could not be done to the end; empty: it was
 
   [[nodiscard]] bool exact() const { return steps > 0 && differing == 0 && ended.empty(); }
   [[nodiscard]] double rms() const;
@@ -33,6 +36,10 @@ class Replay {
   explicit Replay(const std::string& path) : recording_(path) {}
 
   [[nodiscard]] std::size_t hands() const { return recording_.hands().size(); }
+  /// Does that hand hold a tool that turns?
+  [[nodiscard]] bool turns(std::size_t hand) const {
+    return recording_.hands().at(hand).options.tool != nullptr;
+  }
 
   /// Called with every step, with times from 0.
   using EachStep = std::function<void(const ServoState&, const DeviceInfo&)>;

@@ -40,6 +40,10 @@ Report report_of(const ForceDifference& found) {
   report.row({"difference", differs ? Mark::error : Mark::plain},
              "{largest_difference_N} at most, {rms_difference_N} rms, in {differing_steps} steps",
              found.largest, found.rms(), found.differing);
+  if (found.largest_torque) {
+    report.row({"", differs ? Mark::error : Mark::plain},
+               "{largest_torque_difference_Nm} of torques", *found.largest_torque);
+  }
   report.row("first", "[{?}step {first_step}, {first_time_s} after the hand's first]", differs,
              differs ? Json(found.first) : Json(), differs ? Json(found.first_time) : Json());
   report.row({"ended", Mark::error}, "[{ended}]", found.ended);
@@ -48,7 +52,7 @@ Report report_of(const ForceDifference& found) {
 
 ForceDifference replay_hand(const Replay& run, std::size_t hand, const std::string& log) {
   std::optional<TouchLog> steps;
-  if (!log.empty()) steps.emplace(numbered_path(log, hand));
+  if (!log.empty()) steps.emplace(numbered_path(log, hand), run.turns(hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
   const auto add = [&](const ServoState& step, const DeviceInfo& device) {
     if (steps) steps->add(step, device);

@@ -199,7 +199,6 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   if (hand.tool) {
     options.tool = hand.tool->tool;
     options.gyration = hand.tool->gyration(options.proxy.stiffness);
-    return options;  // its steps cannot be traced
   }
   options.traces = run.recorder != nullptr ? run.recorder->add_hand() : nullptr;
   return options;

@@ -191,9 +191,6 @@ struct View::Parts {
     };
     controls.record = [this](bool on) {
       if (on) refuse_paged(run.loaded);
-      if (on && run.hands.front().tool) {
-        throw Error("a run with a tool that turns cannot be recorded yet; start without --tool");
-      }
       return run.recorder->record(on);
     };
     controls.recording = run.recorder->recording();

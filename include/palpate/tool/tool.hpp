@@ -50,7 +50,8 @@ class Tool {
   /// m from the handle: nobody holds a longer tool, which may be one in other units.
   static constexpr double kLongest = 10;
 
-  /// `axis` is the direction in which the finger of side +1 opens. Orders the samples anew.
+  /// `axis` is the direction in which the finger of side +1 opens. Orders the samples anew, but for
+  /// those of a tool: with its axis they make the same tool again, bit for bit.
   /// @throws Error without samples or with more than kMostSamples, for one that is not finite, is
   /// farther out than kLongest, has a radius below 0 or a side other than -1, 0 and 1, and for an
   /// axis without a direction.

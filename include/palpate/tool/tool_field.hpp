@@ -55,6 +55,9 @@ class ToolField final : public ToolSurface {
   [[nodiscard]] double moved() const noexcept override;
   [[nodiscard]] bool serves(const Tool& tool) const noexcept override;
 
+  /// What the last update() found. Real-time.
+  [[nodiscard]] SceneField::Found found() const noexcept;
+
   /// Notes since the last update() began; tool_too_large is never among them.
   [[nodiscard]] FieldNote notes() const noexcept;
   /// Groups of samples, by the support radius of what was touched last.
