@@ -12,6 +12,7 @@ sys.dont_write_bytecode = True
 import contact  # noqa: E402
 import fields  # noqa: E402
 import streams  # noqa: E402
+import tools  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs" / "images"
 LARGEST = 40_000  # bytes of a drawing: it is read on a page beside a dozen others
@@ -20,7 +21,7 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
 def drawings():
-    return fields.DRAWINGS | contact.DRAWINGS | streams.DRAWINGS
+    return fields.DRAWINGS | contact.DRAWINGS | streams.DRAWINGS | tools.DRAWINGS
 
 
 def is_same(there, drawn):
