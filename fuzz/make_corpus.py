@@ -521,7 +521,7 @@ def messages():
     tree.seed("transforms")
     Cdr().header().put("d" * 7, 1, 2, 3, 0, 0, 0, 1).seed("pose")
     Cdr().header().put("Iff", 2, 0.5, -1).put("Iii", 2, 0, 1).seed("joy")
-    Cdr().header().put("Q", 7).put("d" * 12, 0, 0, 0.6, 0.8, 0.02, 0, 0, 1.5, 0, 0.125, -0.25, 3).seed("tool_step")
+    Cdr().header().put("Q", 7).put("d" * 19, 0, 0, 0.6, 0.8, 0.02, 0, 0, 1.5, 0, 0.125, -0.25, 3, 0.5, 0, 0, 0, 0.1, -0.2, 2).seed("tool_step")
     Cdr().header().put("I", 1).text("elbow").put("Id", 1, 0.5).put("Id", 1, 0).put("I", 0).seed("joints")
     Cdr().header().put("IB", 1, 2).text("guard").text("off").text("").put("I", 1).text("key").text("value").seed("diagnostics")
 

@@ -256,7 +256,8 @@ void define_tools(py::module_& module) {
   define_tool(module);
   define_contact(module);
   constexpr const char* kOptions =
-      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the tool's. "
+      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the "
+      "tool's. "
       "friction_dynamic, friction_static (default: the dynamic one): coefficients. "
       "friction_viscous: N s/m";
   using Maybe = std::optional<double>;
@@ -271,9 +272,9 @@ void define_tools(py::module_& module) {
            arg("friction_dynamic") = 0.0, arg("friction_static") = py::none(),
            arg("friction_viscous") = 0.0, kOptions)
       .def(py::init(&on_formula<double, double, double, Maybe, double>), arg("tool").none(false),
-           arg("field").none(false), py::kw_only(), arg("stiffness") = 500.0,
-           arg("gyration") = 0.0, arg("friction_dynamic") = 0.0,
-           arg("friction_static") = py::none(), arg("friction_viscous") = 0.0, kOptions)
+           arg("field").none(false), py::kw_only(), arg("stiffness") = 500.0, arg("gyration") = 0.0,
+           arg("friction_dynamic") = 0.0, arg("friction_static") = py::none(),
+           arg("friction_viscous") = 0.0, kOptions)
       .def("__repr__",
            [](const HeldTool& held) {
              return fmt::format("<palpate.ToolProxy: {} N/m, gyration {:.3g} m>",

@@ -80,11 +80,14 @@ struct ToolStep {
   static constexpr auto kHash = "";
   Header header;
   std::uint64_t step = 0;
-  Quaternion orientation;  // of the tool, outside of the surface; its handle is the proxy
-  double opening = 0;      // of its fingers, m
-  Vector3 force;           // of the tool's proxy, before the guard, N
-  Vector3 torque;          // about the handle, N m
-  double grip = 0;         // on the opening, N
+  Quaternion orientation;    // of the tool, outside of the surface; its handle is the proxy
+  double opening = 0;        // of its fingers, m
+  Vector3 force;             // of the tool's proxy, before the guard, N
+  Vector3 torque;            // about the handle, N m
+  double grip = 0;           // on the opening, N
+  Vector3 angular_velocity;  // of the device, as it was read, rad/s
+  Vector3 sent_torque;       // what the guard let through, N m
+  double sent_grip = 0;      // the same, N
 
   static void each(auto& m, auto&& f) {
     f("header", m.header);
@@ -94,6 +97,9 @@ struct ToolStep {
     f("force", m.force);
     f("torque", m.torque);
     f("grip", m.grip);
+    f("angular_velocity", m.angular_velocity);
+    f("sent_torque", m.sent_torque);
+    f("sent_grip", m.sent_grip);
   }
 };
 

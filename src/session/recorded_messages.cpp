@@ -63,7 +63,7 @@ message::Tick tick_of(const StepTrace& step, std::size_t sources) {
   return tick;
 }
 
-message::ToolStep tool_step_of(const ServoState& state) {
+message::ToolStep tool_step_of(const ServoState& state, const DeviceState& device) {
   const Eigen::Quaterniond& q = state.tool.orientation;
   message::ToolStep step;
   step.step = state.step;
@@ -72,6 +72,9 @@ message::ToolStep tool_step_of(const ServoState& state) {
   step.force = message::vector_of(state.wrench.force);
   step.torque = message::vector_of(state.wrench.torque);
   step.grip = state.wrench.grip;
+  step.angular_velocity = message::vector_of(device.angular_velocity);
+  step.sent_torque = message::vector_of(state.torque);
+  step.sent_grip = state.grip;
   return step;
 }
 
@@ -111,6 +114,8 @@ ServoState state_of(const message::Tick& tick, const std::optional<message::Tool
   const message::Quaternion& turned = tool->orientation;
   state.tool = {contact.proxy, {turned.w, turned.x, turned.y, turned.z}, tool->opening};
   state.wrench = {message::eigen(tool->force), message::eigen(tool->torque), tool->grip};
+  state.torque = message::eigen(tool->sent_torque);
+  state.grip = tool->sent_grip;
   return state;
 }
 

@@ -35,7 +35,7 @@ struct RecordedFrame {
 [[nodiscard]] message::Tick tick_of(const StepTrace& step, std::size_t sources);
 
 /// What such a step of a tool that turns has beside that.
-[[nodiscard]] message::ToolStep tool_step_of(const ServoState& state);
+[[nodiscard]] message::ToolStep tool_step_of(const ServoState& state, const DeviceState& device);
 
 /// The servo's state in that step; `tool`: of a tool that turns. `options`: of its servo. Not
 /// recorded: the guard's counts and energy, the proxy's own force and drift, the clutch's shift,

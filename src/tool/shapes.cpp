@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using Samples = std::vector<Tool::Point>;
 
 constexpr Requirement kRequireTool{"tool"};  // the name that errors begin with
-constexpr double kDense = 0.28;       // radii between a stylus's balls: sqrt(1 - 0.14^2) is 0.99
+constexpr double kDense = 0.28;  // radii between a stylus's balls: sqrt(1 - 0.14^2) is 0.99
 // Spacings of half of R: balls of more than 0.3 R sink in where only their middle is within R.
 constexpr double kSmallBall = 0.6;
 constexpr int kLeastAround = 12;      // samples around a ball: flat to 3 % of its radius

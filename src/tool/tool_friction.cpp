@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kSweeps = 64;       // over the contacts; what is left open is taken up in the next step
+constexpr int kSweeps = 64;  // over the contacts; what is left open is taken up in the next step
 constexpr double kStill = 1e-10;  // m: a sweep that changes the motion by less is the last one
 // m in a step: a contact whose cone is full slides no farther where others hold the tool. A hand
 // that creeps by 1 um/s at 1 kHz moves as far.
@@ -31,9 +31,9 @@ ToolFriction::Contact ToolFriction::contact_of(const Look& look,
   contact.axes.col(0) = normal.unitOrthogonal();
   contact.axes.col(1) = normal.cross(contact.axes.col(0));
   for (int i = 0; i < 2; ++i) {
-    contact.along.col(i) = constraint_on(look.tool, contact.sample, at, contact.axes.col(i),
-                                         look.pose, look.metric)
-                               .normal;
+    contact.along.col(i) =
+        constraint_on(look.tool, contact.sample, at, contact.axes.col(i), look.pose, look.metric)
+            .normal;
   }
   contact.moved = contact.along.transpose() * look.metric.between(start_, look.pose);
   const Eigen::Matrix2d square = contact.along.transpose() * contact.along;

@@ -170,9 +170,8 @@ TEST(ToolProgram, KeysOfASetUpFileAreItsOptions) {
 
 TEST(ToolProgram, TextureOfASetUpFileIsRefusedToo) {
   Shell shell;
-  for (const char* keys :
-       {"[material]\ntexture_amplitude = 0.0001\n",
-        "[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
+  for (const char* keys : {"[material]\ntexture_amplitude = 0.0001\n",
+                           "[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
     shell.write("set.toml", keys);
     const Outcome outcome = shell.run("touch synthetic:torus --setup set.toml --tool ball:3");
     EXPECT_EQ(outcome.code, 2) << keys;

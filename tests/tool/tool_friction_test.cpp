@@ -147,7 +147,7 @@ TEST(ToolFriction, ClosedPathsGiveNoEnergy) {
             0.02 + 0.005 * std::sin(phase));
       };
       const Metric metric{proxy.options().gyration};
-      double given = 0;  // J
+      double given = 0;   // J
       double stored = 0;  // in the spring, where the second round begins
       proxy.reset(hand(0));
       Pose before = hand(0);
@@ -156,7 +156,8 @@ TEST(ToolFriction, ClosedPathsGiveNoEnergy) {
         const Pose now = hand(2 * std::numbers::pi * i / 2000);
         const ToolContact contact = proxy.step(torus, now, kTick);
         ASSERT_TRUE(contact.wrench.force.allFinite());
-        if (i == 2000) stored = 0.5 * contact.stiffness * metric.between(now, contact.proxy).squaredNorm();
+        if (i == 2000)
+          stored = 0.5 * contact.stiffness * metric.between(now, contact.proxy).squaredNorm();
         if (i > 2000) {
           given += 0.5 * (wrench.force + contact.wrench.force).dot(now.position - before.position);
           given += 0.5 * (wrench.torque + contact.wrench.torque)

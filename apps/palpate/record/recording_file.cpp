@@ -173,7 +173,7 @@ void RecordingFile::write(std::size_t index, const StepTrace& step) {
   if (input.field) change(hand, state, "field", session::exact_json(*input.field));
   if (input.added) change(hand, state, "force", session::exact_json(*input.added));
   if (hand.tool) {
-    message::ToolStep tool = session::tool_step_of(state);
+    message::ToolStep tool = session::tool_step_of(state, input.device);
     tool.header = header(state.time, kWorld);
     put(*hand.tool, state.time, tool);
   }

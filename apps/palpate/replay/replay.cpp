@@ -22,7 +22,7 @@ namespace palpate::app {
 
 namespace {
 
-DeviceState device_state(const message::Tick& tick) {
+DeviceState device_state(const message::Tick& tick, const std::optional<message::ToolStep>& tool) {
   DeviceState state;
   state.status = static_cast<DeviceState::Status>(tick.status);
   state.time = tick.device_time;
@@ -32,6 +32,7 @@ DeviceState device_state(const message::Tick& tick) {
   state.orientation = {q.w, q.x, q.y, q.z};
   state.buttons = tick.buttons;
   state.gripper = tick.gripper;
+  if (tool) state.angular_velocity = message::eigen(tool->angular_velocity);
   return state;
 }
 
@@ -61,10 +62,11 @@ double distance(const Eigen::Vector3d& a, const message::Vector3& b) {
 bool is_same(const message::ToolStep& a, const message::ToolStep& b) {
   const auto values = [](const message::ToolStep& step) {
     const auto& [x, y, z, w] = step.orientation;
-    return std::array{x, y, z, w, step.opening, step.grip};
+    return std::array{x, y, z, w, step.opening, step.grip, step.sent_grip};
   };
   return values(a) == values(b) && distance(message::eigen(a.force), b.force) == 0 &&
-         distance(message::eigen(a.torque), b.torque) == 0;
+         distance(message::eigen(a.torque), b.torque) == 0 &&
+         distance(message::eigen(a.sent_torque), b.sent_torque) == 0;
 }
 
 void compare(const session::Recording::Step& step, const ServoState& state, double start,
@@ -76,7 +78,7 @@ void compare(const session::Recording::Step& step, const ServoState& state, doub
   difference.largest = std::max(difference.largest, error);
   bool same = error == 0;
   if (step.tool) {
-    same = same && is_same(session::tool_step_of(state), *step.tool);
+    same = same && is_same(session::tool_step_of(state, {}), *step.tool);
     difference.largest_torque = std::max(difference.largest_torque.value_or(0),
                                          distance(state.wrench.torque, step.tool->torque));
   }
@@ -195,7 +197,7 @@ class HandReplay {
     if (difference_.steps == 0) start_ = tick.time;
     servo_->pause(tick.paused);
     const double begin = thread_cpu_seconds();
-    ServoState state = servo_->step(device_state(tick), tick.time);
+    ServoState state = servo_->step(device_state(tick, recorded.tool), tick.time);
     state.timing.computing = thread_cpu_seconds() - begin;
     servo_->show();
     compare(recorded, state, start_, difference_);
