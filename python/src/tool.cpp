@@ -157,24 +157,21 @@ void define_tool(py::module_& module) {
       .def_property_readonly("gyration", &Tool::gyration, "radius about the handle, m");
 }
 
+// One of the vectors of each touch.
+auto vectors_of(Eigen::Vector3d ToolContact::Touch::*member) {
+  return [member](const ToolContact& contact) {
+    return of_touches(contact, {3}, [member](const ToolContact::Touch& touch) {
+      return std::span<const double>((touch.*member).data(), 3);
+    });
+  };
+}
+
 void define_touches(py::class_<ToolContact>& type) {
   using Touch = ToolContact::Touch;
-  type.def_property_readonly(
-          "positions",
-          [](const ToolContact& contact) {
-            return of_touches(contact, {3}, [](const Touch& touch) {
-              return std::span<const double>(touch.position.data(), 3);
-            });
-          },
-          "(n, 3) where samples press, m; n is at most 7")
-      .def_property_readonly(
-          "normals",
-          [](const ToolContact& contact) {
-            return of_touches(contact, {3}, [](const Touch& touch) {
-              return std::span<const double>(touch.normal.data(), 3);
-            });
-          },
-          "(n, 3) of the surface there, outward, unit")
+  type.def_property_readonly("positions", vectors_of(&Touch::position),
+                             "(n, 3) where samples press, m; n is at most 7")
+      .def_property_readonly("normals", vectors_of(&Touch::normal),
+                             "(n, 3) of the surface there, outward, unit")
       .def_property_readonly(
           "forces",
           [](const ToolContact& contact) {
@@ -182,14 +179,8 @@ void define_touches(py::class_<ToolContact>& type) {
                               [](const Touch& touch) { return std::span(&touch.force, 1); });
           },
           "(n,) along the normals, N")
-      .def_property_readonly(
-          "frictions",
-          [](const ToolContact& contact) {
-            return of_touches(contact, {3}, [](const Touch& touch) {
-              return std::span<const double>(touch.friction.data(), 3);
-            });
-          },
-          "(n, 3) along the surface, N");
+      .def_property_readonly("frictions", vectors_of(&Touch::friction),
+                             "(n, 3) along the surface, N");
 }
 
 void define_contact(py::module_& module) {
@@ -249,33 +240,36 @@ std::unique_ptr<HeldTool> on_formula(std::shared_ptr<Tool> tool, std::shared_ptr
   return std::make_unique<HeldTool>(std::move(tool), std::move(field), options_of(options...));
 }
 
+template <class Make>
+void define_constructor(py::class_<HeldTool>& type, Make make, const char* touched) {
+  using py::arg;
+  constexpr const char* kOptions =
+      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the "
+      "tool's. "
+      "friction_dynamic, friction_static (default: the dynamic one): coefficients. "
+      "friction_viscous: N s/m";
+  type.def(py::init(make), arg("tool").none(false), arg(touched).none(false), py::kw_only(),
+           arg("stiffness") = 500.0, arg("gyration") = 0.0, arg("friction_dynamic") = 0.0,
+           arg("friction_static") = py::none(), arg("friction_viscous") = 0.0, kOptions);
+}
+
 }  // namespace
 
 void define_tools(py::module_& module) {
   using py::arg;
   define_tool(module);
   define_contact(module);
-  constexpr const char* kOptions =
-      "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the "
-      "tool's. "
-      "friction_dynamic, friction_static (default: the dynamic one): coefficients. "
-      "friction_viscous: N s/m";
-  using Maybe = std::optional<double>;
   const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
-  py::class_<HeldTool>(
+  py::class_<HeldTool> type(
       module, "ToolProxy",
       "A tool that follows the hand, turns, and stays outside of a scene's surface or "
       "of a formula's. Experimental. Input that is not finite is a fault: no wrench "
-      "until reset()")
-      .def(py::init(&in_scene<double, double, double, Maybe, double>), arg("tool").none(false),
-           arg("scene").none(false), py::kw_only(), arg("stiffness") = 500.0, arg("gyration") = 0.0,
-           arg("friction_dynamic") = 0.0, arg("friction_static") = py::none(),
-           arg("friction_viscous") = 0.0, kOptions)
-      .def(py::init(&on_formula<double, double, double, Maybe, double>), arg("tool").none(false),
-           arg("field").none(false), py::kw_only(), arg("stiffness") = 500.0, arg("gyration") = 0.0,
-           arg("friction_dynamic") = 0.0, arg("friction_static") = py::none(),
-           arg("friction_viscous") = 0.0, kOptions)
-      .def("__repr__",
+      "until reset()");
+  define_constructor(type, &in_scene<double, double, double, std::optional<double>, double>,
+                     "scene");
+  define_constructor(type, &on_formula<double, double, double, std::optional<double>, double>,
+                     "field");
+  type.def("__repr__",
            [](const HeldTool& held) {
              return fmt::format("<palpate.ToolProxy: {} N/m, gyration {:.3g} m>",
                                 held.options().stiffness, held.options().gyration);

@@ -76,7 +76,7 @@ void Descent::shift(double moved) noexcept {
 
 void Descent::release(const Pose& pose) noexcept {
   move_to(pose);
-  touches_.count = 0;
+  touches_ = {};
   friction_.forget();
   outside_ = {pose};
 }
@@ -227,11 +227,12 @@ void Descent::remember_planes(const LeastMotion& least, std::size_t seen,
   }
 }
 
-// Of contacts that rub friction knows the forces, which share out among others than those of
-// `least`.
+// Friction knows the forces of contacts that rub: they are shared out otherwise than in `least`.
 void Descent::remember_touches(const LeastMotion& least, bool rubs) noexcept {
-  touches_.count = 0;
+  touches_ = {};
   if (rubs) {
+    touches_.dissipated = friction_.dissipated();
+    touches_.slides = friction_.slides();
     for (const ToolFriction::Contact& contact : friction_.contacts()) {
       if (contact.sample < 0 || !(contact.pressed > 0)) continue;
       touches_.all[static_cast<std::size_t>(touches_.count++)] = {

@@ -22,6 +22,8 @@ struct Touches {
   };
   std::array<Touch, ToolContact::kMostTouches> all{};
   int count = 0;
+  double dissipated = 0;  ///< by friction in this step, J
+  bool slides = false;    ///< does a contact slide?
 
   [[nodiscard]] std::span<const Touch> span() const noexcept {
     return {all.data(), static_cast<std::size_t>(count)};
@@ -49,7 +51,6 @@ class Descent {
 
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }
   [[nodiscard]] const Touches& touches() const noexcept { return touches_; }
-  [[nodiscard]] const ToolFriction& friction() const noexcept { return friction_; }
   [[nodiscard]] GapSearch& gaps() noexcept { return gaps_; }
   [[nodiscard]] const Metric& metric() const noexcept { return metric_; }
   /// The farthest that any sample moves with this, m, at most.

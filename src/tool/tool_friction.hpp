@@ -58,7 +58,7 @@ class ToolFriction {
   [[nodiscard]] std::span<const Contact> contacts() const noexcept {
     return std::span(contacts_).first(count_);
   }
-  /// Of this step so far, J; of a spring with the law's stiffness.
+  /// J taken in this step so far, from a spring with the law's stiffness.
   [[nodiscard]] double dissipated() const noexcept { return dissipated_; }
   /// Did a contact slide in this step?
   [[nodiscard]] bool slides() const noexcept { return slides_; }

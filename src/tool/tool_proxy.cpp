@@ -80,7 +80,7 @@ void ToolProxy::Inside::reset(const Pose& given) noexcept {
   descent_.shift(kAnywhere);  // whether it is free there is not known, either
   spring_.reset();
   revision_.reset();
-  factor_ = friction_factor_ = 1;
+  factors_ = {};
 }
 
 ToolContact ToolProxy::Inside::faulted() const noexcept {
@@ -102,8 +102,8 @@ ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& give
   ToolContact contact;
   surface.whole().begin_step();
   const double time = std::max(dt, kLeastTime);
-  law_ = friction_law(options_.friction, friction_factor_, spring_.stiffness(), time);
-  move(surface, hand, contact);
+  move(surface, hand, friction_law(options_.friction, factors_.friction, spring_.stiffness(), time),
+       contact);
   free_hand(surface.whole(), hand, dt, contact);
   report(surface, contact);
   end(surface);

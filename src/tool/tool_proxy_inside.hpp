@@ -33,10 +33,16 @@ class ToolProxy::Inside {
   [[nodiscard]] const ToolOptions& options() const noexcept { return options_; }
 
  private:
+  struct Factors {
+    double stiffness = 1;
+    double friction = 1;
+  };
+
   [[nodiscard]] ToolContact faulted() const noexcept;
   [[nodiscard]] bool path_is_free(const Field& field, const Pose& hand) noexcept;
   void see(const ToolSurface& surface, const Field::Traits& traits) noexcept;
-  void move(const ToolSurface& surface, const Pose& hand, ToolContact& contact) noexcept;
+  void move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
+            ToolContact& contact) noexcept;
   void free_hand(const Field& field, const Pose& hand, double dt, ToolContact& contact) noexcept;
   void end(const ToolSurface& surface) noexcept;
   void end_group(const ToolSurface& surface, int group) noexcept;
@@ -52,11 +58,8 @@ class ToolProxy::Inside {
   Pose last_hand_;                         // in the last step
   const Field* field_ = nullptr;           // in the last step; never looked into
   std::optional<std::uint64_t> revision_;  // of it, then; empty: no step since a reset
-  FrictionLaw law_;                        // of this step
-  // Of stiffness and friction, by what was touched last.
-  double factor_ = 1;
-  double friction_factor_ = 1;
-  bool changed_ = false;  // is the surface another than in the last step?
+  Factors factors_;                        // by what was touched last
+  bool changed_ = false;                   // is the surface another than in the last step?
   bool started_ = false;
   bool fault_ = false;
 };

@@ -33,14 +33,14 @@ bool ToolProxy::Inside::path_is_free(const Field& field, const Pose& hand) noexc
   return true;
 }
 
-void ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand,
+void ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
                              ToolContact& contact) noexcept {
   const Field& field = surface.whole();
   descent_.gaps().begin(surface, pose());
   if (path_is_free(field, hand)) return descent_.release(hand);
   if (changed_) descent_.lift(surface, field.traits().reanchor_reach, contact);
   const double moved = descent_.farthest(descent_.metric().between(hand_, hand));
-  descent_.follow(surface, hand, moved, law_, contact);
+  descent_.follow(surface, hand, moved, law, contact);
 }
 
 // Lets go of a hand that is held hard in free air for long, as a point does, or whose tool is
@@ -107,9 +107,9 @@ void ToolProxy::Inside::pull(const Pose& before, const Pose& hand, double dt, co
   spring_.pull({.hand = hand,
                 .before = before,
                 .now = pose(),
-                .full = factor_ * options_.stiffness,
+                .full = factors_.stiffness * options_.stiffness,
                 .moved = hand_moved + open,
-                .dissipated = descent_.friction().dissipated(),
+                .dissipated = descent_.touches().dissipated,
                 .dt = dt,
                 // A tool that lags behind a hand which has let go is still held: else what it meets
                 // next would begin as soft as the spring is stretched.
@@ -144,10 +144,9 @@ void ToolProxy::Inside::report(const ToolSurface& surface, ToolContact& contact)
     contact.touches[static_cast<std::size_t>(contact.touch_count++)] = {
         x, touch.normal, touch.multiplier, touch.held, touch.sample};
   }
-  contact.sliding = descent_.friction().slides();
+  contact.sliding = descent_.touches().slides;
   if (!(sum > 0)) return;
-  factor_ = weighted / sum;
-  friction_factor_ = rubbed / sum;
+  factors_ = {weighted / sum, rubbed / sum};
 }
 
 }  // namespace palpate
