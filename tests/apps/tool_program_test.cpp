@@ -136,6 +136,8 @@ TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   EXPECT_THAT(refusal("bowl:4"), HasSubstr("or mesh:FILE"));
   EXPECT_THAT(refusal("box:20x30"), HasSubstr("give box:XxYxZ in millimetres"));
   EXPECT_THAT(refusal("mesh:"), HasSubstr("mesh: names no file"));
+  EXPECT_THAT(refusal("mesh:-"), HasSubstr("name its file"));
+  EXPECT_THAT(refusal("mesh:large.ply,unit=0.001 --log large.ply"), HasSubstr("large.ply"));
   EXPECT_THAT(refusal("mesh:absent.stl"), HasSubstr("absent.stl"));
   EXPECT_THAT(refusal("mesh:points.xyz"), HasSubstr("there are no faces in it"));
   EXPECT_THAT(refusal("mesh:large.ply,unit=0"), HasSubstr("unit=0 is out of range"));
@@ -153,6 +155,35 @@ TEST(ToolProgram, AdviceOfAMeshInMillimetresWorksWhenItIsFollowed) {
   const std::string advice = "mesh:large.ply,unit=0.001";
   ASSERT_THAT(refused.err, HasSubstr("give " + advice));
   EXPECT_EQ(shell.run("info --tool " + advice).code, 0);
+}
+
+// A rugged sheet: all of its vertices are corners.
+TEST(ToolProgram, AMeshOfCreasesAloneIsSaidToBeOne) {
+  std::string obj;
+  constexpr int kSide = 30;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int height = 31 * i * i % 7;
+    obj += fmt::format("v {} {} {}\n", 2 * (i / kSide), 2 * (i % kSide), height);
+  }
+  for (int i = 0; i + 1 < kSide; ++i) {
+    for (int k = 1; k < kSide; ++k) {
+      const int a = kSide * i + k;
+      obj += fmt::format("f {} {} {}\nf {} {} {}\n", a, a + 1, a + kSide, a + 1, a + kSide + 1,
+                         a + kSide);
+    }
+  }
+  Shell shell;
+  shell.write("rugged.obj", obj);
+  const Outcome outcome = shell.run("info --tool mesh:rugged.obj");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("most are at corners and creases of the mesh"));
+}
+
+TEST(ToolProgram, OnACameraTheRadiusIsNotKnown) {
+  Shell shell;
+  const Outcome outcome = shell.run("info camera:simulated --tool ball:3");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("ball:3: 1 balls"));
 }
 
 TEST(ToolProgram, KeysOfASetUpFileAreItsOptions) {

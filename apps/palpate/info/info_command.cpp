@@ -271,6 +271,7 @@ void info(const InfoOptions& options) {
     if (lives(argument.path)) {
       Report report = report_of(study_live(argument));
       report.print(out);
+      if (tool.turns()) report_tool(report, tool, 0, out);
       clouds.push_back(report.data);
       continue;
     }
@@ -281,7 +282,7 @@ void info(const InfoOptions& options) {
     add_study(report, info);
     report.print(out);
     advice_of(info).print(out);
-    if (tool.turns()) report_tool(report, tool, info.prepared.radius, out);
+    if (tool.turns()) report_tool(report, tool, felt_radius(info), out);
     print_map(info.loaded.file.cloud, out);
     clouds.push_back(report.data);
   }

@@ -79,6 +79,11 @@ struct InfoReport {
 /// Adds what a study found.
 void add_study(Report& report, const InfoReport& info);
 
+/// R of what touch() would feel of it, m.
+[[nodiscard]] inline double felt_radius(const InfoReport& report) {
+  return report.image.depth > 0 ? report.image_radius : report.prepared.radius;
+}
+
 /// Prints what a tool is on a surface whose support radius is `radius` (m; 0: it is unknown), and
 /// adds it to the data of `report`. @throws Error as NamedTool does.
 void report_tool(Report& report, const ToolPlan& tool, double radius, std::FILE* out);

@@ -52,10 +52,18 @@ MeshName parse_mesh_tool(const std::string& text) {
     }
     name.path.erase(at);
   }
+  if (name.path == "-") {
+    throw UsageError(
+        "--tool: a mesh is not read from standard input; name its file: mesh:part.stl");
+  }
   if (name.path.empty()) {
     throw UsageError("--tool: mesh: names no file; give one behind the colon: mesh:part.stl");
   }
   return name;
+}
+
+std::string mesh_file(const ToolPlan& tool) {
+  return tool.text.starts_with(kMeshTool) ? parse_mesh_tool(tool.text).path : "";
 }
 
 void add_tool_shape(OptionTable& table, ToolPlan& tool) {

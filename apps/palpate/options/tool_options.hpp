@@ -30,6 +30,9 @@ struct MeshName {
 /// @throws UsageError where there is no file, or its unit is none.
 [[nodiscard]] MeshName parse_mesh_tool(const std::string& text);
 
+/// The file that a tool is read from; empty: none.
+[[nodiscard]] std::string mesh_file(const ToolPlan& tool);
+
 /// Registers `--tool` and how its turns feel.
 void add_tool_options(OptionTable& table, ToolPlan& tool);
 

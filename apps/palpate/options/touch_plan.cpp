@@ -110,6 +110,7 @@ void check_files(const TouchPlan& plan, const std::string& setup) {
   std::vector<NamedFile> read = inputs(clouds);
   read.push_back({"--trajectory", plan.motion.trajectory});
   read.push_back({"--setup", setup});
+  read.push_back({"--tool", mesh_file(plan.tool)});
   require(outputs.record != "-", "--record cannot go to standard output; name a file");
   std::vector<NamedFile> written = {{"--json", outputs.json}, {"--record", outputs.record}};
   for (std::size_t hand = 0; hand < plan.devices.size(); ++hand) {

@@ -82,6 +82,12 @@ std::string SampledTool::warning() const {
         length(spacing), length(radius), kWanted * radius);
   }
   if (samples <= NamedTool::kMostSamples) return {};
+  if (cornered) {
+    return fmt::format(
+        "its {} samples can take longer than a millisecond; most are at corners and creases of the "
+        "mesh, of more than 20 degrees: give one with fewer, or a smoothed one",
+        grouped(samples));
+  }
   return fmt::format(
       "its {} samples can take longer than a millisecond; give a larger --tool-spacing, or a "
       "simpler shape",
@@ -89,7 +95,7 @@ std::string SampledTool::warning() const {
 }
 
 NamedTool::NamedTool(ToolPlan plan) : plan_(std::move(plan)) {
-  if (!plan_.text.starts_with(kMeshTool)) return;
+  if (mesh_file(plan_).empty()) return;
   const MeshName name = parse_mesh_tool(plan_.text);
   ReadOptions options;
   mesh_ = read_mesh(name.path, options);
@@ -135,7 +141,8 @@ SampledTool NamedTool::sampled(double radius) const {
   for (int i = 0; i < kSpacings; ++i) {
     auto tool = std::make_shared<const Tool>(with_spacing(spacing));
     const auto samples = static_cast<double>(tool->samples().size());
-    if (before > 0 && samples > kCorners * static_cast<double>(before)) break;
+    result.cornered = before > 0 && samples > kCorners * static_cast<double>(before);
+    if (result.cornered) break;
     before = tool->samples().size();
     result.tool = std::move(tool);
     result.spacing = spacing;

@@ -17,10 +17,11 @@ namespace palpate::app {
 /// A tool with samples as dense as what it touches requires.
 struct SampledTool {
   std::shared_ptr<const Tool> tool;
-  std::string name;                           ///< as it was named
-  std::string unit = {};                      ///< of a mesh, in words; empty: as it was named
-  double spacing = 0;                         ///< between samples, at most, m
-  double radius = 0;                          ///< R of what it touches, m; 0: unknown
+  std::string name;       ///< as it was named
+  std::string unit = {};  ///< of a mesh, in words; empty: as it was named
+  double spacing = 0;     ///< between samples, at most, m
+  double radius = 0;      ///< R of what it touches, m; 0: unknown
+  bool cornered = false;  ///< no spacing leaves few enough: they are corners and creases
   std::optional<double> turn_stiffness = {};  ///< N m/rad in the world; unset: fits the tool
 
   /// ToolOptions::gyration with a surface of `stiffness` N/m, m.
