@@ -64,7 +64,7 @@ std::optional<double> parse_number(std::string_view token) {
 }
 
 std::from_chars_result number_by_strtod(std::string_view text, double& value) {
-  static const locale_t c_locale = newlocale(LC_ALL_MASK, "C", nullptr);
+  static const locale_t kPlainLocale = newlocale(LC_ALL_MASK, "C", nullptr);
   const char* const begin = text.data();
   const std::string_view digits = text.substr(text.starts_with('-') ? 1 : 0);
   // strtod() passes over these, and from_chars() does not.
@@ -78,7 +78,7 @@ std::from_chars_result number_by_strtod(std::string_view text, double& value) {
   const std::string with_end(text);
   char* end = nullptr;
   errno = 0;
-  const double read = strtod_l(with_end.c_str(), &end, c_locale);
+  const double read = strtod_l(with_end.c_str(), &end, kPlainLocale);
   const char* const stop = begin + (end - with_end.c_str());
   if (stop == begin) return {begin, std::errc::invalid_argument};
   const bool beyond = errno == ERANGE && (read == 0 || std::isinf(read));

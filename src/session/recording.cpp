@@ -239,7 +239,7 @@ std::optional<Recording::Step> Recording::Steps::next(double until) {
     });
     std::optional<message::ToolStep>& tool = tools_[hand];
     if (tool && tool->step != tick.step) tool.reset();  // its own tick is lost
-    upcoming_ = {hand, std::move(tick), std::move(tool), std::exchange(changes_[hand], {})};
+    upcoming_ = {hand, std::move(tick), tool, std::exchange(changes_[hand], {})};
     tool.reset();
   }
   if (!upcoming_ || upcoming_->tick.time > until) return std::nullopt;
