@@ -56,7 +56,7 @@ PoseStamped hand_pose(const Header& header, const ServoState& state) {
 }
 
 PoseStamped proxy_pose(const Header& header, const ServoState& state) {
-  return {header, pose_at(state.contact.proxy, state.orientation)};
+  return {header, pose_at(state.contact.proxy, state.tool.orientation)};
 }
 
 TwistStamped hand_twist(const Header& header, const ServoState& state) {
@@ -64,7 +64,7 @@ TwistStamped hand_twist(const Header& header, const ServoState& state) {
 }
 
 WrenchStamped hand_wrench(const Header& header, const ServoState& state) {
-  return {header, {vector_of(state.force), {}}};
+  return {header, {vector_of(state.force), vector_of(state.torque)}};
 }
 
 Joy hand_joy(const Header& header, const ServoState& state) {
@@ -75,7 +75,7 @@ Joy hand_joy(const Header& header, const ServoState& state) {
 
 TransformStamped proxy_frame(const Header& header, const std::string& name,
                              const ServoState& state) {
-  const Pose pose = pose_at(state.contact.proxy, state.orientation);
+  const Pose pose = pose_at(state.contact.proxy, state.tool.orientation);
   return {header, "palpate_" + name, {vector_of(state.contact.proxy), pose.orientation}};
 }
 

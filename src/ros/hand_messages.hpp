@@ -12,14 +12,14 @@
 /// `header`: stamp and the name of the world frame. Any thread.
 namespace palpate::ros {
 
-/// Poses of hand and proxy; both with the tool's orientation.
+/// Poses of hand and proxy, that of a tool which turns as far as the surface lets it.
 [[nodiscard]] message::PoseStamped hand_pose(const message::Header& header,
                                              const ServoState& state);
 [[nodiscard]] message::PoseStamped proxy_pose(const message::Header& header,
                                               const ServoState& state);
 [[nodiscard]] message::TwistStamped hand_twist(const message::Header& header,
                                                const ServoState& state);
-/// The force on the hand, as the device was given it.
+/// Force and torque on the hand, about the tool's handle, as the device was given them.
 [[nodiscard]] message::WrenchStamped hand_wrench(const message::Header& header,
                                                  const ServoState& state);
 /// The first eight buttons; axis 0 is the gripper's opening, m.

@@ -121,6 +121,8 @@ void Servo::Inside::touch_with_point() noexcept {
   SceneField& field = *limited.field;
   field.update(state.time, state.hip, state.step > 0 ? limited.proxy.position() : state.hip);
   state.contact = limited.proxy.step(field, state.hip, state.dt);
+  state.tool = pose();
+  state.tool.position = state.contact.proxy;
   state.field_notes = field.notes();
   if (options.traces != nullptr) basis.found = field.found();
   state.patch_points = field.patch_points();

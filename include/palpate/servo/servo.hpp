@@ -108,8 +108,10 @@ struct ServoState {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< of the tool
   double gripper = 0;                                               ///< its opening at the hand, m
   Contact contact;  ///< its force is the proxy's own
-  Pose tool;      ///< where ServoOptions::tool is, outside of the surface; its handle is the proxy
-  Wrench wrench;  ///< of the tool's proxy, before the guard
+  /// Where what is held is, outside of the surface: ServoOptions::tool, whose handle is the proxy;
+  /// a point is turned and open as the hand is.
+  Pose tool;
+  Wrench wrench;                                     ///< of the tool's proxy, before the guard
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< what the guard let through, N
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< the same, N m; 0: the device renders none
   double grip = 0;                                   ///< the same, N; 0: the device renders none
