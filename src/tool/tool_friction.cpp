@@ -13,9 +13,9 @@ constexpr int kSweeps = 64;  // over the contacts; what is left open is taken up
 // m: a sweep that changes the motion by less is the last one; in a second at 1 kHz a tool at rest
 // creeps by a nanometre
 constexpr double kStill = 1e-12;
-// m in a step: a contact whose cone is full slides no farther where others hold the tool. A hand
-// that creeps by 1 um/s at 1 kHz moves as far.
-constexpr double kCreep = 1e-9;
+// m in a step: what slides by less rests, as sweeps come that near. At 1 kHz it is 0.1 mm/s, slower
+// than a hand that is held still.
+constexpr double kCreep = 1e-7;
 
 }  // namespace
 
