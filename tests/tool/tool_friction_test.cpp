@@ -51,7 +51,7 @@ TEST(ToolFriction, ABoxOnAPlaneStaysUntilTheConeAndSlidesOnIt) {
     ASSERT_LT((along(contact) - Vector3d(contact.wrench.force.x(), 0, 0)).norm(), 5e-4);
     if (yielded == 0 && contact.sliding) yielded = pulled;
     const double force = yielded > 0 ? 2 * kDynamic : kStiffness * pulled;
-    ASSERT_NEAR(contact.wrench.force.x(), -force, 1e-4) << i;
+    ASSERT_NEAR(contact.wrench.force.x(), -force, 5e-4) << i;
     if (yielded == 0) {
       ASSERT_LT((proxy.pose().position - rest).norm(), 1e-7);
     }
