@@ -109,7 +109,7 @@ class Facing {
   [[nodiscard]] bool is_settled(std::span<const ActiveLayer> layers) const noexcept;
   void list_references(const Eigen::Vector3d& proxy, bool vanished) noexcept;
   void add_references(const Segment& segment) noexcept;
-  void each_meeting(const Segment& segment, float reach, const auto& visit) noexcept;
+  void each_meeting(const Segment& segment, const auto& visit) noexcept;
   void turn_by(const Eigen::Vector3f& normal) noexcept;
   [[nodiscard]] double votes_on(std::uint32_t component) noexcept;
   void decide_signs(bool continued) noexcept;

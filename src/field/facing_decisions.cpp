@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "field/facing.hpp"
 #include "field/formulas.hpp"
@@ -17,8 +16,7 @@ constexpr double kAgainst = 0.5;     // share of the agreement with a contact th
 constexpr double kLeastVote = 1e-3;  // sum of weights times agreements: less is no vote
 
 // Labels (docs/method.md 2.7); all are judgement.
-constexpr float kMeetReach = 1.3f;  // R within which segments meet and components give signs
-constexpr float kAnywhere = std::numeric_limits<float>::infinity();  // R: all points in view
+constexpr float kMeetReach = 1.3f;      // R within which segments meet and components give signs
 constexpr double kLeastMeeting = 1e-3;  // sum of weights: segments with less do not meet
 constexpr float kSamePosition = 1e-3f;  // R; rounding sets the direction between closer points
 constexpr double kSameNormal = 0.7;     // mean cosine of normals (46 degrees) of one segment
@@ -53,16 +51,16 @@ bool swap_faces(auto& segments, auto& references) noexcept {
 
 }  // namespace
 
-/// Calls visit(p, q, offset, w) for points p of the segment and decided ones q within `reach` R of
+/// Calls visit(p, q, offset, w) for points p of the segment and decided ones q within kMeetReach of
 /// it: the offset from q to p and how much it counts.
-void Facing::each_meeting(const Segment& segment, float reach, const auto& visit) noexcept {
+void Facing::each_meeting(const Segment& segment, const auto& visit) noexcept {
   const std::uint32_t step = stride_for(references_.size(), kReferences);
   const std::uint32_t skip = stride_for(segment.count, kTried);
   for (std::uint32_t k = 0; k < segment.count; k += skip) {
     const Point& p = view_.points[view_.order[segment.begin + k]];
     for (std::size_t r = 0; r < references_.size() && pairs_ > 0; r += step, --pairs_) {
       const Vector3f offset = p.position - references_[r].position;
-      const double w = weight_within(offset.squaredNorm(), reach * p.radius);
+      const double w = weight_within(offset.squaredNorm(), kMeetReach * p.radius);
       if (w > 0) visit(p, references_[r], offset, w);
     }
   }
@@ -74,14 +72,14 @@ double Facing::votes_on(std::uint32_t component) noexcept {
   double sum = 0;
   for (const Segment& segment : view_.table.segments) {
     if (segment.component != component) continue;
-    each_meeting(segment, kMeetReach,
-                 [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
-                   const float a = q.is_of_another_time(segment)
-                                       ? p.normal.dot(q.normal)
-                                       : agreement(p.normal, q.normal, offset,
-                                                   3 * std::max(p.residual, q.residual));
-                   sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
-                 });
+    each_meeting(
+        segment, [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
+          const float a =
+              q.is_of_another_time(segment)
+                  ? p.normal.dot(q.normal)
+                  : agreement(p.normal, q.normal, offset, 3 * std::max(p.residual, q.residual));
+          sum += static_cast<double>(p.confidence * q.confidence * a * std::abs(a)) * w;
+        });
   }
   return sum;
 }
@@ -159,23 +157,21 @@ struct Facing::Meeting {
 Facing::Meetings Facing::meetings(const Segment& segment, double& beyond) noexcept {
   Meetings result{};
   const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
-  each_meeting(segment, kMeetReach,
-               [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
-                 const float length = offset.norm();
-                 if (!(length > kSamePosition * p.radius)) return;
-                 Meeting& m = result[q.label];
-                 const double off = w * static_cast<double>(q.normal.dot(offset) / length);
-                 m.all += w;
-                 m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
-                 m.above +=
-                     w * static_cast<double>((q.normal - sign * p.normal).dot(offset) / length);
-                 m.off += off;
-                 if (!q.is_of_another_time(segment)) {
-                   m.now += w;
-                   m.off_now += off;
-                 }
-                 if (q.label == kNearFace && is_beyond(p, q, offset, sign)) beyond += w;
-               });
+  each_meeting(segment, [&](const Point& p, const Reference& q, const Vector3f& offset, double w) {
+    const float length = offset.norm();
+    if (!(length > kSamePosition * p.radius)) return;
+    Meeting& m = result[q.label];
+    const double off = w * static_cast<double>(q.normal.dot(offset) / length);
+    m.all += w;
+    m.parallel += w * static_cast<double>(sign * p.normal.dot(q.normal));
+    m.above += w * static_cast<double>((q.normal - sign * p.normal).dot(offset) / length);
+    m.off += off;
+    if (!q.is_of_another_time(segment)) {
+      m.now += w;
+      m.off_now += off;
+    }
+    if (q.label == kNearFace && is_beyond(p, q, offset, sign)) beyond += w;
+  });
   return result;
 }
 
@@ -204,15 +200,6 @@ std::uint8_t Facing::label_of(const Segment& segment) noexcept {
   if (other == kNearFace && !plate && beyond > kLeastMeeting) return kConcave;
   if (other == kFarFace && concave) {
     return swap_faces(view_.table.segments, references_) ? kConcave : kNearFace;
-  }
-  if (other == kConcave && !concave) {
-    const auto sign = static_cast<float>(view_.table.components[segment.component].factor());
-    bool cuts = false;  // something of a near face off
-    each_meeting(segment, kAnywhere,
-                 [&](const Point& p, const Reference& q, const Vector3f& offset, double) {
-                   cuts = cuts || (q.label == kNearFace && is_beyond(p, q, offset, sign));
-                 });
-    return cuts || pairs_ == 0 ? kNearFace : kFarFace;
   }
   return concave ? kConcave : kFarFace;
 }

@@ -39,10 +39,10 @@ inline constexpr float kUnsharp = 2;  ///< residuals of a height that decides a 
 /// How a segment is seen from the tool. Its points' normals are turned to the tool's side of it.
 enum Label : std::uint8_t {
   kNearFace = 0,  ///< near face: what is above it is free
-  kFarFace = 1,  ///< far face: it meets a near face at a convex edge, or a concave neighbour at one
-                 ///< beyond the near face; solid is what is below both
-  kConcave = 2,  ///< concave neighbour: it meets a near face in a crease, or that goes on beyond
-                 ///< its plane; free is what is above both
+  kFarFace = 1,   ///< far face: it meets a near face or a concave neighbour at a convex edge; solid
+                  ///< is what is below both
+  kConcave = 2,   ///< concave neighbour: it meets a near face in a crease, or that goes on beyond
+                  ///< its plane; free is what is above both
 };
 static_assert(kConcave == simd::kLabels - 1);
 
