@@ -110,6 +110,7 @@ ServoState state_of(const message::Tick& tick, const std::optional<message::Tool
   state.paused = tick.paused;
   state.clutched = options.clutch_button && ((tick.buttons >> *options.clutch_button) & 1u) != 0;
   state.timing.computing = tick.computing;
+  state.tool = {contact.proxy, state.orientation, workspace.scale * state.gripper};
   if (!tool) return state;
   const message::Quaternion& turned = tool->orientation;
   state.tool = {contact.proxy, {turned.w, turned.x, turned.y, turned.z}, tool->opening};
