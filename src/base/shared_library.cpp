@@ -39,10 +39,14 @@ SharedLibrary::SharedLibrary(const std::vector<std::string>& names, std::string 
 }
 
 SharedLibrary::Found SharedLibrary::operator[](const char* function) const {
-  if (void* const found = ::dlsym(handle_.get(), function)) return {found};
+  if (const Found found = find(function); found.address != nullptr) return found;
   throw Error(
       fmt::format("the library {} has no function {}: it is too old or a different library. {}",
                   name_, function, remedy_));
+}
+
+SharedLibrary::Found SharedLibrary::find(const char* function) const noexcept {
+  return {::dlsym(handle_.get(), function)};
 }
 
 }  // namespace palpate

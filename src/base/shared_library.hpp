@@ -32,6 +32,8 @@ class SharedLibrary {
   };
   /// @throws Error when it has none of that name.
   [[nodiscard]] Found operator[](const char* function) const;
+  /// The same of a function that older versions lack: null where it has none.
+  [[nodiscard]] Found find(const char* function) const noexcept;
 
  private:
   std::string name_;

@@ -24,11 +24,18 @@ DeviceInfo info_of(const DeviceProfile& profile, const std::string& name) {
   info.maximum_force = profile.maximum_force.value_or(*device_profile("unknown").maximum_force);
   info.maximum_stiffness = profile.maximum_stiffness.value_or(info.maximum_stiffness);
   info.damping = profile.damping.value_or(info.damping);
+  info.angular_damping = profile.angular_damping.value_or(info.angular_damping);
   info.mass = profile.mass.value_or(info.mass);
   info.rate = profile.rate.value_or(info.rate);
   info.delay = profile.delay;
   info.workspace_radius = profile.workspace_radius.value_or(info.workspace_radius);
   return info;
+}
+
+void add_motors(DeviceInfo& info, const DeviceProfile& profile, bool wrist, bool gripper) {
+  const DeviceProfile unknown = device_profile("unknown");
+  if (wrist) info.maximum_torque = profile.maximum_torque.value_or(*unknown.maximum_torque);
+  if (gripper) info.maximum_grip = profile.maximum_grip.value_or(*unknown.maximum_grip);
 }
 
 }  // namespace device
@@ -42,10 +49,13 @@ struct NumberKey {
   bool positive;
 };
 
-constexpr std::array<NumberKey, 10> kNumbers = {{
+constexpr std::array<NumberKey, 13> kNumbers = {{
     {"maximum_force", &DeviceProfile::maximum_force, true},
     {"peak_force", &DeviceProfile::peak_force, true},
     {"maximum_stiffness", &DeviceProfile::maximum_stiffness, true},
+    {"maximum_torque", &DeviceProfile::maximum_torque, true},
+    {"maximum_grip", &DeviceProfile::maximum_grip, true},
+    {"angular_damping", &DeviceProfile::angular_damping, false},
     {"damping", &DeviceProfile::damping, false},
     {"coulomb", &DeviceProfile::coulomb, false},
     {"mass", &DeviceProfile::mass, true},

@@ -32,6 +32,9 @@ void check_options(const DeviceName& name, std::initializer_list<std::string_vie
 /// The numbers of a profile for a device that is called `name`. Where the profile does not contain
 /// the force, that of an unknown device is taken.
 [[nodiscard]] DeviceInfo info_of(const DeviceProfile& profile, const std::string& name);
+/// What motors of a wrist and of a gripper hold by that profile; where it does not say, those of an
+/// unknown device.
+void add_motors(DeviceInfo& info, const DeviceProfile& profile, bool wrist, bool gripper);
 
 // The drivers of hardware: what each finds, and how it opens a device. Drivers that need a library
 // at build time have a second source, DRIVER_absent.cpp, for builds without it. A driver may read

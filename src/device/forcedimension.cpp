@@ -71,6 +71,11 @@ struct ForceDimensionLibrary {
   int (*set_force)(double x, double y, double z, double around_x, double around_y, double around_z,
                    double gripper, char id) = library["dhdSetForceAndTorqueAndGripperForce"];
   const char* (*last_error)() = library["dhdErrorGetLastStr"];
+  // Older versions lack these; then no torque is rendered.
+  bool (*has_active_wrist)(char id) = library.find("dhdHasActiveWrist");
+  bool (*has_active_gripper)(char id) = library.find("dhdHasActiveGripper");
+  int (*angular_velocity)(double* x, double* y, double* z,
+                          char id) = library.find("dhdGetAngularVelocityRad");  // base's axes
 };
 
 // The maker's x is towards the operator, y to the right, z up.
@@ -99,8 +104,9 @@ std::string profile_of(std::string title) {
   return "unknown";
 }
 
-// Arms the device's own watchdog and leaves its velocity threshold alone. Wrists and grippers are
-// read, and get no force.
+// Arms the device's own watchdog and leaves its velocity threshold alone. Wrists and grippers get a
+// torque and a force where they have motors. A grip above 0 is taken to open the fingers, as the
+// gap that it goes with does; the maker does not say.
 class ForceDimensionDriver final : public DeviceDriver {
  public:
   explicit ForceDimensionDriver(const DeviceName& name)
@@ -111,10 +117,12 @@ class ForceDimensionDriver final : public DeviceDriver {
     const char* reported = library_.title(id_);
     const std::string title = reported == nullptr ? "" : reported;
     try {
-      info_ = info_of(device_profile(name.option("profile", profile_of(title))),
-                      fmt::format("{} ({})", info_.name, title.empty() ? "no name" : title));
+      const DeviceProfile profile = device_profile(name.option("profile", profile_of(title)));
+      info_ =
+          info_of(profile, fmt::format("{} ({})", info_.name, title.empty() ? "no name" : title));
       info_.has_orientation = library_.has_wrist(id_);
       info_.has_gripper = library_.has_gripper(id_);
+      add_motors(info_, profile, has_motors_of_wrist(), has_motor_of_gripper());
       prepare();
     } catch (...) {
       library_.close(id_);
@@ -130,8 +138,13 @@ class ForceDimensionDriver final : public DeviceDriver {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
 
   [[nodiscard]] DeviceState exchange(const Vector3d& force) override {
-    const Vector3d f = to_maker(force);
-    check(library_.set_force(f.x(), f.y(), f.z(), 0, 0, 0, 0, id_), "does not accept a force");
+    return exchange_wrench({.force = force});
+  }
+  [[nodiscard]] DeviceState exchange_wrench(const Wrench& wrench) override {
+    const Vector3d f = to_maker(wrench.force);
+    const Vector3d t = to_maker(wrench.torque);
+    check(library_.set_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), wrench.grip, id_),
+          "does not accept a force");
     Vector3d position;
     check(library_.position(&position.x(), &position.y(), &position.z(), id_),
           "does not report its position");
@@ -140,10 +153,20 @@ class ForceDimensionDriver final : public DeviceDriver {
             .velocity = velocity(),
             .buttons = library_.buttons(id_),
             .orientation = orientation(),
-            .gripper = gripper()};
+            .gripper = gripper(),
+            .angular_velocity = angular_velocity()};
   }
 
  private:
+  [[nodiscard]] bool has_motors_of_wrist() const {
+    return info_.has_orientation && library_.angular_velocity != nullptr &&
+           library_.has_active_wrist != nullptr && library_.has_active_wrist(id_);
+  }
+  [[nodiscard]] bool has_motor_of_gripper() const {
+    return info_.has_gripper && library_.has_active_gripper != nullptr &&
+           library_.has_active_gripper(id_);
+  }
+
   void open(int number) {
     const int count = library_.count();
     if (number >= count) {
@@ -205,14 +228,21 @@ class ForceDimensionDriver final : public DeviceDriver {
     throw Error(fmt::format("{}: {}", info_.name, words));
   }
 
+  using Estimate = int (*)(double* x, double* y, double* z, char id);
+
   // The maker estimates velocities over a window, which has to be filled first.
-  [[nodiscard]] Vector3d velocity() {
+  [[nodiscard]] Vector3d estimated(Estimate estimate, bool& filled) const {
     Vector3d reported = Vector3d::Zero();
-    const int result = library_.velocity(&reported.x(), &reported.y(), &reported.z(), id_);
-    if (result < 0 && !has_velocity_) return Vector3d::Zero();
+    const int result = estimate(&reported.x(), &reported.y(), &reported.z(), id_);
+    if (result < 0 && !filled) return Vector3d::Zero();
     check(result, "does not report its velocity");
-    has_velocity_ = true;
+    filled = true;
     return from_maker(reported);
+  }
+  [[nodiscard]] Vector3d velocity() { return estimated(library_.velocity, has_velocity_); }
+  [[nodiscard]] Vector3d angular_velocity() {
+    if (info_.maximum_torque == 0) return Vector3d::Zero();
+    return estimated(library_.angular_velocity, has_angular_velocity_);
   }
 
   // Tool and base are rotated alike: straight stays straight.
@@ -237,6 +267,7 @@ class ForceDimensionDriver final : public DeviceDriver {
   DeviceInfo info_;
   char id_ = -1;
   bool has_velocity_ = false;
+  bool has_angular_velocity_ = false;
   std::uint64_t exchanges_ = 0;  // since it was opened
 };
 

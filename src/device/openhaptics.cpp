@@ -53,15 +53,29 @@ std::string title_of(const OpenHapticsFacts& facts) {
          (facts.serial_number.empty() ? "" : ", ") + facts.serial_number;
 }
 
+// The library may tell a torque of devices that have no motors for it.
+bool has_six_motors(const OpenHapticsFacts& facts) {
+  std::string model = facts.model;
+  std::ranges::transform(model, model.begin(), [](unsigned char c) { return std::tolower(c); });
+  return facts.continuous_torque > 0 && model.find("6dof") != std::string::npos;
+}
+
 // Prefers the device's own report to its kind's profile, unless the user asked for a profile.
 DeviceInfo info_of_device(const DeviceName& name, const OpenHapticsFacts& facts,
                           const std::string& device) {
   const std::string title = fmt::format("{} ({})", device, title_of(facts));
   const std::string given = name.option("profile");
-  if (!given.empty()) return info_of(device_profile(given), title);
+  if (!given.empty()) {
+    DeviceInfo info = info_of(device_profile(given), title);
+    info.has_orientation = true;
+    add_motors(info, device_profile(given), has_six_motors(facts), false);
+    return info;
+  }
   DeviceInfo info = info_of(device_profile(touch_profile_of(facts.model)), title);
+  info.has_orientation = true;
   if (facts.continuous_force > 0) info.maximum_force = facts.continuous_force;
   if (facts.maximum_stiffness > 0) info.maximum_stiffness = facts.maximum_stiffness;
+  if (has_six_motors(facts)) info.maximum_torque = facts.continuous_torque;
   return info;
 }
 
@@ -104,11 +118,12 @@ OpenHapticsDriver::OpenHapticsDriver(const DeviceName& name, const Clock& clock)
   info_.name = fmt::format("openhaptics:{}", name.device.empty() ? kDefault : name.device);
   (void)exchange(Vector3d::Zero());
   info_ = info_of_device(name, session_.facts(), info_.name);
+  if (info_.maximum_torque > 0) session_.frames().enable_torque();
   prepare();
 }
 
-DeviceState OpenHapticsDriver::exchange(const Vector3d& force) {
-  request(force);
+DeviceState OpenHapticsDriver::exchange_wrench(const Wrench& wrench) {
+  request(wrench);
   return answer();
 }
 
@@ -123,7 +138,7 @@ void OpenHapticsDriver::prepare() {
   if (styles != 0 && now.calibration == hd::kNeedsUpdate) session_.frames().calibrate(styles);
   for (int i = 0; i < kCalibrationFrames && styles != 0 && now.calibration != hd::kCalibrated;
        ++i) {
-    request(Vector3d::Zero());
+    request({});
     now = checked_answer();
   }
   if (now.calibration != hd::kCalibrated) fail(kNotCalibrated);

@@ -11,6 +11,7 @@ namespace palpate::device {
 namespace {
 
 constexpr double kLengthUnit = 1e-3;  // m; OpenHaptics measures in mm (the maker's)
+constexpr double kTorqueUnit = 1e-3;  // N m; OpenHaptics measures in mN m (the maker's)
 constexpr const char* kBroughtBy =
     "It is part of OpenHaptics 3 for Linux and the Touch Device Driver (3D Systems): run the "
     "installers of both; 'palpate doctor' shows what is missing";
@@ -47,8 +48,10 @@ OpenHapticsFacts OpenHapticsLibrary::read_facts() const {
   facts.serial_number = text_or_empty(get_name(hd::kSerialNumber));
   get_numbers(hd::kContinuousForce, &facts.continuous_force);
   get_numbers(hd::kMaximumStiffness, &facts.maximum_stiffness);
+  get_numbers(hd::kContinuousTorque, &facts.continuous_torque);
   get_integers(hd::kCalibrationStyle, &facts.calibration_styles);
   facts.continuous_force = positive_or_zero(facts.continuous_force);
+  facts.continuous_torque = positive_or_zero(kTorqueUnit * facts.continuous_torque);
   facts.maximum_stiffness = positive_or_zero(facts.maximum_stiffness / kLengthUnit);
   return facts;
 }

@@ -11,19 +11,22 @@ namespace palpate::device {
 // Numbers of OpenHaptics' C interface to devices (HDAPI 3), as its header hdDefines.h gives them.
 namespace hd {
 
-// Values that can be read; positions in mm, forces in N.
+// Values that can be read; positions in mm, forces in N, torques in mN m.
 inline constexpr unsigned kCurrentButtons = 0x2000;
 inline constexpr unsigned kCurrentPosition = 0x2050;
-inline constexpr unsigned kCurrentVelocity = 0x2051;  // mm/s
+inline constexpr unsigned kCurrentVelocity = 0x2051;   // mm/s
+inline constexpr unsigned kCurrentTransform = 0x2052;  // 16 numbers, column by column
 inline constexpr unsigned kModel = 0x2501;
 inline constexpr unsigned kSerialNumber = 0x2504;
 inline constexpr unsigned kCalibrationStyle = 0x2555;
 inline constexpr unsigned kMaximumStiffness = 0x2602;  // N/mm
 inline constexpr unsigned kContinuousForce = 0x2604;
+inline constexpr unsigned kContinuousTorque = 0x2623;
 inline constexpr unsigned kMotorTemperature = 0x2605;  // of each motor; 1: as warm as allowed
 
-// A value that can be set, and a switch.
+// Values that can be set, and a switch.
 inline constexpr unsigned kCurrentForce = 0x2700;
+inline constexpr unsigned kCurrentTorque = 0x2701;
 inline constexpr unsigned kForceOutput = 0x4000;
 
 // Return value of a callback that has to be called again in the next tick.
@@ -60,6 +63,7 @@ struct OpenHapticsFacts {
   std::string model;
   std::string serial_number;
   double continuous_force = 0;   ///< N
+  double continuous_torque = 0;  ///< N m
   double maximum_stiffness = 0;  ///< N/m
   int calibration_styles = 0;    ///< bits: hd::kAutomatic, hd::kInkwell, others
 };

@@ -42,19 +42,26 @@ class Wakeup {
   sem_t semaphore_{};
 };
 
+[[nodiscard]] inline std::chrono::steady_clock::duration seconds(double duration) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(duration));
+}
+
 /// An open device of the library, as frames use it, in metres and with z up. Bounded work.
 struct OpenHapticsHand {
   OpenHapticsLibrary library;
   OpenHapticsLibrary::Device device;
   OpenHapticsErrors& errors;
+  std::atomic<bool> turns{false};  ///< the device has motors for a torque
 
   void begin_frame() const noexcept {
     library.make_current(device);
     library.begin_frame(device);
   }
-  void end_frame(const Eigen::Vector3d& force) const noexcept;
+  void end_frame(const Wrench& wrench) const noexcept;
   /// The state without status and time. Within a frame, as the next.
   [[nodiscard]] DeviceState read() const noexcept;
+  [[nodiscard]] Eigen::Quaterniond orientation() const noexcept;
   [[nodiscard]] double warmest_motor() const noexcept;
   [[nodiscard]] unsigned take_error() const noexcept { return errors.take(library, device); }
 };
@@ -85,8 +92,10 @@ class OpenHapticsFrames {
       : hand_{library, device, errors}, clock_(clock) {}
 
   // For one other thread.
-  /// Requests a force, N, as the operator sits.
-  void request(const Eigen::Vector3d& force) noexcept;
+  /// Requests a force and a torque, N and N m, as the operator sits.
+  void request(const Wrench& wrench) noexcept;
+  /// From the next frame on torques are applied: the device has motors for them.
+  void enable_torque() noexcept { hand_.turns = true; }
   /// Waits for the frame that takes the last request, no longer than `patience` (s) while the
   /// device is not at rest.
   [[nodiscard]] std::optional<Answer> answer(double patience) noexcept;
@@ -111,14 +120,15 @@ class OpenHapticsFrames {
  private:
   using TimePoint = std::chrono::steady_clock::time_point;
   struct Wanted {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Wrench wrench;
     double time = 0;  // s
     std::uint64_t number = 0;
   };
 
   void frame() noexcept;
   void frame_without_force() noexcept;
-  [[nodiscard]] Eigen::Vector3d permitted(const DeviceState& state) const noexcept;
+  void read() noexcept;
+  [[nodiscard]] Wrench permitted(const DeviceState& state) const noexcept;
   void keep_failure() noexcept;
 
   OpenHapticsHand hand_;
@@ -189,10 +199,13 @@ class OpenHapticsDriver final : public DeviceDriver {
   OpenHapticsDriver(const DeviceName& name, const Clock& clock);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override;
+  [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
+    return exchange_wrench({.force = force});
+  }
+  [[nodiscard]] DeviceState exchange_wrench(const Wrench& wrench) override;
 
   // The two halves of an exchange.
-  void request(const Eigen::Vector3d& force) noexcept { session_.frames().request(force); }
+  void request(const Wrench& wrench) noexcept { session_.frames().request(wrench); }
   /// @throws Error as exchange().
   [[nodiscard]] DeviceState answer() { return checked_answer().state; }
 

@@ -21,14 +21,15 @@ namespace palpate {
 namespace {
 
 constexpr double kStaleExchanges = 2.5;  // exchanges without a reading: silent (judgement)
-
 // No hand exceeds these: m from a device's origin, m/s (judgement).
 constexpr double kFarthestHand = 5;
 constexpr double kFastestHand = 20;
-
 // Largest move between readings: m/s, plus the steps of coarse encoders, m (judgement).
 constexpr double kFastestMove = 10;
 constexpr double kCoarsestStep = 0.5e-3;
+// The same of turns: rad/s, and rad, of a wrist that is read ten times more rarely (judgement).
+constexpr double kFastestTurn = 100;
+constexpr double kCoarsestTurn = 0.5;
 
 constexpr const char* kDistrust =
     "so it got no force. It will be reopened; if that does not help, switch it off and on, and "
@@ -76,8 +77,7 @@ std::string objection_to(const DeviceInfo& found, const DeviceInfo& expected) {
   return fmt::format("{}: slower than when it was opened; restart", found.name);
 }
 
-// Number of a connection, counted from 1.
-using Connection = std::uint32_t;
+using Connection = std::uint32_t;  // its number, from 1
 constexpr Connection kNone = 0;
 
 }  // namespace
@@ -207,10 +207,13 @@ void Hardware::check_move_to(const Reading& reading) const {
   const double time =
       std::max({reading.begin - newest.begin, reading.end - newest.end, 1 / info.rate});
   const double move = (reading.state.position - newest.state.position).norm();
-  if (move <= kFastestMove * time + kCoarsestStep) return;
-  throw Error(fmt::format(
-      "{}: its position jumped by {:.1f} mm in {:.2f} ms, faster than a hand can move, {}",
-      info.name, 1e3 * move, 1e3 * time, kDistrust));
+  const double turn = reading.state.orientation.angularDistance(newest.state.orientation);
+  const bool far = move > kFastestMove * time + kCoarsestStep;
+  if (!far && turn <= kFastestTurn * time + kCoarsestTurn) return;
+  throw Error(
+      fmt::format("{}: its {} jumped by {:.1f} {} in {:.2f} ms, faster than a hand can move, {}",
+                  info.name, far ? "position" : "orientation", far ? 1e3 * move : turn,
+                  far ? "mm" : "rad", 1e3 * time, kDistrust));
 }
 
 Wrench Hardware::applicable(double now) const noexcept {

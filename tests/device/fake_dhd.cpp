@@ -28,6 +28,8 @@ struct Device {
   std::string name = "omega.3";
   bool has_wrist = false;
   bool has_gripper = false;
+  bool has_motors = false;  // of wrist and gripper
+  int turns = 0;            // times that the velocity of turns was asked for
 
   bool is_open = false;
   bool forces_on = false;
@@ -41,6 +43,8 @@ struct Device {
   std::array<Three, 3> frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   double gap = 0;  // m
   Three force{};
+  Three torque{};
+  double grip = 0;
 };
 
 Device device;
@@ -138,6 +142,18 @@ bool dhdHasWrist(char) {
 bool dhdHasGripper(char) {
   return device.has_gripper;
 }
+bool dhdHasActiveWrist(char) {
+  return device.has_motors;
+}
+bool dhdHasActiveGripper(char) {
+  return device.has_motors;
+}
+int dhdGetAngularVelocityRad(double* x, double* y, double* z, char) {
+  if (answer(device.has_wrist, "feature not available") < 0 || reached() < 0) return -1;
+  if (++device.turns < 3) return answer(false, "too few places yet");
+  tell({1, 2, 3}, x, y, z);
+  return 0;
+}
 int dhdGetOrientationFrame(double rows[3][3], char) {
   if (answer(device.has_wrist, "feature not available") < 0 || reached() < 0) return -1;
   for (std::size_t i = 0; i < 3; ++i) tell(device.frame[i], rows[i], rows[i] + 1, rows[i] + 2);
@@ -148,10 +164,12 @@ int dhdGetGripperGap(double* gap, char) {
   *gap = device.gap;
   return 0;
 }
-int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double, double, double,
-                                        double, char) {
+int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double around_x,
+                                        double around_y, double around_z, double grip, char) {
   if (reached() < 0) return -1;
   device.force = {x, y, z};
+  device.torque = {around_x, around_y, around_z};
+  device.grip = grip;
   device.unheard = 0;
   return 2;  // the motors are saturated: no error
 }
@@ -199,6 +217,16 @@ void fake_gap(double gap) {
 // What the motors hold, N; the maker's axes.
 void fake_force(double* force) {
   for (std::size_t i = 0; i < 3; ++i) force[i] = device.forces_on ? device.force[i] : 0;
+}
+// The same of wrist and gripper, N m and N.
+void fake_torque(double* torque) {
+  for (std::size_t i = 0; i < 3; ++i) torque[i] = device.forces_on ? device.torque[i] : 0;
+}
+double fake_grip() {
+  return device.forces_on ? device.grip : 0;
+}
+void fake_motors(bool there) {
+  device.has_motors = there;
 }
 bool fake_is_open() {
   return device.is_open;

@@ -56,6 +56,10 @@ class FakeHardware {
     const std::lock_guard lock(mutex_);
     place_ = place;
   }
+  void turn(const Eigen::Quaterniond& orientation) {
+    const std::lock_guard lock(mutex_);
+    orientation_ = orientation;
+  }
   void rename(std::string name) {
     const std::lock_guard lock(mutex_);
     name_ = std::move(name);
@@ -66,6 +70,11 @@ class FakeHardware {
     const std::lock_guard lock(mutex_);
     const bool heard = clock_.now() - heard_ <= kWatchdog;
     return heard ? force_ : Eigen::Vector3d::Zero().eval();
+  }
+  /// What it was told last, N m and N.
+  [[nodiscard]] Wrench told() const {
+    const std::lock_guard lock(mutex_);
+    return told_;
   }
   [[nodiscard]] int opened() const { return opened_; }
   [[nodiscard]] int closed() const { return closed_; }
@@ -83,15 +92,15 @@ class FakeHardware {
     force_.setZero();
     ++closed_;
   }
-  DeviceState exchange(const Eigen::Vector3d& force) {
-    const double block = apply(force);
+  DeviceState exchange(const Wrench& wrench) {
+    const double block = apply(wrench);
     if (block > 0) clock_.wait_until(clock_.now() + block);
     require();
     const std::lock_guard lock(mutex_);
     DeviceState reading{.position = place_,
                         .velocity = {0, 0, -0.1},
                         .buttons = 1,
-                        .orientation = {0.6, 0, 0.8, 0},
+                        .orientation = orientation_,
                         .gripper = 0.02};
     if (fault_ == Fault::not_a_number) {
       reading.position.y() = std::numeric_limits<double>::quiet_NaN();
@@ -105,10 +114,11 @@ class FakeHardware {
  private:
   static constexpr double kWatchdog = 5e-3;  // s
 
-  double apply(const Eigen::Vector3d& force) {
+  double apply(const Wrench& wrench) {
     const std::lock_guard lock(mutex_);
     heard_ = clock_.now();
-    if (!refuses()) force_ = force;
+    if (!refuses()) force_ = wrench.force;
+    told_ = wrench;
     return std::exchange(block_, 0);
   }
   [[nodiscard]] bool refuses() const {
@@ -139,7 +149,9 @@ class FakeHardware {
   double block_ = 0;
   double heard_ = 0;
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation_{0.6, 0, 0.8, 0};
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+  Wrench told_;
   std::atomic<int> opened_ = 0;
   std::atomic<int> closed_ = 0;
 };
@@ -150,13 +162,18 @@ class FakeDriver final : public DeviceDriver {
     hardware_.open();
     info_.name = hardware_.name();
     info_.maximum_force = 5;
+    info_.maximum_torque = 0.1;
+    info_.maximum_grip = 3;
     info_.rate = 2000;
   }
   ~FakeDriver() override { hardware_.close(); }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
-    return hardware_.exchange(force);
+    return hardware_.exchange({.force = force});
+  }
+  [[nodiscard]] DeviceState exchange_wrench(const Wrench& wrench) override {
+    return hardware_.exchange(wrench);
   }
 
  private:

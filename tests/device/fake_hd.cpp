@@ -3,6 +3,9 @@
 // fake_hd_library.hpp; the tests' own functions are in fake_hd_control.cpp.
 #include "device/fake_hd.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <thread>
@@ -129,7 +132,15 @@ void hdGetDoublev(unsigned what, double* numbers) {
   if (what == 0x2050 && library.is_first() && library.faults.not_a_number) {
     numbers[1] = std::numeric_limits<double>::quiet_NaN();
   }
+  if (what == 0x2052) {  // about y, column by column
+    const double sine = std::sin(library.faults.turned);
+    const double cosine = std::cos(library.faults.turned);
+    const std::array<double, 16> all{cosine, 0, -sine,  0, 0, 1, 0, 0,
+                                     sine,   0, cosine, 0, 0, 0, 0, 1};
+    std::ranges::copy(all, numbers);
+  }
   if (what == 0x2604) *numbers = library.faults.continuous_force;
+  if (what == 0x2623) *numbers = library.faults.continuous_torque;
   if (what == 0x2602) *numbers = library.faults.stiffness;
 }
 void hdGetIntegerv(unsigned what, int* numbers) {
@@ -146,6 +157,7 @@ const char* hdGetString(unsigned what) {
 void hdSetDoublev(unsigned what, const double* numbers) {
   const Lock lock = library.heard();
   if (what == 0x2700) library.current_one().wanted = {numbers[0], numbers[1], numbers[2]};
+  if (what == 0x2701) library.current_one().torque = {numbers[0], numbers[1], numbers[2]};
 }
 unsigned hdCheckCalibration() {
   const Lock lock = library.heard();

@@ -66,6 +66,12 @@ void fake_force_of(unsigned device, double* force) {
   const Held lock(fake.mutex);
   for (std::size_t i = 0; i < 3; ++i) force[i] = fake.devices.at(device).held[i];
 }
+// The torque that was set last for the first device, mN m.
+void fake_torque(double* torque) {
+  FakeHdLibrary& fake = fake_hd_library();
+  const Held lock(fake.mutex);
+  for (std::size_t i = 0; i < 3; ++i) torque[i] = fake.devices[0].torque[i];
+}
 void fake_force(double* force) {
   fake_force_of(0, force);
 }

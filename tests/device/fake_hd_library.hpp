@@ -28,9 +28,10 @@ struct FakeHdLibrary {
     bool forces_on = false;
     Three wanted{};  // in this frame
     Three held{};    // by the motors
+    Three torque{};  // in this frame, mN m
     FakeMass hand{};
 
-    void let_go() { wanted = held = {}; }
+    void let_go() { wanted = held = torque = {}; }
   };
   struct Task {
     unsigned (*callback)(void*);

@@ -81,6 +81,31 @@ TEST_F(ForceDimension, TellsTheOpeningOfAGripper) {
   EXPECT_EQ(link->exchange(kForce).gripper, 0.012);
 }
 
+TEST_F(ForceDimension, GivesTorqueAndGripToMotorsThatAreThere) {
+  double_.find<void(const double*)>("fake_frame")(Eigen::Matrix3d::Identity().eval().data());
+  double_.find<void(double)>("fake_gap")(0.012);
+  EXPECT_EQ(open()->info().maximum_torque, 0) << "a wrist that is measured alone";
+  EXPECT_EQ(open()->info().maximum_grip, 0);
+  double_.flag("fake_motors", true);
+  double_.find<void(const char*)>("fake_name")("sigma.7");
+  auto link = open();
+  EXPECT_EQ(link->info().maximum_torque, *device_profile("sigma").maximum_torque);
+  EXPECT_EQ(link->info().maximum_grip, *device_profile("sigma").maximum_grip);
+  DeviceState reading = link->exchange_wrench({kForce, {0.1, 0.2, 0.3}, -4});
+  EXPECT_EQ(reading.angular_velocity, Vector3d::Zero()) << "its window is not full yet";
+  Vector3d torque;
+  double_.find<void(double*)>("fake_torque")(torque.data());
+  EXPECT_EQ(torque, Vector3d(-0.2, 0.1, 0.3));
+  EXPECT_EQ(double_.find<double()>("fake_grip")(), -4);
+  EXPECT_EQ(double_.force(), Vector3d(-2, 1, 3));
+  for (int i = 0; i < 3; ++i) reading = link->exchange(kForce);
+  EXPECT_EQ(reading.angular_velocity, Vector3d(2, -1, 3));
+  double_.find<void(double*)>("fake_torque")(torque.data());
+  EXPECT_EQ(torque, Vector3d::Zero()) << "a force alone lets it go";
+  double_.find<void(const char*)>("fake_name")("prototype");
+  EXPECT_EQ(open()->info().maximum_torque, *device_profile("unknown").maximum_torque);
+}
+
 TEST_F(ForceDimension, AForceMovesTheHandItsWay) {
   const auto link = open();
   const Vector3d push(0.3, -0.6, 0.2);

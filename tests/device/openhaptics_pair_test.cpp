@@ -42,7 +42,7 @@ class OpenHapticsPair : public test::OpenHapticsRig {
   }
   // One tick for all, and how many of them were answered.
   int exchange(const Links& links) {
-    for (const auto& each : links) each->request(kPush);
+    for (const auto& each : links) each->request({.force = kPush});
     tick(1);
     int answered = 0;
     for (const auto& each : links) answered += is_answered(*each) ? 1 : 0;

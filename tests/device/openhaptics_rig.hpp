@@ -30,7 +30,10 @@ class SteppedDriver final : public DeviceDriver {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return link_->info(); }
   [[nodiscard]] DeviceState exchange(const Eigen::Vector3d& force) override {
-    link_->request(force);
+    return exchange_wrench({.force = force});
+  }
+  [[nodiscard]] DeviceState exchange_wrench(const Wrench& wrench) override {
+    link_->request(wrench);
     library_.find<void(int)>("fake_tick")(1);
     return link_->answer();
   }

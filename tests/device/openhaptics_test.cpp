@@ -33,6 +33,43 @@ TEST_F(OpenHaptics, TellsPlacesAndForcesAsTheOperatorSits) {
   EXPECT_EQ(reading.buttons, 2u);
 }
 
+TEST_F(OpenHaptics, TellsHowItsStylusIsHeldAndHowFastItTurns) {
+  const auto link = open();
+  EXPECT_TRUE(link->info().has_orientation);
+  EXPECT_TRUE(link->exchange(kPush).orientation.isApprox(Eigen::Quaterniond::Identity(), 1e-12));
+  set(&FakeHd::turned, 0.3);  // about the maker's y, which is our z
+  const DeviceState reading = link->exchange(kPush);
+  EXPECT_NEAR(reading.orientation.angularDistance(
+                  Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()))),
+              0, 1e-12);
+  EXPECT_NEAR(reading.angular_velocity.z(), 300, 1e-9) << "in a frame of a millisecond";
+  EXPECT_EQ(link->exchange(kPush).angular_velocity.norm(), 0);
+}
+
+TEST_F(OpenHaptics, GivesTorqueToAPhantomOfSixMotorsAlone) {
+  const auto torque = [this] {
+    Vector3d told;
+    library_.find<void(double*)>("fake_torque")(told.data());
+    return told;
+  };
+  const Wrench wrench{kPush, {0.1, 0.2, 0.3}, 0};
+  set(&FakeHd::continuous_torque, 188.0);
+  auto link = open();
+  EXPECT_EQ(link->info().maximum_torque, 0) << "a Touch has no motors for it";
+  (void)link->exchange_wrench(wrench);
+  EXPECT_EQ(torque(), Vector3d::Zero());
+  link.reset();
+  set(&FakeHd::model, std::array<char, 32>{"PHANTOM Premium 1.5 6DOF"});
+  link = open();
+  EXPECT_DOUBLE_EQ(link->info().maximum_torque, 0.188);
+  (void)link->exchange_wrench(wrench);
+  EXPECT_LT((torque() - Vector3d(100, 300, -200)).norm(), 1e-9);
+  EXPECT_EQ(library_.force(), Vector3d(0.2, 0.6, -0.4));
+  pass(6e-3);
+  tick(1);
+  EXPECT_EQ(torque(), Vector3d::Zero()) << "nobody spoke";
+}
+
 TEST_F(OpenHaptics, AForceMovesTheHandItsWay) {
   const auto link = open();
   DeviceState reading;
@@ -81,7 +118,7 @@ TEST_F(OpenHaptics, AFrameThatHangsAppliesNoOldForce) {
   const auto link = open();
   (void)link->exchange(kPush);
   set(&FakeHd::hangs, true);
-  link->link().request(kPush);
+  link->link().request({.force = kPush});
   tick(1);  // until it hangs
   pass(0.1);
   set(&FakeHd::hangs, false);

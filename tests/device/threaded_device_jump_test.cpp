@@ -59,6 +59,21 @@ TEST_F(ThreadedDeviceJump, IsALossThatTellsHowFar) {
   EXPECT_EQ(hardware_.opened(), 4);
 }
 
+// 100 rad/s take it 0.05 rad in an exchange; the rest are readings that come more rarely.
+TEST_F(ThreadedDeviceJump, OfAnOrientationIsALossToo) {
+  push();
+  const Eigen::Quaterniond start(0.6, 0, 0.8, 0);
+  const auto turn_to = [&](double angle) {
+    hardware_.turn(start * Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitX())));
+  };
+  turn_to(0.54);
+  trial_.run(0.01);
+  EXPECT_EQ(hardware_.opened(), 1);
+  const char* const words = "orientation jumped by 0.6 rad in 0.50 ms";
+  trial_.expect_lost(
+      words, [&](bool) { turn_to(1.14); }, words);
+}
+
 // 10 m/s take it 5 mm in an exchange; the rest are the encoders' steps.
 TEST_F(ThreadedDeviceJump, BeginsWhereNoHandGoes) {
   push();

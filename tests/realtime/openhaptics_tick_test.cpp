@@ -73,16 +73,25 @@ class OpenHapticsTick : public testing::Test {
   int woken_ = 0;
 };
 
+TEST_F(OpenHapticsTick, KeepsTheContractWithATorque) {
+  frames_.enable_torque();
+  for (int i = 0; i < 100; ++i) {
+    frames_.request({{0.5, 0, 0}, {0.25, 0, 0}, 0});
+    tick();
+    EXPECT_EQ(told.force, 250) << "mN m, told after the force";
+  }
+}
+
 TEST_F(OpenHapticsTick, KeepsTheContractInFramesAndFaults) {
   for (int i = 0; i < 100; ++i) {
-    frames_.request({0.5, 0, 0});
+    frames_.request({.force = {0.5, 0, 0}});
     tick();
     EXPECT_EQ(told.force, 0.5);
   }
   clock_.time += 1;
   tick();
   EXPECT_EQ(told.force, 0) << "nobody speaks";
-  frames_.request({0.5, 0, 0});
+  frames_.request({.force = {0.5, 0, 0}});
   told.place = std::numeric_limits<double>::quiet_NaN();
   tick();
   EXPECT_EQ(told.force, 0) << "no place";
@@ -98,7 +107,7 @@ TEST_F(OpenHapticsTick, KeepsTheContractInFramesAndFaults) {
 }
 
 TEST_F(OpenHapticsTick, KeepsTheContractAtRest) {
-  frames_.request({0.5, 0, 0});
+  frames_.request({.force = {0.5, 0, 0}});
   tick();
   frames_.rest();
   EXPECT_FALSE(frames_.is_at_rest()) << "it has not ticked yet";
@@ -133,7 +142,7 @@ TEST_F(OpenHapticsTick, WakesWhoWaits) {
   std::atomic<bool> done{false};
   std::jthread other([&] {
     for (int i = 0; i < kExchanges; ++i) {
-      frames_.request({0.5, 0, 0});
+      frames_.request({.force = {0.5, 0, 0}});
       if (frames_.answer(60)) ++answered;
     }
     done = true;

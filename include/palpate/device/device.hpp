@@ -111,6 +111,9 @@ struct DeviceProfile {
   std::optional<double> maximum_force;      ///< N, continuous
   std::optional<double> peak_force;         ///< N, for a short time
   std::optional<double> maximum_stiffness;  ///< N/m at the hand
+  std::optional<double> maximum_torque;     ///< N m, continuous, of a wrist with motors
+  std::optional<double> maximum_grip;       ///< N, continuous, of a gripper with a motor
+  std::optional<double> angular_damping;    ///< viscous, of its turns, N m s/rad
   std::optional<double> damping;            ///< viscous, of the device by itself, N s/m
   std::optional<double> coulomb;            ///< dry friction, N
   std::optional<double> mass;               ///< that the hand moves, kg
