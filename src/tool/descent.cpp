@@ -15,6 +15,8 @@ constexpr double kOpposed = 1e-5;
 constexpr int kRestores = 4;       // of the looks: the last ones only lead out of the surface
 constexpr double kWidest = 0.375;  // of R: margin within which a surface is nearly flat (judgement)
 constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
+constexpr int kRounds =
+    3;  // in which friction finds the contacts that it tips a tool on (judgement)
 constexpr double kAhead = 3;       // times the hand's motion: as wide is the first margin of a step
 constexpr double kWithin = 1.5;    // margins are so much wider than the motion that they are for
 constexpr double kLongest = 0.25;  // of R, that a sample moves between two looks
@@ -130,8 +132,13 @@ bool Descent::iterate(const ToolSurface& surface, const Pose& hand, bool restore
   if (pull.count == 0) friction_.forget();
   const bool rubs = friction_.any() && pull.count > 0 && pull.end == LeastMotion::End::solved;
   if (rubs) {
-    wanted = friction_.hold({*tool_, metric_, pose_, constraints_.all(), wanted}, pull);
+    const ToolFriction::Look rubbing{*tool_, metric_, pose_, constraints_.all(), wanted};
+    wanted = friction_.hold(rubbing, pull);
     pull = solve(wanted);
+    for (int round = 0; round < kRounds && friction_.add(rubbing, pull); ++round) {
+      wanted = friction_.hold_again(rubbing);
+      pull = solve(wanted);
+    }
   }
   remember_touches(pull, rubs);
   const bool held = step.held > 0 && pull.count > 0;

@@ -2,6 +2,7 @@
 // (Jean 1999, "The non-smooth contact dynamics method"). What was held in the step before begins.
 #include "tool/tool_friction.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tool/constraint_list.hpp"
@@ -9,10 +10,10 @@
 namespace palpate {
 namespace {
 
-constexpr int kSweeps = 64;  // over the contacts; what is left open is taken up in the next step
+constexpr int kSweeps = 32;  // over the contacts; what is left open is taken up in the next step
 // m: a sweep that changes the motion by less is the last one; in a second at 1 kHz a tool at rest
-// creeps by a nanometre
-constexpr double kStill = 1e-12;
+// creeps by a micrometre
+constexpr double kStill = 1e-9;
 // m in a step: what slides by less rests, as sweeps come that near. At 1 kHz it is 0.1 mm/s, slower
 // than a hand that is held still.
 constexpr double kCreep = 1e-7;
@@ -44,16 +45,27 @@ ToolFriction::Contact ToolFriction::contact_of(const Look& look,
   return contact;
 }
 
-void ToolFriction::place(const Look& look, const LeastMotion& least) noexcept {
-  std::array<Contact, ToolContact::kMostTouches> placed;
-  std::size_t count = 0;
+bool ToolFriction::has(int sample) const noexcept {
+  return std::any_of(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
+                     [sample](const Contact& each) { return each.sample == sample; });
+}
+
+void ToolFriction::append(const Contact& contact) noexcept {
+  if (count_ < contacts_.size()) contacts_[count_++] = contact;
+}
+
+bool ToolFriction::add(const Look& look, const LeastMotion& least) noexcept {
+  const auto end = contacts_.begin() + static_cast<std::ptrdiff_t>(count_);
+  count_ = static_cast<std::size_t>(
+      std::remove_if(contacts_.begin(), end, [](const Contact& c) { return !(c.pressed > 0); }) -
+      contacts_.begin());
+  const std::size_t known = count_;
   for (int k = 0; k < least.count; ++k) {
     const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
-    placed[count] = contact_of(look, look.constraints[static_cast<std::size_t>(active.index)]);
-    placed[count++].pressed = active.multiplier;
+    const Constraint& constraint = look.constraints[static_cast<std::size_t>(active.index)];
+    if (!has(constraint.sample)) append(contact_of(look, constraint));
   }
-  contacts_ = placed;
-  count_ = count;
+  return count_ > known;
 }
 
 // A constraint that holds with equality, as far as it pushes. Returns the length of the change.
@@ -118,14 +130,31 @@ void ToolFriction::count_work(const Motion& motion) noexcept {
 }
 
 Motion ToolFriction::hold(const Look& look, const LeastMotion& least) noexcept {
-  const bool slid = slides_;
-  place(look, least);
+  slid_ = slides_;
+  ToolFriction placed(*this);
+  placed.count_ = 0;
+  for (int k = 0; k < least.count; ++k) {
+    const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
+    Contact contact = contact_of(look, look.constraints[static_cast<std::size_t>(active.index)]);
+    contact.pressed = active.multiplier;
+    placed.append(contact);
+  }
+  for (const Constraint& near : look.constraints) {
+    if (near.sample >= 0 && has(near.sample) && !placed.has(near.sample)) {
+      placed.append(contact_of(look, near));
+    }
+  }
+  *this = placed;
+  return hold_again(look);
+}
+
+Motion ToolFriction::hold_again(const Look& look) noexcept {
   Motion motion = look.wanted;
   for (std::size_t i = 0; i < count_; ++i) {
     motion += contacts_[i].pressed * contacts_[i].normal;
     if (contacts_[i].sample >= 0) motion += contacts_[i].along * contacts_[i].held;
   }
-  const bool at_rest = !slid && !relax(law_.static_coefficient, motion);
+  const bool at_rest = !slid_ && !relax(law_.static_coefficient, motion);
   if (!at_rest) static_cast<void>(relax(law_.dynamic_coefficient, motion));
   count_work(motion);
   Motion wanted = look.wanted;

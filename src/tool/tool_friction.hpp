@@ -51,9 +51,13 @@ class ToolFriction {
     std::span<const Constraint> constraints;
     Motion wanted;  ///< from the pose to the hand
   };
-  /// The wanted motion with what friction holds of it, of contacts that press without friction as
-  /// `least` has them.
+  /// The wanted motion with what friction holds of it. Contacts are those of `least`, the motion
+  /// without friction, and those of the look before that are still near.
   [[nodiscard]] Motion hold(const Look& look, const LeastMotion& least) noexcept;
+  /// Adds what presses in `least`, the motion with friction, which tips a tool. False: it is known.
+  [[nodiscard]] bool add(const Look& look, const LeastMotion& least) noexcept;
+  /// hold() with the contacts that are there.
+  [[nodiscard]] Motion hold_again(const Look& look) noexcept;
 
   [[nodiscard]] std::span<const Contact> contacts() const noexcept {
     return std::span(contacts_).first(count_);
@@ -65,7 +69,8 @@ class ToolFriction {
 
  private:
   [[nodiscard]] Eigen::Vector3d held(int sample) const noexcept;
-  void place(const Look& look, const LeastMotion& least) noexcept;
+  [[nodiscard]] bool has(int sample) const noexcept;
+  void append(const Contact& contact) noexcept;
   [[nodiscard]] Contact contact_of(const Look& look, const Constraint& constraint) const noexcept;
   [[nodiscard]] bool relax(double coefficient, Motion& motion) noexcept;
   [[nodiscard]] double press(Contact& contact, Motion& motion) const noexcept;
@@ -79,6 +84,7 @@ class ToolFriction {
   std::size_t count_ = 0;
   double dissipated_ = 0;
   bool slides_ = false;
+  bool slid_ = false;  // before the look
 };
 
 }  // namespace palpate
