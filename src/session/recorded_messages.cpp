@@ -21,6 +21,10 @@ std::vector<Eigen::Vector3f> vectors(const std::vector<float>& values) {
   return made;
 }
 
+Eigen::Quaterniond rotation_of(const message::Quaternion& q) {
+  return {q.w, q.x, q.y, q.z};
+}
+
 }  // namespace
 
 message::Tick tick_of(const StepTrace& step, std::size_t sources) {
@@ -81,14 +85,13 @@ message::ToolStep tool_step_of(const ServoState& state, const DeviceState& devic
 ServoState state_of(const message::Tick& tick, const std::optional<message::ToolStep>& tool,
                     const ServoOptions& options) {
   const Workspace& workspace = options.workspace;
-  const message::Quaternion& q = tick.orientation;
   ServoState state;
   state.step = tick.step;
   state.time = tick.time;
   state.dt = tick.dt;
   state.hip = message::eigen(tick.hip);
   state.velocity = workspace.velocity_to_world(message::eigen(tick.velocity));
-  state.orientation = workspace.orientation_to_world({q.w, q.x, q.y, q.z});
+  state.orientation = workspace.orientation_to_world(rotation_of(tick.orientation));
   state.gripper = tick.gripper;
   Contact& contact = state.contact;
   contact.proxy = message::eigen(tick.proxy);
@@ -112,8 +115,7 @@ ServoState state_of(const message::Tick& tick, const std::optional<message::Tool
   state.timing.computing = tick.computing;
   state.tool = {contact.proxy, state.orientation, workspace.scale * state.gripper};
   if (!tool) return state;
-  const message::Quaternion& turned = tool->orientation;
-  state.tool = {contact.proxy, {turned.w, turned.x, turned.y, turned.z}, tool->opening};
+  state.tool = {contact.proxy, rotation_of(tool->orientation), tool->opening};
   state.wrench = {message::eigen(tool->force), message::eigen(tool->torque), tool->grip};
   state.torque = message::eigen(tool->sent_torque);
   state.grip = tool->sent_grip;
