@@ -129,7 +129,9 @@ void Servo::Inside::touch_with_point() noexcept {
 }
 
 void Servo::Inside::touch_with_tool() noexcept {
-  state.contact = tool->step(state.time, pose(), state.dt);
+  const Pose hand_pose = clutch.turned(pose(), state.clutched, tool->pose());
+  state.orientation = hand_pose.orientation;
+  state.contact = tool->step(state.time, hand_pose, state.dt);
   state.field_notes = tool->notes();
   if (options.traces != nullptr) basis.found = tool->found();
   state.tool = tool->pose();
@@ -138,13 +140,12 @@ void Servo::Inside::touch_with_tool() noexcept {
 
 // The tool rests where the proxy is: nothing is stretched when the clutch is let go.
 void Servo::Inside::place_tool(const DeviceState& read) noexcept {
-  const Workspace& workspace = options.workspace;
   state.clutched = is_clutched(read.buttons);
   const Vector3d rest = tool ? tool->pose().position : limited.proxy.position();
   state.hip = clutch.tool(hand, state.clutched, rest);
   state.shift = clutch.shift();
-  state.velocity = workspace.velocity_to_world(read.velocity);
-  state.orientation = workspace.orientation_to_world(read.orientation);
+  state.velocity = options.workspace.velocity_to_world(read.velocity);
+  state.orientation = options.workspace.orientation_to_world(read.orientation);
   state.gripper = read.gripper;
   state.buttons = read.buttons;
   state.device = read.status;

@@ -153,6 +153,8 @@ ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
                        "give a button from 0 to 31");
   Requirement{"device"}(device.maximum_torque >= 0, "maximum_torque (N m)", device.maximum_torque,
                         "give what it can hold, 0 for none");
+  Requirement{"device"}(device.maximum_grip >= 0, "maximum_grip (N)", device.maximum_grip,
+                        "give what it can hold, 0 for none");
   options.guard = guard_for(device, options.guard);
   if (turns(device, options) && options.gyration == 0) {
     options.gyration = passive_gyration(device, options);

@@ -73,11 +73,23 @@ class Clutch {
     return rest;
   }
 
+  /// The same of how a tool is turned and open; `rest` is finite.
+  [[nodiscard]] Pose turned(const Pose& hand, bool held, const Pose& rest) noexcept {
+    if (held && hand.orientation.coeffs().allFinite() && std::isfinite(hand.opening)) {
+      turn_ = hand.orientation.conjugate() * rest.orientation;
+      opened_ = rest.opening - hand.opening;
+      return {hand.position, rest.orientation, rest.opening};
+    }
+    return {hand.position, hand.orientation * turn_, hand.opening + opened_};
+  }
+
   /// Offset from the hand to the tool while the clutch is not held, m.
   [[nodiscard]] const Eigen::Vector3d& shift() const noexcept { return shift_; }
 
  private:
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
+  double opened_ = 0;  // m
 };
 
 /// A force from outside (Servo::add_force()) that fades unless the next one comes.

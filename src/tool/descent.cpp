@@ -42,6 +42,19 @@ bool is_squeezed(const LeastMotion& least, const Look& look, double radius) {
   return least.end != LeastMotion::End::solved && look.deepest < -kDeep * radius;
 }
 
+// The motion with friction, which takes its part of what is `wanted`.
+template <class Solve>
+LeastMotion rub(ToolFriction& friction, const ToolFriction::Look& look, LeastMotion pull,
+                Motion& wanted, Solve solve) {
+  wanted = friction.hold(look, pull);
+  pull = solve(wanted);
+  for (int round = 0; round < kRounds && friction.add(look, pull); ++round) {
+    wanted = friction.hold_again(look);
+    pull = solve(wanted);
+  }
+  return pull;
+}
+
 }  // namespace
 
 Descent::Descent(std::shared_ptr<const Tool> tool, const Metric& metric, int iterations)
@@ -100,6 +113,7 @@ void Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
     goes_on = iterate(surface, hand, restores, step, contact) && step.finite;
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
+  if (friction_.any()) touches_.dissipated = friction_.dissipated(metric_, pose_);
   if (!goes_on) return;
   contact.notes |= ContactNote::not_converged;
   if (!step.proved && outside_) move_to(outside_->pose);
@@ -132,13 +146,8 @@ bool Descent::iterate(const ToolSurface& surface, const Pose& hand, bool restore
   if (pull.count == 0) friction_.forget();
   const bool rubs = friction_.any() && pull.count > 0 && pull.end == LeastMotion::End::solved;
   if (rubs) {
-    const ToolFriction::Look rubbing{*tool_, metric_, pose_, constraints_.all(), wanted};
-    wanted = friction_.hold(rubbing, pull);
-    pull = solve(wanted);
-    for (int round = 0; round < kRounds && friction_.add(rubbing, pull); ++round) {
-      wanted = friction_.hold_again(rubbing);
-      pull = solve(wanted);
-    }
+    const ToolFriction::Look look_of{*tool_, metric_, pose_, constraints_.all(), wanted};
+    pull = rub(friction_, look_of, pull, wanted, [this](const Motion& m) { return solve(m); });
   }
   remember_touches(pull, rubs);
   const bool held = step.held > 0 && pull.count > 0;
@@ -238,7 +247,6 @@ void Descent::remember_planes(const LeastMotion& least, std::size_t seen,
 void Descent::remember_touches(const LeastMotion& least, bool rubs) noexcept {
   touches_ = {};
   if (rubs) {
-    touches_.dissipated = friction_.dissipated();
     touches_.slides = friction_.slides();
     for (const ToolFriction::Contact& contact : friction_.contacts()) {
       if (contact.sample < 0 || !(contact.pressed > 0)) continue;

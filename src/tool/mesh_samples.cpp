@@ -1,4 +1,6 @@
 // The samples of a mesh: its corners, then its creases and rims, then what lies between on faces.
+#include <fmt/core.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -16,6 +18,7 @@ using Eigen::Vector3d;
 
 constexpr Requirement kRequireMesh{"tool"};     // the name that errors begin with
 const double kCrease = std::cos(20 * kDegree);  // what is bent by more is sharp (judgement)
+constexpr std::size_t kMostFaces = 50'000;      // for pictures: 1.8 MB a page (judgement)
 constexpr double kApart = 0.5;  // of the spacing: nearer to a sample another adds nothing
 
 struct Edge {
@@ -122,8 +125,12 @@ class Thinned {
   explicit Thinned(double spacing) : spacing_(spacing), apart_(kApart * spacing) {}
 
   void keep(const Vector3d& x) {
-    kRequireMesh(samples_.size() < Tool::kMostSamples, "spacing", spacing_,
-                 "give a larger one, in metres");
+    if (samples_.size() >= Tool::kMostSamples) {
+      throw Error(fmt::format(
+          "tool: the mesh has more than {} corners and samples {:.3g} m apart; give a larger "
+          "spacing or, where it is rough and corners stay, a smoothed mesh",
+          Tool::kMostSamples, spacing_));
+    }
     samples_.push_back({x, 0, 0});
     cells_[cell_of(x)].push_back(x);
   }
@@ -201,6 +208,7 @@ Tool Tool::mesh(std::span<const Vector3d> vertices, std::span<const Triangle> tr
               mesh.positions()[face[2]], spacing);
   }
   Tool tool(std::move(samples.samples()));
+  if (mesh.faces().size() > kMostFaces) return tool;
   for (const Triangle& face : mesh.faces()) {
     const auto corner = [&](std::size_t i) { return mesh.positions()[face[i]].cast<float>(); };
     tool.faces_.push_back({corner(0), corner(1), corner(2)});

@@ -45,14 +45,18 @@ double share(int i, int count) {
   return static_cast<double>(i) / count - 0.5;
 }
 
+void require_few(double count, double spacing) {
+  kRequireTool(count < static_cast<double>(Tool::kMostSamples), "spacing", spacing,
+               "give a larger one, in metres");
+}
+
 void add_box(Samples& samples, const Vector3d& size, double spacing, const Vector3d& center,
              int side) {
   const int x = steps(size.x(), spacing);
   const int y = steps(size.y(), spacing);
   const int z = steps(size.z(), spacing);
   const double count = 2. * x * y + 2. * y * z + 2. * z * x;
-  kRequireTool(count < static_cast<double>(Tool::kMostSamples), "spacing", spacing,
-               "give a larger one, in metres");
+  require_few(count, spacing);
   for (int i = 0; i <= x; ++i) {
     for (int j = 0; j <= y; ++j) {
       const bool rim = i == 0 || i == x || j == 0 || j == y;
@@ -79,6 +83,8 @@ Tool round_tool(double length, double radius, double spacing) {
   const double quarter = std::numbers::pi / 2;
   const int rings = steps(quarter * radius, step);
   const int along = steps(length, step);
+  // Rings of at most so many samples: 8 or more, twice as many as rings on average.
+  require_few((2. * rings + along) * (kLeastRing + 4. * rings), spacing);
   Samples samples;
   for (int i = 0; i < rings; ++i) {
     const double angle = quarter * i / rings;
@@ -147,6 +153,8 @@ Tool Tool::capsule(double length, double radius, double spacing) {
   require_length("radius", radius);
   require_length("spacing", spacing);
   Samples samples;
+  kRequireTool(length < kDense * radius * static_cast<double>(kMostSamples), "radius", radius,
+               "give a larger one, or a shorter stylus");
   const int count = steps(length, std::min(spacing, kDense * radius));
   for (int i = 0; i <= count; ++i) {
     samples.push_back({{0, 0, -length * i / count}, radius, 0});
@@ -169,6 +177,8 @@ Tool Tool::cylinder(double length, double radius, double spacing, const Vector3d
   Samples samples;
   const int along = steps(length, spacing);
   const int across = steps(radius, spacing);
+  const double around = kLeastRing + 2 * std::numbers::pi * radius / spacing;
+  require_few((static_cast<double>(along) + across) * around, spacing);
   for (int i = 0; i <= along; ++i) {
     const Vector3d middle = center + share(i, along) * length * Vector3d::UnitZ();
     add_ring(samples, radius, spacing, middle);
@@ -190,11 +200,11 @@ Tool Tool::gripper(const Vector3d& finger, double spacing) {
 }
 
 Tool Tool::from_text(std::string_view text, double spacing) {
+  require_length("spacing", spacing);
   const Shape& shape = shape_of(text);
   const std::vector<double> sizes = sizes_of(text, shape);
   const bool is_round = shape.name == "ball" || shape.name == "capsule";
   if (is_round && sizes.back() > kSmallBall * spacing) {
-    require_length("spacing", spacing);
     return round_tool(shape.name == "ball" ? 0 : sizes[0], sizes.back(), spacing);
   }
   if (shape.name == "ball") return ball(sizes[0]);

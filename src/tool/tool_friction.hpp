@@ -19,12 +19,12 @@ class ToolFriction {
   void begin(const FrictionLaw& law, const Pose& pose) noexcept {
     law_ = law;
     start_ = pose;
-    dissipated_ = 0;
+    slid_ = slides_;
   }
   /// The tool is free: a new contact begins at rest.
   void forget() noexcept {
     count_ = 0;
-    slides_ = false;
+    slides_ = slid_ = false;
   }
   [[nodiscard]] bool any() const noexcept { return law_.any(); }
 
@@ -62,8 +62,8 @@ class ToolFriction {
   [[nodiscard]] std::span<const Contact> contacts() const noexcept {
     return std::span(contacts_).first(count_);
   }
-  /// J taken in this step so far, from a spring with the law's stiffness.
-  [[nodiscard]] double dissipated() const noexcept { return dissipated_; }
+  /// J that a step which ends at this pose took from a spring with the law's stiffness.
+  [[nodiscard]] double dissipated(const Metric& metric, const Pose& end) const noexcept;
   /// Did a contact slide in this step?
   [[nodiscard]] bool slides() const noexcept { return slides_; }
 
@@ -72,19 +72,17 @@ class ToolFriction {
   [[nodiscard]] bool has(int sample) const noexcept;
   void append(const Contact& contact) noexcept;
   [[nodiscard]] Contact contact_of(const Look& look, const Constraint& constraint) const noexcept;
-  [[nodiscard]] bool relax(double coefficient, Motion& motion) noexcept;
+  [[nodiscard]] bool relax(double coefficient, int sweeps, Motion& motion) noexcept;
   [[nodiscard]] double press(Contact& contact, Motion& motion) const noexcept;
   [[nodiscard]] double rub(Contact& contact, double coefficient, Motion& motion) const noexcept;
   [[nodiscard]] Along slip_of(const Contact& contact, const Motion& motion) const noexcept;
-  void count_work(const Motion& motion) noexcept;
 
   FrictionLaw law_;
   Pose start_;
   std::array<Contact, ToolContact::kMostTouches> contacts_;
   std::size_t count_ = 0;
-  double dissipated_ = 0;
   bool slides_ = false;
-  bool slid_ = false;  // before the look
+  bool slid_ = false;  // in the step before, or in a look of this one
 };
 
 }  // namespace palpate

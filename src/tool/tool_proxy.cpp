@@ -24,8 +24,8 @@ constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
 void check(const Friction& friction) {
-  kRequireProxy.not_negative("friction.static", friction.static_coefficient, "give 0 or more");
   kRequireProxy.not_negative("friction.dynamic", friction.dynamic_coefficient, "give 0 or more");
+  kRequireProxy.not_negative("friction.static", friction.static_coefficient, "give 0 or more");
   kRequireProxy.not_negative("friction.viscous", friction.viscous, "give 0 or more N s/m");
   kRequireProxy(friction.dynamic_coefficient <= friction.static_coefficient, "friction.dynamic",
                 friction.dynamic_coefficient, "give at most the static coefficient, or raise that");

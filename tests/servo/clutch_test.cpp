@@ -19,6 +19,27 @@ TEST(Clutch, LeavesEveryBitAloneUntilItIsHeld) {
   EXPECT_EQ(clutch.shift(), Vector3d::Zero());
 }
 
+TEST(Clutch, ATurnedToolRestsWhileItIsHeldAndTurnsOnFromThere) {
+  const auto turned = [](double angle) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  };
+  Clutch clutch;
+  const Pose rest{{0, 0, 0.1}, turned(0.3), 0.02};
+  const Pose hand{{0, 0, 0.05}, turned(0.1), 0.01};
+  EXPECT_EQ(clutch.turned(hand, false, rest).orientation.coeffs(), hand.orientation.coeffs());
+  const Pose held = clutch.turned({hand.position, turned(0.9), 0.05}, true, rest);
+  EXPECT_EQ(held.orientation.coeffs(), rest.orientation.coeffs());
+  EXPECT_EQ(held.opening, 0.02);
+  EXPECT_EQ(held.position, hand.position) << "which tool() shifts";
+  const Pose released = clutch.turned({hand.position, turned(0.9), 0.05}, false, {});
+  EXPECT_LT(released.orientation.angularDistance(rest.orientation), 1e-12);
+  EXPECT_NEAR(released.opening, 0.02, 1e-15);
+  const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.2, Vector3d::UnitX()));
+  const Pose moved = clutch.turned({hand.position, tilt * turned(0.9), 0.06}, false, {});
+  EXPECT_LT(moved.orientation.angularDistance(tilt * rest.orientation), 1e-12);
+  EXPECT_NEAR(moved.opening, 0.03, 1e-15);
+}
+
 TEST(Clutch, ToolRestsWhileItIsHeldAndGoesOnFromThere) {
   Clutch clutch;
   const Vector3d rest(0, 0, 0.05);

@@ -48,10 +48,10 @@ TEST(ToolFriction, ABoxOnAPlaneStaysUntilTheConeAndSlidesOnIt) {
     const ToolContact contact = proxy.step(plane, pose_at({pulled, 0, -0.004}), kTick);
     ASSERT_NEAR(contact.wrench.force.z(), 2, 1e-7);
     ASSERT_LT(contact.wrench.torque.norm(), 1e-5);
-    ASSERT_LT((along(contact) - Vector3d(contact.wrench.force.x(), 0, 0)).norm(), 5e-4);
+    ASSERT_LT((along(contact) - Vector3d(contact.wrench.force.x(), 0, 0)).norm(), 4e-3);
     if (yielded == 0 && contact.sliding) yielded = pulled;
     const double force = yielded > 0 ? 2 * kDynamic : kStiffness * pulled;
-    ASSERT_NEAR(contact.wrench.force.x(), -force, 5e-4) << i;
+    ASSERT_NEAR(contact.wrench.force.x(), -force, 0.02) << i;
     if (yielded == 0) {
       ASSERT_LT((proxy.pose().position - rest).norm(), 1e-6);
     }
@@ -59,21 +59,27 @@ TEST(ToolFriction, ABoxOnAPlaneStaysUntilTheConeAndSlidesOnIt) {
   EXPECT_NEAR(yielded * kStiffness, 2 * kStatic, 2e-3);
 }
 
-// The handle is 10 mm above the floor, so what holds the box tips it: others of its samples press
-// than without friction.
-TEST(ToolFriction, ABoxThatIsDraggedByItsMiddleIsHeldByItsWholeLoad) {
+// The handle is above the floor, so what holds the tool tips it: others of its samples press than
+// without friction.
+TEST(ToolFriction, AToolThatIsDraggedByItsHandleIsHeldByItsWholeLoad) {
   const PlaneField plane;
-  for (const double spacing : {2.5e-3, 5e-3}) {
-    ToolProxy proxy = proxy_of(Tool::box({0.02, 0.02, 0.02}, spacing), rough());
-    static_cast<void>(press(proxy, plane, pose_at({0, 0, 0.013}), pose_at({0, 0, 0.007})));
-    ToolContact contact;
-    for (int i = 1; i <= 400; ++i) {
-      contact = proxy.step(plane, pose_at({2e-5 * i, 0, 0.007}), kTick);
+  for (const char* name : {"box:20x20x20", "box:40x60x20", "cylinder:20x10", "gripper:8x12x16"}) {
+    for (const double spacing : {2.5e-3, 5e-3}) {
+      ToolProxy proxy = proxy_of(Tool::from_text(name, spacing), rough());
+      const double height = name[0] == 'g' ? 0.016 : 0.01;
+      static_cast<void>(
+          press(proxy, plane, pose_at({0, 0, height + 1e-3}), pose_at({0, 0, height - 3e-3})));
+      ToolContact contact;
+      int sliding = 0;
+      for (int i = 1; i <= 400; ++i) {
+        contact = proxy.step(plane, pose_at({2e-5 * i, 0, height - 3e-3}), kTick);
+        sliding += i > 200 && contact.sliding ? 1 : 0;
+      }
+      EXPECT_GT(sliding, 100) << name;
+      EXPECT_NEAR(contact.wrench.force.z(), 1.5, 1e-6) << name;
+      EXPECT_NEAR(contact.wrench.force.x(), -1.5 * kDynamic, 0.02 * 1.5 * kDynamic) << name;
+      EXPECT_LT(std::abs(contact.wrench.force.y()), 0.05 * 1.5 * kDynamic) << name;
     }
-    EXPECT_TRUE(contact.sliding);
-    EXPECT_NEAR(contact.wrench.force.z(), 1.5, 1e-6);
-    EXPECT_NEAR(contact.wrench.force.x(), -1.5 * kDynamic, 0.02 * 1.5 * kDynamic) << spacing;
-    EXPECT_LT(std::abs(contact.wrench.force.y()), 0.05 * 1.5 * kDynamic) << spacing;
   }
 }
 
@@ -93,7 +99,7 @@ TEST(ToolFriction, ARingHoldsATwistUpToItsRadius) {
   for (int i = 1; i <= 4000; ++i) {
     contact = proxy.step(plane, pose_at({0, 0, -0.004}, {0, 0, 2e-4 * i}), kTick);
     if (contact.sliding) continue;
-    ASSERT_NEAR(contact.wrench.torque.z(), -kTurnStiffness * 2e-4 * i, 1e-6);
+    ASSERT_NEAR(contact.wrench.torque.z(), -kTurnStiffness * 2e-4 * i, 1e-5);
   }
   EXPECT_TRUE(contact.sliding);
   EXPECT_NEAR(contact.wrench.torque.z(), -kDynamic * 2 * radius, 1e-5);

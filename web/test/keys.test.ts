@@ -74,3 +74,11 @@ test("letters turn a tool and open its gripper while they are down, also with Sh
   key("keydown", "l", 2000);
   near(keys.take(2100), [0, 0, 0, 0, 0, 0, 0]);
 });
+
+test("a key that comes up under another name, as with Shift, is up", () => {
+  const keys = new Keys({} as Actions);
+  key("keydown", ",", 1000, { code: "Comma" });
+  key("keyup", "<", 1100, { code: "Comma", shiftKey: true });
+  near(keys.take(1100), [0, 0, 0, 0, 0, 0.1, 0]);
+  near(keys.take(1500), [0, 0, 0, 0, 0, 0, 0]);
+});

@@ -13,13 +13,12 @@ namespace palpate::app {
 namespace {
 
 constexpr double kLargestUnit = 1000;  // m, of a file's lengths: kilometres
-// N m/rad: no device's; a table's leg does not give way to a hand's turn by more (judgement)
-constexpr double kStiffestTurn = 1e4;
 
 constexpr const char* kToolHelp =
     "what the hands hold instead of a point, in mm: ball:R, capsule:LxR, cylinder:LxR, box:XxYxZ, "
     "gripper:XxYxZ (a finger's size), or mesh:FILE[,unit=METRES] (PLY, OBJ, STL, glTF, GLB; the "
-    "handle is at its origin). It turns as the device's handle does; devices feel its force alone";
+    "handle is at its origin). It turns as the device's handle does; devices feel its force, and "
+    "its torque and grip where they render them";
 
 // A shape is checked at once, a file when the run begins.
 std::string checked_tool(const std::string& text) {
@@ -72,7 +71,7 @@ void add_tool_shape(OptionTable& table, ToolPlan& tool) {
       [&tool](const std::string& text) { tool.text = checked_tool(text); }, kToolHelp);
   table
       .add("--tool-spacing", tool.spacing, "METRES",
-           number("between 1e-6 and 1 m", [](double x) { return x >= 1e-6 && x <= 1; }),
+           number("between 1e-6 and 1 m", [](double x) { return x >= kLeastSpacing && x <= 1; }),
            "how far the samples of a --tool's surface are apart (default: half of the support "
            "radius R of what is touched, more where that would be over 500 samples)")
       .only_for(kTurns);

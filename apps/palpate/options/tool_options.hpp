@@ -7,6 +7,10 @@
 
 namespace palpate::app {
 
+// N m/rad: no device's; a table's leg does not give way to a hand's turn by more (judgement)
+inline constexpr double kStiffestTurn = 1e4;
+inline constexpr double kLeastSpacing = 1e-6;  // m, of --tool-spacing (judgement)
+
 class OptionTable;
 
 // Begins the name of a tool that is a file.

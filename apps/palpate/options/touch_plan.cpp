@@ -54,6 +54,8 @@ void check_surface(const TouchChoices& choices, const SurfacePlan& surface) {
 
 // Options of the command line are refused by their scopes; keys of a set-up file have none.
 void check_tool(const TouchPlan& plan) {
+  require(plan.tool.turns() || (!plan.tool.spacing && !plan.tool.turn_stiffness),
+          "tool_spacing and turn_stiffness are of a tool that turns; add --tool");
   if (!plan.tool.turns()) return;
   const SurfacePlan& surface = plan.surface;
   require(surface.field.tool_radius == 0,

@@ -26,6 +26,7 @@ constexpr double kCorners = 0.95;
 // m: the range of ToolOptions::gyration
 constexpr double kLeastGyration = 1e-4;
 constexpr double kMostGyration = 10;
+constexpr double kInside = 1.01;  // bounds that are rounded to three digits are within
 
 Box box_around(const std::vector<Eigen::Vector3d>& vertices) {
   Box box;
@@ -53,9 +54,9 @@ double SampledTool::gyration(double stiffness) const {
   if (gyration >= kLeastGyration && gyration <= kMostGyration) return gyration;
   throw UsageError(
       fmt::format("--turn-stiffness {} is out of range where the stiffness is {:.4g} N/m; give "
-                  "{:.2g} to {:.2g}",
-                  *turn_stiffness, stiffness, stiffness * kLeastGyration * kLeastGyration,
-                  stiffness * kMostGyration * kMostGyration));
+                  "{:.3g} to {:.3g}",
+                  *turn_stiffness, stiffness, kInside * stiffness * kLeastGyration * kLeastGyration,
+                  std::min(kStiffestTurn, stiffness * kMostGyration * kMostGyration / kInside)));
 }
 
 double SampledTool::turns_with(double stiffness) const {
@@ -72,14 +73,22 @@ std::vector<Ball> SampledTool::balls() const {
   return balls;
 }
 
+// What else to do, where samples so near each other are not too many.
+std::string SampledTool::denser() const {
+  const double wanted = kWanted * radius;
+  const double samples =
+      static_cast<double>(tool->samples().size()) * std::pow(spacing / wanted, 2);
+  if (wanted < kLeastSpacing || samples > static_cast<double>(Tool::kMostSamples) / 2) return {};
+  return fmt::format(", a larger --radius, or --tool-spacing {:.3g}, which takes longer", wanted);
+}
+
 std::string SampledTool::warning() const {
   const std::size_t samples = tool->samples().size();
   if (radius > 0 && !is_of_balls() && spacing > 1.01 * kWanted * radius) {
     return fmt::format(
         "its samples are {} apart, which is more than half of R ({}): what is thinner can pass "
-        "between them; give a smaller tool, a larger --radius, or --tool-spacing {:.3g}, which "
-        "takes longer",
-        length(spacing), length(radius), kWanted * radius);
+        "between them; give a smaller tool{}",
+        length(spacing), length(radius), denser());
   }
   if (samples <= NamedTool::kMostSamples) return {};
   if (cornered) {
@@ -141,7 +150,8 @@ SampledTool NamedTool::sampled(double radius) const {
   for (int i = 0; i < kSpacings; ++i) {
     auto tool = std::make_shared<const Tool>(with_spacing(spacing));
     const auto samples = static_cast<double>(tool->samples().size());
-    result.cornered = before > 0 && samples > kCorners * static_cast<double>(before);
+    result.cornered =
+        !mesh_.triangles.empty() && before > 0 && samples > kCorners * static_cast<double>(before);
     if (result.cornered) break;
     before = tool->samples().size();
     result.tool = std::move(tool);

@@ -41,6 +41,8 @@ struct SampledTool {
   /// Why something may pass between its samples, or a step take long, and what to do; empty: all
   /// is well.
   [[nodiscard]] std::string warning() const;
+  /// The part of it that names a --tool-spacing; empty where none is in range.
+  [[nodiscard]] std::string denser() const;
 };
 
 /// A tool whose surface is known, and not where it is sampled.

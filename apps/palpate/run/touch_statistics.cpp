@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/turn.hpp"
 #include "palpate/servo/servo.hpp"
 
 namespace palpate::app {
@@ -100,9 +101,13 @@ void TouchStatistics::add(const ServoState& step) {
   const bool first = steps_ == 0;
   if (first) first_time_ = step.time;
   if (!first) {
-    const Eigen::Vector3d path = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
-    given_energy_ += last_.force.dot(path);
-    path_energy_ += 0.5 * (last_.force + step.force).dot(path);
+    Eigen::Vector3d path = (step.hip - step.shift) - (last_.hip - last_.shift);  // the hand's
+    const Eigen::Vector3d turn = turn_between(last_.orientation, step.orientation);
+    // What a wrist that feels no torque has the surface do is no gift to the hand.
+    if (!step.wrench.torque.isZero(0)) path -= step.contact.drift * (step.time - last_.time);
+    given_energy_ += last_.force.dot(path) + last_.torque.dot(turn);
+    path_energy_ +=
+        0.5 * ((last_.force + step.force).dot(path) + (last_.torque + step.torque).dot(turn));
     largest_.jump = std::max(largest_.jump, (step.force - last_.force).norm());
   }
   if (contact.touching) {

@@ -89,7 +89,8 @@ class Tool {
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
   /// The nodes that hold all samples of a side.
   [[nodiscard]] std::span<const std::int32_t> roots() const noexcept { return roots_; }
-  /// What a mesh looks like, for pictures; empty: the convex hull of the samples of each side.
+  /// What a mesh of 50 000 faces at most looks like, for pictures; empty: the convex hull of the
+  /// samples of each side.
   [[nodiscard]] std::span<const Face> faces() const noexcept { return faces_; }
   /// Unit vector.
   [[nodiscard]] const Eigen::Vector3d& axis() const noexcept { return axis_; }

@@ -39,7 +39,7 @@ const kLongest = 0.5; // s that a key counts between two looks, however slow pic
 export class Keys {
   single = true; // letters act by themselves
   timeLine: TimeKeys | undefined; // of a recording
-  private readonly down = new Map<string, number>(); // from when on its time is to be counted, ms
+  private readonly down = new Map<string, { name: string; since: number }>(); // by the key, which Shift changes nothing of; ms from when on its time is to be counted
   private held: Held = [0, 0, 0, 0, 0, 0, 0]; // s
   private pace = 1;
 
@@ -70,7 +70,7 @@ export class Keys {
       event.preventDefault();
     });
     window.addEventListener("keyup", (event) => {
-      const key = nameOf(event);
+      const key = event.code || nameOf(event);
       this.count(key, event.timeStamp);
       this.down.delete(key);
     });
@@ -86,11 +86,11 @@ export class Keys {
   }
 
   private count(key: string, now: number): void {
-    const since = this.down.get(key);
-    if (since === undefined || now < since) return;
-    this.down.set(key, now);
-    const seconds = Math.min(kLongest, (now - since) / 1000);
-    const [axis, sign] = kMoves[key]!;
+    const held = this.down.get(key);
+    if (held === undefined || now < held.since) return;
+    const seconds = Math.min(kLongest, (now - held.since) / 1000);
+    held.since = now;
+    const [axis, sign] = kMoves[held.name]!;
     this.held[axis]! += sign * this.pace * seconds;
   }
 
@@ -110,11 +110,12 @@ export class Keys {
   }
 
   private press(event: KeyboardEvent): boolean {
-    const key = nameOf(event);
-    if (kMoves[key] === undefined || (key.length === 1 && !this.single)) return false;
+    const name = nameOf(event);
+    if (kMoves[name] === undefined || (name.length === 1 && !this.single)) return false;
     if (event.target instanceof Element && event.target.closest(".side") !== null) return false;
     this.pace = event.shiftKey ? kFast : event.altKey ? kFine : 1;
-    if (!this.down.has(key)) this.down.set(key, event.timeStamp);
+    const key = event.code || name;
+    if (!this.down.has(key)) this.down.set(key, { name, since: event.timeStamp });
     return true;
   }
 }
