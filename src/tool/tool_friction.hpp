@@ -1,6 +1,7 @@
 // Coulomb friction where the samples of a tool press on a surface.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -19,12 +20,14 @@ class ToolFriction {
   void begin(const FrictionLaw& law, const Pose& pose) noexcept {
     law_ = law;
     start_ = pose;
-    slid_ = slides_;
+    stuck_ = slides_ ? 0 : std::min(stuck_ + 1, kSettled);
+    slid_ = stuck_ < kSettled;
   }
   /// The tool is free: a new contact begins at rest.
   void forget() noexcept {
     count_ = 0;
     slides_ = slid_ = false;
+    stuck_ = kSettled;
   }
   [[nodiscard]] bool any() const noexcept { return law_.any(); }
 
@@ -68,6 +71,10 @@ class ToolFriction {
   [[nodiscard]] bool slides() const noexcept { return slides_; }
 
  private:
+  // Steps without sliding after which a tool is at rest: what the sweeps leave open lets one that
+  // slides stick for a few.
+  static constexpr int kSettled = 20;
+
   [[nodiscard]] Eigen::Vector3d held(int sample) const noexcept;
   [[nodiscard]] bool has(int sample) const noexcept;
   void append(const Contact& contact) noexcept;
@@ -82,7 +89,8 @@ class ToolFriction {
   std::array<Contact, ToolContact::kMostTouches> contacts_;
   std::size_t count_ = 0;
   bool slides_ = false;
-  bool slid_ = false;  // in the step before, or in a look of this one
+  bool slid_ = false;  // not long ago, or in a look of this step
+  int stuck_ = kSettled;
 };
 
 }  // namespace palpate
