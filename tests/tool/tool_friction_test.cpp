@@ -47,7 +47,7 @@ TEST(ToolFriction, ABoxOnAPlaneStaysUntilTheConeAndSlidesOnIt) {
     const double pulled = 2e-6 * i;  // m
     const ToolContact contact = proxy.step(plane, pose_at({pulled, 0, -0.004}), kTick);
     ASSERT_NEAR(contact.wrench.force.z(), 2, 1e-7);
-    ASSERT_LT(contact.wrench.torque.norm(), 1e-4);
+    ASSERT_LT(contact.wrench.torque.norm(), 1e-3);
     ASSERT_LT((along(contact) - Vector3d(contact.wrench.force.x(), 0, 0)).norm(), 4e-3);
     if (yielded == 0 && contact.sliding) yielded = pulled;
     const double force = yielded > 0 ? 2 * kDynamic : kStiffness * pulled;
