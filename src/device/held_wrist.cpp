@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 // what the symplectic rule errs by is 1e-5 of its energy.
 constexpr int kWristParts = 16;
 
-SimulatedDeviceOptions::Wrist checked_wrist(const SimulatedDeviceOptions::Wrist& o) {
+SimulatedWrist checked_wrist(const SimulatedWrist& o) {
   const Requirement require{"simulated device"};
   require.positive("wrist.inertia", o.inertia.minCoeff(), "give positive kg m2 about each axis");
   require.not_negative("wrist.damping", o.damping, "give 0 or more N m s/rad");
@@ -34,7 +34,7 @@ SimulatedDeviceOptions::Wrist checked_wrist(const SimulatedDeviceOptions::Wrist&
 
 }  // namespace
 
-HeldWrist::HeldWrist(const SimulatedDeviceOptions::Wrist& options)
+HeldWrist::HeldWrist(const SimulatedWrist& options)
     : options_(checked_wrist(options)),
       orientation_(options.orientation.normalized()),
       rate_(orientation_.conjugate() * options.velocity) {}
@@ -53,7 +53,7 @@ void HeldWrist::advance(const Quaterniond& from, const Quaterniond& to, const Ve
 
 // The hand's own damper only brakes; the limit applies to the rest, its pull. Device's axes.
 Vector3d HeldWrist::pull(const Quaterniond& goal, const Vector3d& goal_rate) const noexcept {
-  const SimulatedDeviceOptions::Wrist::Hand& hand = options_.hand;
+  const SimulatedWrist::Hand& hand = options_.hand;
   const Vector3d pull =
       hand.stiffness * turn_between(orientation_, goal) + hand.damping * goal_rate;
   const double size = pull.norm();

@@ -15,7 +15,7 @@ namespace palpate {
 class HeldWrist {
  public:
   /// @throws Error when an option is out of its range.
-  explicit HeldWrist(const SimulatedDeviceOptions::Wrist& options);
+  explicit HeldWrist(const SimulatedWrist& options);
 
   /// From the hand's orientation at the beginning of a step of `duration` (s) to that at its end,
   /// with a torque (N m, device's axes) that is held.
@@ -34,7 +34,7 @@ class HeldWrist {
   [[nodiscard]] Eigen::Vector3d pull(const Eigen::Quaterniond& goal,
                                      const Eigen::Vector3d& goal_rate) const noexcept;
 
-  SimulatedDeviceOptions::Wrist options_;
+  SimulatedWrist options_;
   Eigen::Quaterniond orientation_;
   Eigen::Vector3d rate_;  // rad/s, in the tool's axes
   double work_ = 0;

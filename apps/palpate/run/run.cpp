@@ -69,7 +69,7 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
 }
 
 // m: the motors of a simulated wrist are those of its handle at half of a stylus, as its masses are
-// (SimulatedDeviceOptions::Wrist).
+// (SimulatedWrist).
 constexpr double kWristLever = 0.03;
 
 // The hand is where `trajectory` says, whatever the force.

@@ -48,6 +48,28 @@ class TargetSource {
   TargetSource& operator=(const TargetSource&) = default;
 };
 
+/// A wrist that turns about the handle. The defaults are those of the device at a lever of
+/// 30 mm, half of a stylus.
+struct SimulatedWrist {
+  /// The hand as a spring and a damper that turn the tool towards the hand's orientation.
+  struct Hand {
+    double stiffness = 0.27;       ///< N m/rad; 0 and no damping: nobody holds it
+    double damping = 2.7e-3;       ///< N m s/rad
+    double maximum_torque = 0.24;  ///< N m; a hand that is held back harder yields
+  };
+
+  /// About the tool's axes, which are its principal ones, kg m2; > 0
+  Eigen::Vector3d inertia = Eigen::Vector3d::Constant(9e-5);
+  double damping = 4.5e-4;     ///< viscous, N m s/rad
+  double coulomb = 1.5e-3;     ///< dry friction, N m; holds a resting wrist
+  double resolution = 2.5e-4;  ///< a step of the encoders, rad (0.014 degrees); 0: continuous
+  double maximum_torque = 0;   ///< of its motors, N m; larger torques are shortened; 0: it has none
+  Hand hand = {};
+  /// at time 0; a source's first target takes precedence
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, rad/s, device's axes
+};
+
 struct SimulatedDeviceOptions {
   /// A hand as a spring and a damper that pull the device towards the hand's target. The defaults
   /// are a light grip (docs/method.md 8.1).
@@ -55,29 +77,6 @@ struct SimulatedDeviceOptions {
     double stiffness = 300;    ///< N/m; 0 and no damping: nobody holds the device
     double damping = 3;        ///< N s/m
     double maximum_force = 8;  ///< N; a hand that is held back harder yields: it pulls no more
-  };
-
-  /// A wrist that turns about the handle. The defaults are those of the device at a lever of
-  /// 30 mm, half of a stylus.
-  struct Wrist {
-    /// The hand as a spring and a damper that turn the tool towards the hand's orientation.
-    struct Hand {
-      double stiffness = 0.27;       ///< N m/rad; 0 and no damping: nobody holds it
-      double damping = 2.7e-3;       ///< N m s/rad
-      double maximum_torque = 0.24;  ///< N m; a hand that is held back harder yields
-    };
-
-    /// About the tool's axes, which are its principal ones, kg m2; > 0
-    Eigen::Vector3d inertia = Eigen::Vector3d::Constant(9e-5);
-    double damping = 4.5e-4;     ///< viscous, N m s/rad
-    double coulomb = 1.5e-3;     ///< dry friction, N m; holds a resting wrist
-    double resolution = 2.5e-4;  ///< a step of the encoders, rad (0.014 degrees); 0: continuous
-    double maximum_torque =
-        0;  ///< of its motors, N m; larger torques are shortened; 0: it has none
-    Hand hand = {};
-    /// at time 0; a source's first target takes precedence
-    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, rad/s, device's axes
   };
 
   double mass = 0.1;          ///< moved by the hand, kg; > 0
@@ -89,7 +88,7 @@ struct SimulatedDeviceOptions {
   double maximum_force = 20;  ///< N; longer forces are shortened to it
   double workspace_radius = 0.1;  ///< m; only reported, never enforced
   Hand hand = {};
-  std::optional<Wrist> wrist = {};  ///< unset: it does not turn
+  std::optional<SimulatedWrist> wrist = {};  ///< unset: it does not turn
   /// at time 0, m; a trajectory's start and a source's first target take precedence
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< at time 0, m/s
