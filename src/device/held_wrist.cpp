@@ -41,12 +41,12 @@ HeldWrist::HeldWrist(const SimulatedWrist& options)
 
 void HeldWrist::advance(const Quaterniond& from, const Quaterniond& to, const Vector3d& torque,
                         double duration) noexcept {
-  const Vector3d way = turn_between(from, to);
+  const Vector3d rotation = turn_between(from, to);
   const double part = duration / kWristParts;
   for (int i = 0; i < kWristParts; ++i) {
-    const Quaterniond goal = turned(from, (i + 1.0) / kWristParts * way);
+    const Quaterniond goal = turned(from, (i + 1.0) / kWristParts * rotation);
     const Quaterniond before = orientation_;
-    turn(torque + pull(goal, way / duration), part);
+    turn(torque + pull(goal, rotation / duration), part);
     work_ += torque.dot(turn_between(before, orientation_));
   }
 }

@@ -185,8 +185,7 @@ bool SimulatedDevice::Inside::fetch(double time) noexcept {
   target = target_at(time);
   if (!target.position.allFinite()) fail("the target of the hand was not finite");
   if (!(target.maximum_force > 0)) fail("the largest force of the hand was not above 0");
-  constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
-  if (!(std::abs(target.orientation.norm() - 1) <= kNotUnit) || !std::isfinite(target.opening)) {
+  if (!is_about_unit(target.orientation) || !std::isfinite(target.opening)) {
     fail("the orientation or opening of the hand's target was not valid");
   }
   return wrong == nullptr;

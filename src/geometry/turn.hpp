@@ -17,6 +17,12 @@ namespace palpate {
   return (turn * orientation).normalized();
 }
 
+/// Is it a rotation, up to rounding that normalising mends?
+[[nodiscard]] inline bool is_about_unit(const Eigen::Quaterniond& orientation) noexcept {
+  constexpr double kNotUnit = 0.1;  // a length is so far from 1 by no rounding
+  return std::abs(orientation.norm() - 1) <= kNotUnit;
+}
+
 /// The shortest turn from one orientation to the other, as a rotation vector (rad, world).
 [[nodiscard]] inline Eigen::Vector3d turn_between(const Eigen::Quaterniond& from,
                                                   const Eigen::Quaterniond& to) noexcept {

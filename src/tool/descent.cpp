@@ -245,9 +245,10 @@ void Descent::remember_planes(const LeastMotion& least, std::size_t seen,
 
 // Friction knows the forces of contacts that rub: they are shared out otherwise than in `least`.
 void Descent::remember_touches(const LeastMotion& least, bool rubs) noexcept {
-  touches_ = {};
+  touches_.count = 0;
+  touches_.dissipated = 0;
+  touches_.slides = rubs && friction_.slides();
   if (rubs) {
-    touches_.slides = friction_.slides();
     for (const ToolFriction::Contact& contact : friction_.contacts()) {
       if (contact.sample < 0 || !(contact.pressed > 0)) continue;
       touches_.all[static_cast<std::size_t>(touches_.count++)] = {

@@ -43,31 +43,32 @@ ToolFriction::Contact ToolFriction::contact_of(const Look& look,
   contact.moved = contact.along.transpose() * look.metric.between(start_, look.pose);
   const Eigen::Matrix2d square = contact.along.transpose() * contact.along;
   contact.weight = std::max(square(0, 0), square(1, 1)) + std::abs(square(0, 1));
-  contact.held = contact.axes.transpose() * held(contact.sample);
+  if (const Contact* const before = contacts_.of(contact.sample)) {
+    contact.held = contact.axes.transpose() * (before->axes * before->held);
+  }
   return contact;
 }
 
-bool ToolFriction::has(int sample) const noexcept {
-  return std::any_of(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(count_),
-                     [sample](const Contact& each) { return each.sample == sample; });
-}
-
-void ToolFriction::append(const Contact& contact) noexcept {
-  if (count_ < contacts_.size()) contacts_[count_++] = contact;
+// Null: it has none.
+const ToolFriction::Contact* ToolFriction::Contacts::of(int sample) const noexcept {
+  const auto found = std::ranges::find(span(), sample, &Contact::sample);
+  return found == span().end() ? nullptr : &*found;
 }
 
 bool ToolFriction::add(const Look& look, const LeastMotion& least) noexcept {
-  const auto end = contacts_.begin() + static_cast<std::ptrdiff_t>(count_);
-  count_ = static_cast<std::size_t>(
-      std::remove_if(contacts_.begin(), end, [](const Contact& c) { return !(c.pressed > 0); }) -
-      contacts_.begin());
-  const std::size_t known = count_;
+  const std::span<Contact> all = contacts_.span();
+  contacts_.count = static_cast<std::size_t>(
+      std::remove_if(all.begin(), all.end(), [](const Contact& c) { return !(c.pressed > 0); }) -
+      all.begin());
+  const std::size_t known = contacts_.count;
   for (int k = 0; k < least.count; ++k) {
     const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
     const Constraint& constraint = look.constraints[static_cast<std::size_t>(active.index)];
-    if (!has(constraint.sample)) append(contact_of(look, constraint));
+    if (contacts_.of(constraint.sample) == nullptr) {
+      contacts_.append(contact_of(look, constraint));
+    }
   }
-  return count_ > known;
+  return contacts_.count > known;
 }
 
 // A constraint that holds with equality, as far as it pushes. Returns the length of the change.
@@ -104,14 +105,14 @@ bool ToolFriction::relax(double coefficient, int sweeps, Motion& motion) noexcep
   slides_ = false;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     double changed = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      changed += press(contacts_[i], motion);
-      if (contacts_[i].sample >= 0) changed += rub(contacts_[i], coefficient, motion);
+    for (Contact& contact : contacts_.span()) {
+      changed += press(contact, motion);
+      if (contact.sample >= 0) changed += rub(contact, coefficient, motion);
     }
     if (!(changed > kStill)) break;
   }
-  for (std::size_t i = 0; i < count_; ++i) {
-    slides_ = slides_ || slip_of(contacts_[i], motion).norm() > kCreep;
+  for (const Contact& contact : contacts()) {
+    slides_ = slides_ || slip_of(contact, motion).norm() > kCreep;
   }
   return slides_;
 }
@@ -135,8 +136,7 @@ double ToolFriction::dissipated(const Metric& metric, const Pose& end) const noe
 
 Motion ToolFriction::hold(const Look& look, const LeastMotion& least) noexcept {
   slid_ = slid_ || slides_;
-  ToolFriction placed(*this);
-  placed.count_ = 0;
+  Contacts placed;
   for (int k = 0; k < least.count; ++k) {
     const ActiveConstraint& active = least.active[static_cast<std::size_t>(k)];
     Contact contact = contact_of(look, look.constraints[static_cast<std::size_t>(active.index)]);
@@ -144,34 +144,26 @@ Motion ToolFriction::hold(const Look& look, const LeastMotion& least) noexcept {
     placed.append(contact);
   }
   for (const Constraint& near : look.constraints) {
-    if (near.sample >= 0 && has(near.sample) && !placed.has(near.sample)) {
-      placed.append(contact_of(look, near));
-    }
+    const bool known = near.sample >= 0 && contacts_.of(near.sample) != nullptr;
+    if (known && placed.of(near.sample) == nullptr) placed.append(contact_of(look, near));
   }
-  *this = placed;
+  contacts_ = placed;
   return hold_again(look);
 }
 
 Motion ToolFriction::hold_again(const Look& look) noexcept {
   Motion motion = look.wanted;
-  for (std::size_t i = 0; i < count_; ++i) {
-    motion += contacts_[i].pressed * contacts_[i].normal;
-    if (contacts_[i].sample >= 0) motion += contacts_[i].along * contacts_[i].held;
+  for (const Contact& contact : contacts()) {
+    motion += contact.pressed * contact.normal;
+    if (contact.sample >= 0) motion += contact.along * contact.held;
   }
   const bool at_rest = !slid_ && !relax(law_.static_coefficient, kPatience, motion);
   if (!at_rest) static_cast<void>(relax(law_.dynamic_coefficient, kSweeps, motion));
   Motion wanted = look.wanted;
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (contacts_[i].sample >= 0) wanted += contacts_[i].along * contacts_[i].held;
+  for (const Contact& contact : contacts()) {
+    if (contact.sample >= 0) wanted += contact.along * contact.held;
   }
   return wanted;
-}
-
-Eigen::Vector3d ToolFriction::held(int sample) const noexcept {
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (contacts_[i].sample == sample) return contacts_[i].axes * contacts_[i].held;
-  }
-  return Eigen::Vector3d::Zero();
 }
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ class ToolFriction {
   }
   /// The tool is free: a new contact begins at rest.
   void forget() noexcept {
-    count_ = 0;
+    contacts_.count = 0;
     slides_ = slid_ = false;
     stuck_ = kSettled;
   }
@@ -62,9 +62,7 @@ class ToolFriction {
   /// hold() with the contacts that are there.
   [[nodiscard]] Motion hold_again(const Look& look) noexcept;
 
-  [[nodiscard]] std::span<const Contact> contacts() const noexcept {
-    return std::span(contacts_).first(count_);
-  }
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_.span(); }
   /// J that a step which ends at this pose took from a spring with the law's stiffness.
   [[nodiscard]] double dissipated(const Metric& metric, const Pose& end) const noexcept;
   /// Did a contact slide in this step?
@@ -75,9 +73,21 @@ class ToolFriction {
   // slides stick for a few.
   static constexpr int kSettled = 20;
 
-  [[nodiscard]] Eigen::Vector3d held(int sample) const noexcept;
-  [[nodiscard]] bool has(int sample) const noexcept;
-  void append(const Contact& contact) noexcept;
+  // At most as many as can be told of.
+  struct Contacts {
+    std::array<Contact, ToolContact::kMostTouches> all;
+    std::size_t count = 0;
+
+    [[nodiscard]] std::span<Contact> span() noexcept { return std::span(all).first(count); }
+    [[nodiscard]] std::span<const Contact> span() const noexcept {
+      return std::span(all).first(count);
+    }
+    [[nodiscard]] const Contact* of(int sample) const noexcept;
+    void append(const Contact& contact) noexcept {
+      if (count < all.size()) all[count++] = contact;
+    }
+  };
+
   [[nodiscard]] Contact contact_of(const Look& look, const Constraint& constraint) const noexcept;
   [[nodiscard]] bool relax(double coefficient, int sweeps, Motion& motion) noexcept;
   [[nodiscard]] double press(Contact& contact, Motion& motion) const noexcept;
@@ -86,8 +96,7 @@ class ToolFriction {
 
   FrictionLaw law_;
   Pose start_;
-  std::array<Contact, ToolContact::kMostTouches> contacts_;
-  std::size_t count_ = 0;
+  Contacts contacts_;
   bool slides_ = false;
   bool slid_ = false;  // not long ago, or in a look of this step
   int stuck_ = kSettled;

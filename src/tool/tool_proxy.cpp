@@ -21,7 +21,6 @@ constexpr double kPointGyration = 1e-3;  // m, of a point, whose turns meet noth
 constexpr double kSmallestGyration = 1e-4;
 // m: the surface may be another one.
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr double kNotUnit = 0.1;  // an orientation's length is so far from 1 by no rounding
 
 void check(const Friction& friction) {
   kRequireProxy.not_negative("friction.dynamic", friction.dynamic_coefficient, "give 0 or more");
@@ -50,8 +49,7 @@ ToolOptions checked(const ToolOptions& options, const Tool& tool) {
 bool in_range(const Pose& pose) {
   return pose.position.allFinite() &&
          pose.position.cwiseAbs().maxCoeff() <= Proxy::kLargestCoordinate &&
-         std::abs(pose.orientation.norm() - 1) <= kNotUnit &&
-         std::abs(pose.opening) <= Proxy::kLargestCoordinate;
+         is_about_unit(pose.orientation) && std::abs(pose.opening) <= Proxy::kLargestCoordinate;
 }
 
 // The pose that a hand wants a tool to have: of unit length, and no farther closed than it can be.

@@ -8,6 +8,7 @@
 
 #include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
+#include "apps/recorded_again.hpp"
 #include "apps/recorded_wall.hpp"
 #include "bag/mcap_reader.hpp"
 #include "bag/mcap_writer.hpp"
@@ -21,20 +22,9 @@ namespace {
 
 using test::contains;
 
-// Records `touch ARGUMENTS` and does it again; its report.
-Json record_and_replay(Shell& shell, const std::string& arguments) {
-  const Outcome run =
-      shell.run("touch " + arguments + " --no-view --record run.mcap --json run.json");
-  EXPECT_EQ(run.code, 0) << run.err;
-  const Outcome replay = shell.run("replay run.mcap --json replay.json");
-  EXPECT_EQ(replay.code, 0) << replay.out << replay.err;
-  const Json found = Json::parse(shell.read("replay.json"));
-  EXPECT_TRUE(found["exact"]) << replay.out;
-  EXPECT_FALSE(found["hands"].empty());
-  for (const Json& hand : found["hands"]) {
-    EXPECT_EQ(hand["largest_difference_N"], 0.0);
-    EXPECT_GT(hand["steps"], 100);
-  }
+// Records `touch ARGUMENTS` without a loss and does it again; its report.
+Json whole_and_replayed(Shell& shell, const std::string& arguments) {
+  (void)record_and_replay(shell, arguments);
   Json report = Json::parse(shell.read("run.json"));
   EXPECT_EQ(report["recordings"][0]["lost_steps"], 0);
   EXPECT_EQ(report["recordings"][0]["lost_frames"], 0);
@@ -46,7 +36,7 @@ TEST(ReplayProgram, AFileTouchedInSimulatedTime) {
   shell.write("plane.xyz", plane_xyz());
   shell.write("way.csv", press_and_slide());
   const Json report =
-      record_and_replay(shell, "plane.xyz --trajectory way.csv --friction-dynamic 0.3");
+      whole_and_replayed(shell, "plane.xyz --trajectory way.csv --friction-dynamic 0.3");
   EXPECT_GT(report["largest_force_N"], 0.5);
   EXPECT_EQ(shell.run("replay run.mcap --log again.csv").code, 0);
   EXPECT_EQ(columns(shell.read("again.csv"))["fz"].size(), report["steps"]);
@@ -56,7 +46,7 @@ TEST(ReplayProgram, ADepthImage) {
   Shell shell;
   shell.write("wall.pgm", wall_pgm(0));
   shell.write("way.csv", into_wall(400));
-  const Json report = record_and_replay(
+  const Json report = whole_and_replayed(
       shell, "wall.pgm --intrinsics 60,60,31.5,23.5 --depth-unit 0.001 --trajectory way.csv");
   EXPECT_GT(report["largest_force_N"], 0.5);
 }
@@ -64,7 +54,7 @@ TEST(ReplayProgram, ADepthImage) {
 TEST(ReplayProgram, ACameraInSimulatedTimeWhichRecordingDoesNotChange) {
   Shell shell;
   const std::string camera = "camera:simulated --simulated-time --duration 1 --log ";
-  const Json report = record_and_replay(shell, camera + "recorded.csv");
+  const Json report = whole_and_replayed(shell, camera + "recorded.csv");
   EXPECT_GT(report["recordings"][0]["frames"], 20);
   ASSERT_EQ(shell.run("touch " + camera + "alone.csv").code, 0);
   EXPECT_EQ(without_times(shell, "recorded.csv"), without_times(shell, "alone.csv"));
@@ -74,9 +64,9 @@ TEST(ReplayProgram, TwoCamerasInRealTime) {
   if (test::is_slow_build()) GTEST_SKIP() << "no surface is ready in time";
   Shell shell;
   const Json report =
-      record_and_replay(shell,
-                        "left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002 "
-                        "right=camera:simulated:table,view=-40 --duration 1.5");
+      whole_and_replayed(shell,
+                         "left=camera:simulated:table,view=40,phase=0.011,seed=2,error=0.002 "
+                         "right=camera:simulated:table,view=-40 --duration 1.5");
   EXPECT_GT(report["recordings"][0]["frames"], 2);
 }
 
@@ -92,7 +82,7 @@ TEST(ReplayProgram, AMovingCameraInRealTime) {
               R"({"width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5,
                   "depth_unit_m": 0.001, "fps": 30, "pose": "groundtruth.txt"})");
   shell.write("way.csv", into_wall(3000));
-  const Json report = record_and_replay(shell, "sequence:wall --trajectory way.csv");
+  const Json report = whole_and_replayed(shell, "sequence:wall --trajectory way.csv");
   EXPECT_GT(report["recordings"][0]["frames"], 2);
   EXPECT_GT(report["largest_force_N"], 0.1);
   EXPECT_TRUE(contains(shell.run("bag info run.mcap").out, "/tf"));
@@ -102,7 +92,7 @@ TEST(ReplayProgram, TwoHandsInRealTime) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
   const Json report =
-      record_and_replay(shell, "plane.xyz --device simulated --device simulated --duration 1.5");
+      whole_and_replayed(shell, "plane.xyz --device simulated --device simulated --duration 1.5");
   EXPECT_EQ(report["hands"].size(), 2u);
 }
 
@@ -146,7 +136,7 @@ TEST(ReplayProgram, TellsTheFirstStepWhoseForceDiffers) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
   shell.write("way.csv", press_and_slide());
-  (void)record_and_replay(shell, "plane.xyz --trajectory way.csv --stiffness 500");
+  (void)whole_and_replayed(shell, "plane.xyz --trajectory way.csv --stiffness 500");
   copy_bag(
       shell, [](Json& setup) { setup["hands"][0]["options"]["proxy"]["stiffness"] = 500.001; },
       [](const auto&, const auto&) { return true; });
@@ -166,7 +156,7 @@ TEST(ReplayProgram, EndsWhereAStepIsMissing) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
   shell.write("way.csv", press_and_slide());
-  (void)record_and_replay(shell, "plane.xyz --trajectory way.csv");
+  (void)whole_and_replayed(shell, "plane.xyz --trajectory way.csv");
   copy_bag(
       shell, [](Json&) {},
       [](const bag::Channel& channel, bag::View data) {

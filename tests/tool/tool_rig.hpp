@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -64,6 +66,15 @@ inline double depth_of(const ToolProxy& proxy, const Field& field) {
     depth = std::max(depth, each.radius - field.sample(x).value);
   }
   return depth;
+}
+
+/// How far x is outside of the nearest sample, m.
+inline double nearest(const Tool& tool, const Eigen::Vector3d& x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tool::Point& each : tool.samples()) {
+    least = std::min(least, (each.position - x).norm() - each.radius);
+  }
+  return least;
 }
 
 }  // namespace palpate::test

@@ -3,23 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "palpate/tool/tool.hpp"
+#include "tool/tool_rig.hpp"
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 using Eigen::Vector3d;
-
-double nearest(const Tool& tool, const Vector3d& x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Tool::Point& each : tool.samples()) {
-    least = std::min(least, (each.position - x).norm() - each.radius);
-  }
-  return least;
-}
 
 // What is thicker than the samples are apart is felt by its surface.
 TEST(Tool, ALargeBallAndAThickStylusAreSampledOnTheirSurface) {
@@ -50,4 +41,4 @@ TEST(Tool, ALargeBallAndAThickStylusAreSampledOnTheirSurface) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::test

@@ -11,6 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "palpate/base/error.hpp"
+#include "tool/tool_rig.hpp"
 
 namespace palpate::test {
 namespace {
@@ -19,14 +20,6 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 constexpr double kSpacing = 2e-3;  // m
-
-double nearest(const Tool& tool, const Vector3d& x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Tool::Point& each : tool.samples()) {
-    least = std::min(least, (each.position - x).norm() - each.radius);
-  }
-  return least;
-}
 
 /// A random position on the surface of a box around the origin.
 Vector3d on_box(Random& random, const Vector3d& size) {

@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { serve } from "../fake_server.mjs";
 import { openPage, until } from "./browser.mjs";
 import { picture } from "./picture.mjs";
-import { browser, kPhone, kSmall, ready, sent, text, withPage } from "./with_page.mjs";
+import { browser, kPhone, kSmall, ready, sent, text, withPage, withProgram } from "./with_page.mjs";
 
 const kRest = ["side", "strip", "legend", "axes", "parts", "ramp", "follow", "upright", "pause", "reset", "record", "picture", "share"];
 const kShown = ["view", "force", "touch", "hint", "take", "tour-offer", "presets", "sound", "link-state", "help", "fit", "panels"];
@@ -151,18 +151,7 @@ test("Reset is there while a fault needs it, and Pause while the run is paused",
   }));
 
 /** A first visit to a run of a mesh whose unit is guessed, and that may be followed by another. */
-async function visitMesh(options, act) {
-  const server = await serve({ points: 4000, anew: true });
-  const page = await openPage(browser, server.address, options, undefined, true);
-  try {
-    await ready(page);
-    await act(page, server.program);
-    assert.deepEqual(page.troubles, []);
-  } finally {
-    await page.context().close();
-    await server.close();
-  }
-}
+const visitMesh = (options, act) => withProgram({ points: 4000, anew: true }, options, act, true);
 
 test("a guessed unit is asked for, once; another one reaches the program", () =>
   visitMesh(kSmall, async (page, program) => {

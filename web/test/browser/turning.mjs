@@ -2,22 +2,10 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { serve } from "../fake_server.mjs";
-import { openPage, until } from "./browser.mjs";
-import { browser, hands, kSmall, ready, text } from "./with_page.mjs";
+import { until } from "./browser.mjs";
+import { hands, kSmall, text, withProgram } from "./with_page.mjs";
 
-async function withBox(act) {
-  const server = await serve({ points: 4000, box: [0.06, 0.04, 0.02] });
-  const page = await openPage(browser, server.address, kSmall);
-  try {
-    await ready(page);
-    await act(page, server.program);
-    assert.deepEqual(page.troubles, []);
-  } finally {
-    await page.context().close();
-    await server.close();
-  }
-}
+const withBox = (act) => withProgram({ points: 4000, box: [0.06, 0.04, 0.02] }, kSmall, act);
 
 const angle = ([, , , w]) => 2 * Math.acos(Math.min(1, Math.abs(w)));
 

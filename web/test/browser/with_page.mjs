@@ -21,8 +21,11 @@ export const text = (page, selector) => page.locator(selector).innerText();
 export const ready = (page) => until("the tool can be taken", () => page.locator("#take").isEnabled());
 
 /** Unless it is a `first` visit, all panels are shown. */
-export async function withPage(options, act, points = 4000, first = false) {
-  const server = await serve({ points });
+export const withPage = (options, act, points = 4000, first = false) => withProgram({ points }, options, act, first);
+
+/** The same of another made-up program. */
+export async function withProgram(program, options, act, first = false) {
+  const server = await serve(program);
   const page = await openPage(browser, server.address, options, undefined, first);
   try {
     await ready(page);
