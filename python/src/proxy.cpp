@@ -44,7 +44,8 @@ std::vector<std::string> names(std::uint32_t notes) {
                                                             {fault, "fault"},
                                                             {softer, "softer"},
                                                             {fell, "fell"},
-                                                            {freed, "freed"}};
+                                                            {freed, "freed"},
+                                                            {inside, "inside"}};
   std::vector<std::string> found;
   for (const auto& [note, name] : kNotes) {
     if (has(static_cast<ContactNote>(notes), note)) found.emplace_back(name);

@@ -25,7 +25,6 @@ constexpr double kArrived = 2e-7;  // of R: nothing is left to be done (nanometr
 constexpr double kRestored = 2e-3;  // of R: the same, while only leading out of the surface
 constexpr double kUnproved = 0.02;  // of R: a motion so short needs no look at where it led
 constexpr double kDeep = 5e-3;      // of R: a sample deeper than this keeps a step from ending
-constexpr double kOutside = 0.01;   // of R: a pose with no sample deeper can be gone back to
 constexpr double kRisen = 1e-3;     // of R: less is left to the iterations
 
 // The share of a pull that ends on the closest pose, by the secant of the last motion, which was a
@@ -68,10 +67,10 @@ double Descent::farthest(const Motion& motion) const noexcept {
 
 int Descent::most_evaluations(const Tool& tool) noexcept {
   const std::size_t look = tool.samples().size() + tool.nodes().size();
-  // R, the free path, lifted touches, looks, the hand's air, and what is touched.
+  // R, the free path, lifted touches, looks, the hand's air, and what is touched or lies behind.
   return static_cast<int>(1 + tool.roots().size() + tool.nodes().size() +
                           ToolContact::kMostTouches * (GapSearch::kMostRises + 2) +
-                          kMostLooks * look);
+                          kMostLooks * look + tool.samples().size());
 }
 
 void Descent::move_to(const Pose& pose) noexcept {
@@ -89,14 +88,15 @@ void Descent::shift(double moved) noexcept {
   outside_.reset();
 }
 
-void Descent::release(const Pose& pose) noexcept {
+void Descent::put(const Pose& pose, bool free) noexcept {
   move_to(pose);
   touches_ = {};
   friction_.forget();
-  outside_ = {pose};
+  outside_.reset();
+  if (free) outside_ = {pose};
 }
 
-void Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
+bool Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
                      const FrictionLaw& law, ToolContact& contact) noexcept {
   friction_.begin(law, pose_);
   const double radius = gaps_.radius();
@@ -114,9 +114,9 @@ void Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
   if (friction_.any()) touches_.dissipated = friction_.dissipated(metric_, pose_);
-  if (!goes_on) return;
-  contact.notes |= ContactNote::not_converged;
-  if (!step.proved && outside_) move_to(outside_->pose);
+  if (goes_on) contact.notes |= ContactNote::not_converged;
+  if (goes_on && !step.proved && outside_) move_to(outside_->pose);
+  return outside_.has_value();
 }
 
 // One look and one motion. False: the step is done.

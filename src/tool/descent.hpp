@@ -34,19 +34,22 @@ struct Touches {
 /// it, solves for the least motion, and moves as far as that is right. Real-time.
 class Descent {
  public:
+  static constexpr double kOutside = 0.01;  ///< of R: no sample is deeper of a tool that is outside
+
   /// `iterations`: looks in contact before it settles.
   Descent(std::shared_ptr<const Tool> tool, const Metric& metric, int iterations);
 
   /// The surface has moved by this at most, m; infinite: what was known of it is forgotten.
   void shift(double moved) noexcept;
-  /// The tool is free to be there.
-  void release(const Pose& pose) noexcept;
+  /// The tool is put there, and touches nothing; `free`: it is known to be outside.
+  void put(const Pose& pose, bool free) noexcept;
   /// The surface has changed: lifts the tool, which touches it, to where each touch finds it again
   /// within `reach` (m) above.
   void lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept;
   /// Goes where the hand is, as far as the surface and its friction let it; `moved`: how far any
-  /// sample of the hand has moved since the last step, m, at most.
-  void follow(const ToolSurface& surface, const Pose& hand, double moved, const FrictionLaw& law,
+  /// sample of the hand has moved since the last step, m, at most. False: it
+  /// was never outside, neither in this step nor in the one before.
+  bool follow(const ToolSurface& surface, const Pose& hand, double moved, const FrictionLaw& law,
               ToolContact& contact) noexcept;
 
   [[nodiscard]] const Pose& pose() const noexcept { return pose_; }

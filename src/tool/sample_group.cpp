@@ -1,8 +1,11 @@
 // Gathers the points near the groups of a tool's samples, and bounds the work of a step.
 #include "tool/sample_group.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "contact/probe.hpp"
 
 namespace palpate {
 namespace {
@@ -91,6 +94,14 @@ Sample TouchedScene::sample(const Patch* patch, const Vector3d& x) noexcept {
   Sample here = evaluate(surface, *patch, x);
   if (patch->points() == 0) here.radius = 0;  // nothing is there that has one
   return here;
+}
+
+double TouchedScene::height(const Patch* patch, const Vector3d& x) const noexcept {
+  if (!patch) return -radius();
+  ImplicitSurface planes = surface;
+  planes.options.capped = false;
+  const Sample here = evaluate(planes, *patch, x);
+  return first_order_distance(here).value_or(here.value);
 }
 
 Surface TouchedScene::made_of(const Patch* patch, const Vector3d& x) noexcept {
@@ -185,6 +196,14 @@ bool SampleGroup::is_free(const Ball& ball) const noexcept {
   if (!ball.center.allFinite() || !std::isfinite(ball.radius)) return false;
   return now_.ready && now_.patch.covers(ball) ? palpate::is_free(scene_->surface, now_.patch, ball)
                                                : scene_->walk_is_free(ball);
+}
+
+bool SampleGroup::is_behind(double deeper) const noexcept {
+  if (is_free(scene_->ball_of(*node_))) return false;
+  return std::ranges::any_of(scene_->samples_of(*node_), [&](const Tool::Point& sample) {
+    const Vector3d x = scene_->in_world(sample);
+    return scene_->height(patch_for(x), x) < -deeper;
+  });
 }
 
 Surface SampleGroup::surface(const Vector3d& x) const noexcept {

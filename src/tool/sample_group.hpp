@@ -47,6 +47,8 @@ class TouchedScene {
 
   /// The field at x, which `patch` covers; nullptr: nothing is known there, so it is solid.
   [[nodiscard]] Sample sample(const Patch* patch, const Eigen::Vector3d& x) noexcept;
+  /// How high x is above the planes of the points around it, m; as sample() where nobody knows.
+  [[nodiscard]] double height(const Patch* patch, const Eigen::Vector3d& x) const noexcept;
   /// What it is made of there.
   [[nodiscard]] Surface made_of(const Patch* patch, const Eigen::Vector3d& x) noexcept;
 
@@ -61,6 +63,13 @@ class TouchedScene {
     return sum;
   }
   [[nodiscard]] bool is_empty() const noexcept { return followed.layers().count == 0; }
+  /// The samples of a node.
+  [[nodiscard]] std::span<const Tool::Point> samples_of(const Tool::Node& node) const noexcept {
+    return tool_->samples().subspan(node.begin, node.end - node.begin);
+  }
+  [[nodiscard]] Eigen::Vector3d in_world(const Tool::Point& sample) const noexcept {
+    return tool_->in_world(sample.position, sample.side, pose_);
+  }
   /// Where a node of the tool is, and what it is around, m, world.
   [[nodiscard]] Ball ball_of(const Tool::Node& node) const noexcept {
     return {tool_->in_world(node.center, node.side, pose_), node.radius};
@@ -106,6 +115,11 @@ class SampleGroup final : public Field {
   void update(double passed, bool changed, bool same) noexcept;
   /// Knows nothing from now on.
   void release() noexcept;
+  /// Sides are decided from where a sample looks next, of the points that are known already.
+  void forget_sides() noexcept { now_.looks = now_.ready = false; }
+  /// Is a sample deeper (m) than this below the planes of the points around it? What lies behind
+  /// their solid, which is thin, is free.
+  [[nodiscard]] bool is_behind(double deeper) const noexcept;
 
   [[nodiscard]] const Patch& patch() const noexcept { return now_.patch; }
   /// Has a sample looked of late?

@@ -2,7 +2,6 @@
 #include "palpate/tool/tool_field.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -10,7 +9,7 @@
 #include <vector>
 
 #include "base/requirement.hpp"
-#include "tool/sample_group.hpp"
+#include "tool/tool_field_inside.hpp"
 
 namespace palpate {
 namespace {
@@ -54,63 +53,16 @@ bool is_finite(const Pose& pose) {
 
 }  // namespace
 
-/// What a field of a tool follows and has gathered. Real-time but for construction.
-class ToolField::Inside final : public Field {
- public:
-  Inside(Scene& scene, std::shared_ptr<const Tool> tool, const FieldOptions& options,
-         const std::string& name, double scale)
-      : tool_(held(std::move(tool))),
-        scene_(scene, *tool_, checked(options), name, scale),
-        group_of_(tool_->samples().size(), 0) {
-    const std::size_t most = std::min<std::size_t>(kMostGroups, tool_->nodes().size());
-    groups_.reserve(most);
-    while (groups_.size() < most) groups_.emplace_back(scene_);
-    divide(0);
-  }
-
-  void update(double now, const Pose& hand, const Pose& proxy) noexcept;
-  void take(const FieldOptions& checked) noexcept;
-
-  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;
-  [[nodiscard]] Surface surface(const Eigen::Vector3d& x) const noexcept override;
-  [[nodiscard]] Traits traits() const noexcept override;
-  void begin_step() const noexcept override;
-
-  [[nodiscard]] int group_of(int sample) const noexcept {
-    return group_of_[static_cast<std::size_t>(sample)];
-  }
-  [[nodiscard]] const Field& group(int number) const noexcept {
-    return groups_[static_cast<std::size_t>(number)];
-  }
-  [[nodiscard]] double moved() const noexcept { return moved_; }
-  [[nodiscard]] std::size_t samples() const noexcept { return group_of_.size(); }
-  [[nodiscard]] FieldNote notes() const noexcept;
-  [[nodiscard]] int groups() const noexcept { return count_; }
-  [[nodiscard]] TouchedScene& scene() const noexcept { return scene_; }
-
- private:
-  void change(double moved) noexcept;
-  void divide_anew() noexcept;
-  void divide(double radius) noexcept;
-  void assign(std::int32_t root, double radius) noexcept;
-  [[nodiscard]] std::span<SampleGroup> used() noexcept {
-    return std::span(groups_).first(static_cast<std::size_t>(count_));
-  }
-
-  std::shared_ptr<const Tool> tool_;
-  mutable TouchedScene scene_;
-  std::vector<SampleGroup> groups_;
-  std::array<AgreedSides, 3> fingers_;  // of samples with sides -1, 0 and 1
-  std::vector<std::uint8_t> group_of_;  // of samples
-  int count_ = 0;                       // of groups that serve samples
-  double radius_ = 0;                   // R that the groups were made for, m
-  FieldNote notes_ = FieldNote::none;   // of the last update
-  std::uint64_t revision_ = 0;
-  double now_ = 0;                       // of the last update, s
-  double widened_ = 0;                   // TouchedScene::widened() then
-  mutable double moved_ = kAnyDistance;  // by the surface since the last step began, at most, m
-};
+ToolField::Inside::Inside(Scene& scene, std::shared_ptr<const Tool> tool,
+                          const FieldOptions& options, const std::string& name, double scale)
+    : tool_(held(std::move(tool))),
+      scene_(scene, *tool_, checked(options), name, scale),
+      group_of_(tool_->samples().size(), 0) {
+  const std::size_t most = std::min<std::size_t>(kMostGroups, tool_->nodes().size());
+  groups_.reserve(most);
+  while (groups_.size() < most) groups_.emplace_back(scene_);
+  divide(0);
+}
 
 void ToolField::Inside::update(double now, const Pose& hand, const Pose& proxy) noexcept {
   FollowedSources& followed = scene_.followed;
@@ -149,6 +101,11 @@ void ToolField::Inside::take(const FieldOptions& checked) noexcept {
   scene_.followed.list(checked);
   for (SampleGroup& each : used()) each.release();
   change(kAnyDistance);
+}
+
+void ToolField::Inside::forget_sides() noexcept {
+  for (AgreedSides& finger : fingers_) finger.forget();
+  for (SampleGroup& each : used()) each.forget_sides();
 }
 
 void ToolField::Inside::change(double moved) noexcept {
@@ -266,6 +223,14 @@ const Field& ToolField::group(int number) const noexcept {
 void ToolField::place(const Pose& tool) const noexcept {
   inside_->scene().place(tool);
 }
+void ToolField::forget_sides() const noexcept {
+  inside_->forget_sides();
+}
+bool ToolField::is_across(double deeper) const noexcept {
+  return !inside_->scene().is_empty() &&
+         std::ranges::any_of(inside_->used(),
+                             [=](const SampleGroup& each) { return each.is_behind(deeper); });
+}
 double ToolField::moved() const noexcept {
   return inside_->moved();
 }
@@ -279,7 +244,7 @@ FieldNote ToolField::notes() const noexcept {
   return inside_->notes();
 }
 int ToolField::groups() const noexcept {
-  return inside_->groups();
+  return static_cast<int>(inside_->used().size());
 }
 std::uint64_t ToolField::gathers() const noexcept {
   return inside_->scene().work().gathers;

@@ -71,11 +71,10 @@ class Alone final : public ToolSurface {
 }  // namespace
 
 void ToolProxy::Inside::reset(const Pose& given) noexcept {
-  fault_ = !in_range(given);
-  started_ = !fault_;
-  hand_ = last_hand_ = fault_ ? Pose() : wanted_of(given, *tool_);
-  descent_.release(hand_);
-  descent_.shift(kAnywhere);  // whether it is free there is not known, either
+  state_ = in_range(given) ? State::put : State::fault;
+  hand_ = last_hand_ = state_ == State::put ? wanted_of(given, *tool_) : Pose();
+  descent_.put(hand_, false);
+  descent_.shift(kAnywhere);
   spring_.reset();
   revision_.reset();
   factors_ = {};
@@ -90,9 +89,10 @@ ToolContact ToolProxy::Inside::faulted() const noexcept {
 
 ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& given,
                                     double dt) noexcept {
-  if (!in_range(given) || !std::isfinite(dt) || dt < 0 || !surface.serves(*tool_)) fault_ = true;
-  if (fault_) return faulted();
-  if (!started_) reset(given);
+  if (!in_range(given) || !std::isfinite(dt) || dt < 0 || !surface.serves(*tool_))
+    state_ = State::fault;
+  if (state_ == State::none) reset(given);
+  if (state_ == State::fault) return faulted();
   const Pose hand = wanted_of(given, *tool_);
   const Pose before = pose();
   const Field::Traits traits = surface.whole().traits();
@@ -110,8 +110,8 @@ ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& give
   last_hand_ = hand;
   const bool faulty = has(contact.notes, ContactNote::fault);
   if (!faulty && is_finite(contact.wrench) && in_range(pose())) return contact;
-  fault_ = true;
-  descent_.release(hand);
+  state_ = State::fault;
+  descent_.put(hand, true);
   descent_.shift(kAnywhere);  // its odometer may not be finite
   return faulted();
 }

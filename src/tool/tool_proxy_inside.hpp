@@ -33,6 +33,12 @@ class ToolProxy::Inside {
   [[nodiscard]] const ToolOptions& options() const noexcept { return options_; }
 
  private:
+  enum class State {
+    none,   // it is nowhere yet
+    put,    // it was put where it may be inside of something
+    begun,  // it has been outside since
+    fault,  // an input was not finite
+  };
   struct Factors {
     double stiffness = 1;
     double friction = 1;
@@ -43,6 +49,8 @@ class ToolProxy::Inside {
   void see(const ToolSurface& surface, const Field::Traits& traits) noexcept;
   void move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
             ToolContact& contact) noexcept;
+  void begin(const ToolSurface& surface, const Pose& hand, bool outside,
+             ToolContact& contact) noexcept;
   void free_hand(const Field& field, const Pose& hand, double dt, ToolContact& contact) noexcept;
   void end(const ToolSurface& surface) noexcept;
   void end_group(const ToolSurface& surface, int group) noexcept;
@@ -60,8 +68,7 @@ class ToolProxy::Inside {
   std::optional<std::uint64_t> revision_;  // of it, then; empty: no step since a reset
   Factors factors_;                        // by what was touched last
   bool changed_ = false;                   // is the surface another than in the last step?
-  bool started_ = false;
-  bool fault_ = false;
+  State state_ = State::none;
 };
 
 }  // namespace palpate

@@ -37,10 +37,28 @@ void ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const
                              ToolContact& contact) noexcept {
   const Field& field = surface.whole();
   descent_.gaps().begin(surface, pose());
-  if (path_is_free(field, hand)) return descent_.release(hand);
+  if (state_ == State::put) surface.forget_sides();
+  if (path_is_free(field, hand)) {
+    state_ = State::begun;
+    return descent_.put(hand, true);
+  }
   if (changed_) descent_.lift(surface, field.traits().reanchor_reach, contact);
   const double moved = descent_.farthest(descent_.metric().between(hand_, hand));
-  descent_.follow(surface, hand, moved, law, contact);
+  const bool outside = descent_.follow(surface, hand, moved, law, contact);
+  if (state_ == State::put) begin(surface, hand, outside, contact);
+}
+
+// A tool that was put inside of what is solid comes out if one step leads it out. Else nothing
+// holds it until it has been outside: on a cloud it would be held by both sides of a surface.
+void ToolProxy::Inside::begin(const ToolSurface& surface, const Pose& hand, bool outside,
+                              ToolContact& contact) noexcept {
+  if (outside && !surface.is_across(Descent::kOutside * descent_.gaps().radius())) {
+    state_ = State::begun;
+    return;
+  }
+  descent_.put(hand, false);
+  hand_ = hand;  // the tool has caught up with it
+  contact.notes |= ContactNote::inside;
 }
 
 // Lets go of a hand that is held hard in free air for long, as a point does, or whose tool is
@@ -56,7 +74,7 @@ void ToolProxy::Inside::free_hand(const Field& field, const Pose& hand, double d
       spring_.touching() && (hard || squeezed) && descent_.gaps().is_free_at(field, hand);
   if (!spring_.hold_away(away, dt)) return;
   contact.notes |= ContactNote::freed;
-  if (spring_.stiffness() <= Limit::kGone * options_.stiffness) descent_.release(hand);
+  if (spring_.stiffness() <= Limit::kGone * options_.stiffness) descent_.put(hand, true);
 }
 
 // Ends the step of each group of samples, then that of the whole surface where the tool is.

@@ -24,7 +24,7 @@ struct Note {
   }
 };
 
-constexpr std::array<Note, 16> kNotes = {{
+constexpr std::array<Note, 17> kNotes = {{
     {"sweep_truncated",
      "the hand moved too far in one step, so the proxy caught up over the next steps; move slower "
      "or use shorter steps",
@@ -55,6 +55,10 @@ constexpr std::array<Note, 16> kNotes = {{
      "a "
      "hole or something thin",
      ContactNote::freed, FieldNote::none},
+    {"inside",
+     "the tool began inside the surface, so it touched nothing until it had been outside; begin "
+     "farther away",
+     ContactNote::inside, FieldNote::none},
     {"thinned",
      "there were more points near the tool than the patch holds, so some were ignored; give a "
      "smaller --radius or a larger --voxel",

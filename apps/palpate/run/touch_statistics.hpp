@@ -76,7 +76,7 @@ class TouchStatistics {
   double given_energy_ = 0;
   double path_energy_ = 0;
   std::size_t faults_ = 0;
-  std::array<std::size_t, 16> notes_{};  // steps with each
+  std::array<std::size_t, 17> notes_{};  // steps with each
 };
 
 /// What a guard would have made of a run that has none: its slew and its clamp, along the path of

@@ -22,9 +22,11 @@ enum class ContactNote : std::uint32_t {
   fell =
       1u << 6,  ///< what held the proxy yielded: it went, in contact or out of it, farther than
                 ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
-  freed = 1u << 7,  ///< the hand was held in free air, and the proxy came to it: at once where the
-                    ///< proxy had passed through a surface and is trapped behind it; with more
-                    ///< than 10 N and 10 R from the proxy after 1 s, in 0.5 s
+  freed = 1u << 7,   ///< the hand was held in free air, and the proxy came to it: at once where the
+                     ///< proxy had passed through a surface and is trapped behind it; with more
+                     ///< than 10 N and 10 R from the proxy after 1 s, in 0.5 s
+  inside = 1u << 8,  ///< a tool that turns began inside of what is solid, between faces that leave
+                     ///< no way out: it touches nothing until it has been outside
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {

@@ -52,6 +52,8 @@ class ToolField final : public ToolSurface {
   [[nodiscard]] int group_of(int sample) const noexcept override;
   [[nodiscard]] const Field& group(int number) const noexcept override;
   void place(const Pose& tool) const noexcept override;
+  void forget_sides() const noexcept override;
+  [[nodiscard]] bool is_across(double deeper) const noexcept override;
   [[nodiscard]] double moved() const noexcept override;
   [[nodiscard]] bool serves(const Tool& tool) const noexcept override;
 

@@ -30,6 +30,12 @@ class ToolSurface {
   [[nodiscard]] virtual const Field& group(int /*number*/) const noexcept { return whole(); }
   /// The tool is held like this when samples are looked at next.
   virtual void place(const Pose& /*tool*/) const noexcept {}
+  /// The tool was put where it is: on which side of a surface it was before says nothing.
+  virtual void forget_sides() const noexcept {}
+
+  /// Is a sample of the tool, as it was placed last, deeper (m) than this behind a surface that its
+  /// finger is in front of?
+  [[nodiscard]] virtual bool is_across(double /*deeper*/) const noexcept { return false; }
 
   /// How far the surface has moved since the last step began at most, m, where its revision is
   /// another than then; infinite where it may be another surface.
