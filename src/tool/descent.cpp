@@ -17,7 +17,6 @@ constexpr double kWidest = 0.375;  // of R: margin within which a surface is nea
 constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
 constexpr int kRounds =
     3;  // in which friction finds the contacts that it tips a tool on (judgement)
-constexpr double kAhead = 3;       // times the hand's motion: as wide is the first margin of a step
 constexpr double kWithin = 1.5;    // margins are so much wider than the motion that they are for
 constexpr double kLongest = 0.25;  // of R, that a sample moves between two looks
 constexpr double kSlowest = 0.05;  // of a pull, as for a point
@@ -100,7 +99,7 @@ bool Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
                      const FrictionLaw& law, ToolContact& contact) noexcept {
   friction_.begin(law, pose_);
   const double radius = gaps_.radius();
-  Progress step{.margin = std::clamp(kAhead * moved, kNarrowest * radius, kWidest * radius),
+  Progress step{.margin = std::clamp(kWithin * moved, kNarrowest * radius, kWidest * radius),
                 .moves = std::exchange(moves_, false)};
   plane_count_ = 0;
   // What is older would be felt as a blow.
@@ -188,7 +187,9 @@ double Descent::move(const LeastMotion& least, std::size_t seen, const Look& loo
   if (!step.finite) return far;
   step.whole = far <= longest;
   step.proved = far < kUnproved * radius;
-  if (!step.whole) step.margin = kWidest * radius;
+  // What is left to be moved is the rest or, of a whole motion, no longer than that was.
+  const double left = step.whole ? far : far - longest;
+  step.margin = std::clamp(kWithin * left, kNarrowest * radius, kWidest * radius);
   step.motion = step.whole ? least.motion : (longest / far * least.motion).eval();
   remember_planes(least, seen, step.motion);
   pose_ = metric_.moved(pose_, step.motion);
