@@ -8,6 +8,7 @@
 
 #include "palpate/field/analytic.hpp"
 #include "tool/tool_rig.hpp"
+#include "tool/tool_spring.hpp"
 
 namespace palpate::test {
 namespace {
@@ -96,6 +97,25 @@ TEST(ToolEnergy, AClosedPathThroughATorusGivesNothing) {
     });
     EXPECT_LT(round.given, 5e-5);
   }
+}
+
+// A surface that is found elsewhere takes the tool 20 mm away from a hand that has moved by 0.1 mm:
+// the spring begins with what that would have put into one at rest.
+TEST(ToolEnergy, ASpringThatJumpsBeginsWithWhatTheHandGave) {
+  const Metric metric{kGyration};
+  ToolSpring spring;
+  ToolContact contact;
+  spring.pull({.hand = pose_at({0, 0, 0}),
+               .before = pose_at({0, 0, 0}),
+               .now = pose_at({0, 0, 0.02}),
+               .full = kStiffness,
+               .moved = 1e-4,
+               .dt = kTick,
+               .touching = true,
+               .jumped = true},
+              metric, contact);
+  EXPECT_GT(contact.stiffness, 0);
+  EXPECT_LE(0.5 * contact.stiffness * 0.02 * 0.02, 0.5 * kStiffness * 1e-4 * 1e-4 * (1 + 1e-9));
 }
 
 /// What a tool on a floor gives to a hand in a time, J.
