@@ -100,9 +100,10 @@ ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& give
   ToolContact contact;
   surface.whole().begin_step();
   const double time = std::max(dt, kLeastTime);
-  move(surface, hand, friction_law(options_.friction, factors_.friction, spring_.stiffness(), time),
-       contact);
-  free_hand(surface.whole(), hand, dt, contact);
+  const bool outside =
+      move(surface, hand,
+           friction_law(options_.friction, factors_.friction, spring_.stiffness(), time), contact);
+  free_hand(surface.whole(), hand, outside, dt, contact);
   report(surface, contact);
   end(surface);
   pull(before, hand, dt, changed_ ? &traits.step : nullptr, contact);

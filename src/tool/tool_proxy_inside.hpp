@@ -47,11 +47,12 @@ class ToolProxy::Inside {
   [[nodiscard]] ToolContact faulted() const noexcept;
   [[nodiscard]] bool path_is_free(const Field& field, const Pose& hand) noexcept;
   void see(const ToolSurface& surface, const Field::Traits& traits) noexcept;
-  void move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
+  bool move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
             ToolContact& contact) noexcept;
   void begin(const ToolSurface& surface, const Pose& hand, bool outside,
              ToolContact& contact) noexcept;
-  void free_hand(const Field& field, const Pose& hand, double dt, ToolContact& contact) noexcept;
+  void free_hand(const Field& field, const Pose& hand, bool outside, double dt,
+                 ToolContact& contact) noexcept;
   void end(const ToolSurface& surface) noexcept;
   void end_group(const ToolSurface& surface, int group) noexcept;
   void pull(const Pose& before, const Pose& hand, double dt, const double* step,

@@ -33,19 +33,21 @@ bool ToolProxy::Inside::path_is_free(const Field& field, const Pose& hand) noexc
   return true;
 }
 
-void ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
+bool ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
                              ToolContact& contact) noexcept {
   const Field& field = surface.whole();
   descent_.gaps().begin(surface, pose());
   if (state_ == State::put) surface.forget_sides();
   if (path_is_free(field, hand)) {
     state_ = State::begun;
-    return descent_.put(hand, true);
+    descent_.put(hand, true);
+    return true;
   }
   if (changed_) descent_.lift(surface, field.traits().reanchor_reach, contact);
   const double moved = descent_.farthest(descent_.metric().between(hand_, hand));
   const bool outside = descent_.follow(surface, hand, moved, law, contact);
   if (state_ == State::put) begin(surface, hand, outside, contact);
+  return outside;
 }
 
 // A tool that was put inside of what is solid comes out if one step leads it out. Else nothing
@@ -63,18 +65,21 @@ void ToolProxy::Inside::begin(const ToolSurface& surface, const Pose& hand, bool
 
 // Lets go of a hand that is held hard in free air for long, as a point does, or whose tool is
 // squeezed: something thin has come between the samples, or a surface came back around the tool.
-// The spring fades before.
-void ToolProxy::Inside::free_hand(const Field& field, const Pose& hand, double dt,
+// The same of one that stays inside of something, wherever the hand is. The spring fades before.
+void ToolProxy::Inside::free_hand(const Field& field, const Pose& hand, bool outside, double dt,
                                   ToolContact& contact) noexcept {
   const double stretch = descent_.metric().between(hand, pose()).norm();
   const bool hard = stretch > Limit::kFar * descent_.gaps().radius() &&
                     options_.stiffness * stretch > Limit::kHardest;
   const bool squeezed = has(contact.notes, ContactNote::not_converged);
   const bool away =
-      spring_.touching() && (hard || squeezed) && descent_.gaps().is_free_at(field, hand);
+      spring_.touching() &&
+      ((squeezed && !outside) || ((hard || squeezed) && descent_.gaps().is_free_at(field, hand)));
   if (!spring_.hold_away(away, dt)) return;
   contact.notes |= ContactNote::freed;
-  if (spring_.stiffness() <= Limit::kGone * options_.stiffness) descent_.put(hand, true);
+  if (spring_.stiffness() > Limit::kGone * options_.stiffness) return;
+  descent_.put(hand, false);
+  state_ = State::put;
 }
 
 // Ends the step of each group of samples, then that of the whole surface where the tool is.

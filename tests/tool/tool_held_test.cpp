@@ -192,6 +192,32 @@ TEST(ToolHeld, SaysThatItIsSqueezed) {
   }
 }
 
+// A slot that has closed on a tool lets go of it: after a second its spring fades within half a
+// second, and then nothing holds a hand that is still inside.
+TEST(ToolHeld, IsLetGoWhereItStaysSqueezed) {
+  SlotField slot;
+  ToolProxy proxy = proxy_of(Tool::box({0.02, 0.03, 0.01}, 5e-3));
+  proxy.reset(pose_at({0, 0, 0}));
+  (void)proxy.step(slot, pose_at({0, 0, 0}), kTick);
+  slot.half = 0.005;
+  ++slot.revision;
+  double held = 0;
+  double step = 0;
+  Vector3d last = Vector3d::Zero();
+  ToolContact contact;
+  for (int i = 0; i < 1600; ++i) {
+    contact = proxy.step(slot, pose_at({1e-5 * i, 0, 0}), kTick);
+    held = std::max(held, contact.wrench.force.norm());
+    step = std::max(step, (contact.wrench.force - last).norm());
+    last = contact.wrench.force;
+  }
+  EXPECT_GT(held, 1);
+  EXPECT_LT(step, 0.1);
+  EXPECT_TRUE(has(contact.notes, ContactNote::inside));
+  EXPECT_EQ(contact.wrench.force, Vector3d(0, 0, 0));
+  EXPECT_EQ(contact.proxy.position.x(), 1e-5 * 1599);
+}
+
 // Nothing is known of where a solid ends: the tool stays, until it is free.
 TEST(ToolHeld, StaysWhereTheSolidIsUnknown) {
   DullPlateField plate;
