@@ -28,6 +28,43 @@ TEST(ToolField, ABoxRestsOnASheet) {
   EXPECT_EQ(held.field().notes(), FieldNote::none);
 }
 
+// Samples far denser than points, and far sparser than R: all four corners of a flat face are
+// there.
+TEST(ToolField, ABoxRestsWhateverItsSpacing) {
+  Scene scene;
+  scene.add("sheet", cloud_of(sheet({}, 0.06)));
+  for (const double spacing : {2e-3, 0.02, 0.06}) {
+    HeldTool held(scene, Tool::box({0.04, 0.06, 0.02}, spacing));
+    held.reset(pose_at({0, 0, 0.03}));
+    const ToolContact contact = held.to(pose_at({0, 0, 0.007}));
+    EXPECT_NEAR(contact.wrench.force.z(), 1.5, 1e-3) << spacing;
+    EXPECT_LT(contact.wrench.force.head<2>().norm(), 1e-3) << spacing;
+    EXPECT_LT(contact.wrench.torque.norm(), 1e-3) << spacing;
+  }
+}
+
+// Each source knows a half of the sheet, and a little more: the box lies across the seam.
+TEST(ToolField, ABoxRestsOnTwoSources) {
+  const Eigen::Isometry3d flat = Eigen::Isometry3d::Identity();
+  Scene scene;
+  scene.add("left", cloud_of(sheet({}, {-0.06, -0.06}, {0.004, 0.06}, flat)));
+  scene.add("right", cloud_of(sheet({}, {-0.004, -0.06}, {0.06, 0.06}, flat)));
+  HeldTool held(scene, Tool::box({0.04, 0.06, 0.02}, 0.004));
+  held.reset(pose_at({0, 0, 0.03}));
+  const ToolContact contact = held.to(pose_at({0, 0, 0.007}));
+  EXPECT_NEAR(contact.wrench.force.z(), 1.5, 1e-2);
+  EXPECT_LT(contact.wrench.torque.norm(), 1e-3);
+  double step = 0;
+  Vector3d last = contact.wrench.force;
+  for (int i = 0; i < 400; ++i) {  // and slides from one to the other
+    const ToolContact now = held.to(pose_at({5e-5 * i, 0, 0.007}), 1, 0);
+    step = std::max(step, (now.wrench.force - last).norm());
+    last = now.wrench.force;
+  }
+  EXPECT_NEAR(last.z(), 1.5, 1e-2);
+  EXPECT_LT(step, 0.02);
+}
+
 // The stylus is held at 30 degrees, and its tip alone touches, 40 mm from the handle.
 TEST(ToolField, ALeverTurnsTheHand) {
   Scene scene;
