@@ -76,6 +76,7 @@ class Descent {
     double margin = 0;               // m, of the next look
     int held = 0;                    // looks with something active
     bool moves = false;              // does the surface move on?
+    int shortened = 0;               // motions that were
     bool settles = false;
     bool finite = true;    // the last motion is
     bool whole = true;     // the last motion was not shortened
