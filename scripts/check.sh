@@ -3,7 +3,7 @@
 #
 # scripts/check.sh           everything below but the soak: hours
 # scripts/check.sh PART...   these parts, in this order:
-#   sanitized  under ASan + UBSan every fuzz target for 5 s over its seeds, and every test but the long ones and those
+#   sanitized  under ASan + UBSan every fuzz target for 3 s over its seeds, and every test but the long ones and those
 #              of what only computes
 #   programs   in a release build what runs beside other programs: the page in a browser, whole, and ROS 2's topics
 #              between processes; and long cases of a quarter of a minute
@@ -48,7 +48,7 @@ check_sanitized() {
   build "$sanitized"
   test_preset "$sanitized" -LE long || failed=1
   skipped "$sanitized"
-  if [ "$fuzz" = yes ]; then fuzz_all 5 || failed=1; fi
+  if [ "$fuzz" = yes ]; then fuzz_all 3 || failed=1; fi
   return $failed
 }
 
