@@ -216,10 +216,12 @@ void define_contact(py::module_& module) {
 }
 
 ToolOptions options_of(double stiffness, double gyration, double friction_dynamic,
-                       std::optional<double> friction_static, double friction_viscous) {
+                       std::optional<double> friction_static, double friction_viscous,
+                       double texture_amplitude, double texture_wavelength) {
   return {
       .stiffness = stiffness,
       .friction = {friction_static.value_or(friction_dynamic), friction_dynamic, friction_viscous},
+      .texture = {texture_amplitude, texture_wavelength},
       .gyration = gyration};
 }
 
@@ -247,10 +249,12 @@ void define_constructor(py::class_<HeldTool>& type, Make make, const char* touch
       "stiffness: N/m. gyration: m, turns have stiffness times its square (N m/rad); 0: the "
       "tool's. "
       "friction_dynamic, friction_static (default: the dynamic one): coefficients. "
-      "friction_viscous: N s/m";
+      "friction_viscous: N s/m. texture_amplitude, texture_wavelength: m";
   type.def(py::init(make), arg("tool").none(false), arg(touched).none(false), py::kw_only(),
            arg("stiffness") = 500.0, arg("gyration") = 0.0, arg("friction_dynamic") = 0.0,
-           arg("friction_static") = py::none(), arg("friction_viscous") = 0.0, kOptions);
+           arg("friction_static") = py::none(), arg("friction_viscous") = 0.0,
+           arg("texture_amplitude") = 0.0, arg("texture_wavelength") = Texture().wavelength,
+           kOptions);
 }
 
 }  // namespace
@@ -265,9 +269,10 @@ void define_tools(py::module_& module) {
       "A tool that follows the hand, turns, and stays outside of a scene's surface or "
       "of a formula's. Experimental. Input that is not finite is a fault: no wrench "
       "until reset()");
-  define_constructor(type, &in_scene<double, double, double, std::optional<double>, double>,
+  using Maybe = std::optional<double>;
+  define_constructor(type, &in_scene<double, double, double, Maybe, double, double, double>,
                      "scene");
-  define_constructor(type, &on_formula<double, double, double, std::optional<double>, double>,
+  define_constructor(type, &on_formula<double, double, double, Maybe, double, double, double>,
                      "field");
   type.def("__repr__",
            [](const HeldTool& held) {

@@ -52,6 +52,13 @@ Relief relief_at(const Texture& texture, const Eigen::Vector3d& x) noexcept {
   return relief;
 }
 
+void carve(const Texture& texture, const Eigen::Vector3d& x, Sample& sample) noexcept {
+  if (!(texture.amplitude > 0)) return;
+  const Relief relief = relief_at(texture, x);
+  sample.value -= relief.height;
+  sample.gradient -= relief.gradient;
+}
+
 Probe::Probe(const Field& field, const Texture& texture, double radius) noexcept
     : field_(field),
       texture_(texture),
@@ -65,11 +72,7 @@ Sample Probe::sample(const Eigen::Vector3d& x) noexcept {
   Sample sample = field_.sample(x);
   if (sample.radius > 0) radius_ = sample.radius;
   if (is_nothing(sample.value, sample.support)) sample.value = radius_;  // no points here
-  if (texture_.amplitude > 0) {
-    const Relief relief = relief_at(texture_, x);
-    sample.value -= relief.height;
-    sample.gradient -= relief.gradient;
-  }
+  carve(texture_, x, sample);
   return sample;
 }
 

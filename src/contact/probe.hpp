@@ -42,6 +42,9 @@ struct Relief {
 /// The relief at x (m, world).
 [[nodiscard]] Relief relief_at(const Texture& texture, const Eigen::Vector3d& x) noexcept;
 
+/// Carves the relief at x (m, world) into a sample of a field there.
+void carve(const Texture& texture, const Eigen::Vector3d& x, Sample& sample) noexcept;
+
 /// Points that an evaluation costs as much as to sum over, besides those that it does sum over.
 inline constexpr int kEvaluationWork = 32;
 

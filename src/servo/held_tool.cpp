@@ -15,6 +15,7 @@ HeldTool::HeldTool(Scene& scene, const ServoOptions& options, const DeviceInfo& 
     : field_(scene, options.tool, options.field, "a tool's field", options.workspace.scale),
       proxy_(options.tool, {.stiffness = std::min(options.proxy.stiffness, limit),
                             .friction = options.proxy.friction,
+                            .texture = options.proxy.texture,
                             .gyration = options.gyration}) {
   const bool grips = device.maximum_grip > 0 && options.tool->opens();
   if (!(device.maximum_torque > 0) && !grips) return;

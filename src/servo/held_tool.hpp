@@ -26,8 +26,8 @@ class HeldTool {
   /// gift to the hand (docs/method.md 3.7).
   [[nodiscard]] Contact step(double now, const Pose& hand, double dt) noexcept;
   void reset(const Pose& hand) noexcept;
-  void change(double stiffness, const Friction& friction) noexcept {
-    proxy_.change(stiffness, friction);
+  void change(const ProxyOptions& point) noexcept {
+    proxy_.change(point.stiffness, point.friction, point.texture);
   }
   void change(const FieldOptions& checked) noexcept { field_.change(checked); }
 

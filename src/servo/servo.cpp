@@ -168,8 +168,7 @@ void Servo::Inside::apply_pending() noexcept {
     guard.reset();
   }
   if (basis.contact) limited.change(*basis.contact);
-  if (basis.contact && tool)
-    tool->change(limited.proxy.options().stiffness, basis.contact->friction);
+  if (basis.contact && tool) tool->change(limited.proxy.options());
   if (basis.field && tool) tool->change(*basis.field);
   if (basis.field && limited.field) limited.field->change(*basis.field);
 }

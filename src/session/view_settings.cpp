@@ -125,7 +125,6 @@ ViewScope scope_of(const Scene& scene, double scale, const std::vector<Servo*>& 
   scope.stiffest = kSteadyStiffness / scale;
   for (const Servo* servo : servos) {
     scope.stiffest = std::min(scope.stiffest, servo->stiffness_limit());
-    scope.turns = scope.turns || servo->options().tool;
   }
   const double deepest = deepest_texture(scene);
   scope.deepest_texture = std::isfinite(deepest) ? deepest : 0;
@@ -141,7 +140,7 @@ std::vector<Setting> list_settings(const ViewSettings& settings, const ViewScope
                         round_step(scope.stiffest / kSliderSteps), settings.feel.stiffness));
   list.push_back(
       number("friction", "Friction", "", 0, 1.5, 0.05, settings.feel.friction.dynamic_coefficient));
-  if (!scope.turns && scope.deepest_texture > 0) {
+  if (scope.deepest_texture > 0) {
     list.push_back(length_setting("texture", "Texture", unit, scope.deepest_texture,
                                   settings.feel.texture.amplitude));
     list.push_back(
@@ -208,7 +207,6 @@ ViewSettings preset(const ViewSettings& initial, const std::string& name, const 
   } else if (name != "default") {
     throw Error(fmt::format("unknown preset '{}'", name));
   }
-  if (scope.turns) feel.texture.amplitude = 0;
   feel.stiffness = std::min(feel.stiffness, scope.stiffest);
   feel.texture.amplitude = std::min(feel.texture.amplitude, scope.deepest_texture);
   return result;

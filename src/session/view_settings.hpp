@@ -41,7 +41,6 @@ struct ViewScope {
   bool lives = false;          ///< frames or clouds follow one another in time
   bool depth = false;          ///< ... and are depth images
   bool clouds = false;         ///< clouds are prepared here
-  bool turns = false;          ///< a hand holds a tool that turns: no texture
 };
 
 /// What `scene` and `servos` allow to be felt, at so many world metres of a metre of the hand; what

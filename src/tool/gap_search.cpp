@@ -28,6 +28,19 @@ constexpr int kBisections = 12;      // of one of these: to 3e-5 R
 constexpr double kLongestWay = 1e3;  // m, after which bounds would lose 0.1 pm to rounding
 constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
 
+// The gap of a ball of that radius (m) at x over the surface with its relief, which is carved into
+// `here` below the ball; empty where there is no surface to speak of.
+std::optional<double> gap_over(const Texture& texture, const Eigen::Vector3d& x, double radius,
+                               Sample& here) {
+  if (texture.amplitude > 0) {
+    here.value -= radius * here.gradient.norm();
+    carve(texture, x, here);
+    return first_order_distance(here);
+  }
+  const std::optional<double> distance = first_order_distance(here);
+  return distance ? std::optional(*distance - radius) : distance;
+}
+
 }  // namespace
 
 GapSearch::GapSearch(std::shared_ptr<const Tool> tool)
@@ -43,8 +56,10 @@ void GapSearch::forget() noexcept {
   odometer_ = 0;
 }
 
-void GapSearch::begin(const ToolSurface& surface, const Pose& pose) noexcept {
+void GapSearch::begin(const ToolSurface& surface, const Texture& texture,
+                      const Pose& pose) noexcept {
   evaluations_ = 0;
+  texture_ = texture;
   nearest_.fill({});
   if (odometer_ > kLongestWay) forget();
   if (radius_known_) return;
@@ -74,20 +89,17 @@ bool GapSearch::is_free_below(const Field& field, const Pose& pose, std::int32_t
 double GapSearch::gap(const Field& field, const Tool::Point& sample,
                       const Eigen::Vector3d& x) noexcept {
   ++evaluations_;
-  const Sample here = field.sample(x);
-  if (const std::optional<double> distance = first_order_distance(here)) {
-    return *distance - sample.radius;
-  }
-  return here.value > 0 || is_nothing(here.value, here.support) ? 1 : -1;
+  Sample here = field.sample(x);
+  const bool free = here.value > 0 || is_nothing(here.value, here.support);
+  return gap_over(texture_, x, sample.radius, here).value_or(free ? 1 : -1);
 }
 
 bool GapSearch::sees_still(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
                            const Eigen::Vector3d& normal) noexcept {
   ++evaluations_;
-  const Sample here = field.sample(x);
-  const std::optional<double> distance = first_order_distance(here);
-  return distance && *distance - sample.radius > -kPush * radius_ &&
-         here.gradient.normalized().dot(normal) > kSameFace;
+  Sample here = field.sample(x);
+  const std::optional<double> gap = gap_over(texture_, x, sample.radius, here);
+  return gap && *gap > -kPush * radius_ && here.gradient.normalized().dot(normal) > kSameFace;
 }
 
 double GapSearch::rise(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
@@ -171,7 +183,7 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   const Tool::Point& sample = tool_->samples()[index];
   const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, walk.pose);
   const int group = walk.surface.group_of(static_cast<int>(index));
-  const Sample here = walk.surface.group(group).sample(x);
+  Sample here = walk.surface.group(group).sample(x);
   if (here.radius > 0) {
     radius_ = here.radius;
     radius_known_ = true;
@@ -189,15 +201,30 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   }
   if (here.averted) return;
   const double gap = *distance - sample.radius;
-  // Where weights begin the field is flat, and says no distance: 14 mm were trusted of 3.
+  // Where weights begin the field is flat, and says no distance: 14 mm were trusted of 3. A relief
+  // is carved, and no nearer than that.
   const double trusted = here.support < 1 ? std::min(gap, unseen) : gap;
   sample_bounds_[index] = odometer_ + kTrusted * trusted;
-  walk.found.deepest = std::min(walk.found.deepest, gap);
+  Nearest found{gap, x, normal};
+  if (texture_.amplitude > 0) {
+    // Where a relief is so steep that the surface has no slope, the smooth one serves.
+    if (const std::optional<double> carved = gap_over(texture_, x, sample.radius, here)) {
+      found = {*carved, x, here.gradient.normalized()};
+    }
+  }
+  meet(walk, index, group, found);
+}
+
+// A sample of a group that may be within the margin.
+void GapSearch::meet(Walk& walk, std::uint32_t index, int group, const Nearest& found) noexcept {
+  walk.found.deepest = std::min(walk.found.deepest, found.gap);
   Nearest& nearest = nearest_[static_cast<std::size_t>(group)];
-  if (nearest.normal.isZero(0) || gap < nearest.gap) nearest = {gap, x, normal};
-  if (gap >= walk.found.margin) return;
-  constrain(walk, constraint_on(*tool_, static_cast<int>(index), x, normal, walk.pose, walk.metric),
-            gap);
+  if (nearest.normal.isZero(0) || found.gap < nearest.gap) nearest = found;
+  if (found.gap >= walk.found.margin) return;
+  constrain(walk,
+            constraint_on(*tool_, static_cast<int>(index), found.position, found.normal, walk.pose,
+                          walk.metric),
+            found.gap);
 }
 
 // Where the list is full the nearer half stays, and the margin ends before what was dropped.

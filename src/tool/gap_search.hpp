@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "palpate/contact/proxy.hpp"
 #include "palpate/tool/tool.hpp"
 #include "palpate/tool/tool_surface.hpp"
 #include "tool/constraint_list.hpp"
@@ -29,8 +30,9 @@ class GapSearch {
 
   /// Forgets all gaps: the surface has changed, or the tool was put elsewhere.
   void forget() noexcept;
-  /// Begins a step of the tool on a surface. After a kilometre all gaps are forgotten.
-  void begin(const ToolSurface& surface, const Pose& pose) noexcept;
+  /// Begins a step of the tool on a surface, into which a relief is carved. After a kilometre all
+  /// gaps are forgotten.
+  void begin(const ToolSurface& surface, const Texture& texture, const Pose& pose) noexcept;
   /// No sample has moved farther than this, m.
   void move(double farthest) noexcept { odometer_ += farthest; }
 
@@ -88,6 +90,7 @@ class GapSearch {
   void visit(Walk& walk, std::int32_t index) noexcept;
   [[nodiscard]] bool passes(Walk& walk, std::int32_t index) noexcept;
   void look_at(Walk& walk, std::uint32_t index) noexcept;
+  void meet(Walk& walk, std::uint32_t index, int group, const Nearest& found) noexcept;
   void constrain(Walk& walk, Constraint constraint, double gap) const noexcept;
 
   std::shared_ptr<const Tool> tool_;
@@ -97,6 +100,7 @@ class GapSearch {
   double odometer_ = 0;             // m
   double radius_ = 0;
   bool radius_known_ = false;  // said by the surface
+  Texture texture_;
   int evaluations_ = 0;
   std::array<Nearest, ToolSurface::kMostGroups> nearest_;
 };

@@ -33,6 +33,8 @@ void check(const Friction& friction) {
 ToolOptions checked(const ToolOptions& options, const Tool& tool) {
   kRequireProxy.not_negative("stiffness", options.stiffness, "give N/m, 0 or more");
   check(options.friction);
+  kRequireProxy.not_negative("texture.amplitude", options.texture.amplitude, "give m, 0 or more");
+  kRequireProxy.positive("texture.wavelength", options.texture.wavelength, "give m, above 0");
   kRequireProxy(options.gyration == 0 ||
                     (options.gyration >= kSmallestGyration && options.gyration <= Tool::kLongest),
                 "gyration", options.gyration, "give 0.0001 to 10 metres, or 0 for the tool's");
@@ -147,8 +149,9 @@ ToolContact ToolProxy::step(const Field& field, const Pose& hand, double dt) noe
   return inside_->step(Alone(field), hand, dt);
 }
 
-void ToolProxy::change(double stiffness, const Friction& friction) noexcept {
-  inside_->change(stiffness, friction);
+void ToolProxy::change(double stiffness, const Friction& friction,
+                       const Texture& texture) noexcept {
+  inside_->change(stiffness, friction, texture);
 }
 
 const Pose& ToolProxy::pose() const noexcept {

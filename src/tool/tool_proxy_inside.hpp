@@ -23,9 +23,10 @@ class ToolProxy::Inside {
 
   [[nodiscard]] ToolContact step(const ToolSurface& surface, const Pose& given, double dt) noexcept;
   void reset(const Pose& given) noexcept;
-  void change(double stiffness, const Friction& friction) noexcept {
+  void change(double stiffness, const Friction& friction, const Texture& texture) noexcept {
     options_.stiffness = stiffness;
     options_.friction = friction;
+    options_.texture = texture;
   }
 
   [[nodiscard]] const Pose& pose() const noexcept { return descent_.pose(); }

@@ -36,7 +36,7 @@ bool ToolProxy::Inside::path_is_free(const Field& field, const Pose& hand) noexc
 bool ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const FrictionLaw& law,
                              ToolContact& contact) noexcept {
   const Field& field = surface.whole();
-  descent_.gaps().begin(surface, pose());
+  descent_.gaps().begin(surface, options_.texture, pose());
   if (state_ == State::put) surface.forget_sides();
   if (path_is_free(field, hand)) {
     state_ = State::begun;

@@ -89,6 +89,39 @@ TEST(ToolProgram, ABoxRubsOnAPlane) {
   EXPECT_NEAR(number(log["fx"].back()), -0.4 * number(log["fz"].back()), 0.02);
 }
 
+// A point that is dragged over the plane goes down between its grains, at most by two amplitudes.
+TEST(ToolProgram, ABallFeelsTheTextureOfAPlane) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("set.toml", "[material]\ntexture_amplitude = 0.0001\ntexture_wavelength = 0.004\n");
+  std::string way = "t,hip_x,hip_y,hip_z\n";
+  for (int i = 0; i < 800; ++i) {
+    way += fmt::format("{},{},0,{}\n", 1e-3 * i, 2e-5 * std::max(0, i - 200),
+                       std::max(-2e-3, 4e-3 - 5e-5 * i));
+  }
+  shell.write("way.csv", way);
+  const auto forces = [&shell](const std::string& rest) {
+    const Outcome outcome =
+        shell.run("touch plane.xyz --trajectory way.csv --tool ball:1 --log log.csv " + rest);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return columns(shell.read("log.csv"))["fz"];
+  };
+  const std::vector<std::string> smooth = forces("");
+  const std::vector<std::string> carved = forces("--setup set.toml");
+  EXPECT_EQ(carved, forces("--texture-amplitude 1e-4"));
+  double least = 0;
+  double most = -1;
+  for (std::size_t i = 300; i < smooth.size(); ++i) {
+    const double deeper = (number(carved.at(i)) - number(smooth[i])) / 500;
+    least = std::min(least, deeper);
+    most = std::max(most, deeper);
+  }
+  EXPECT_GT(least, -2.1e-4);
+  EXPECT_LT(least, -1e-4);
+  EXPECT_LT(most, 1e-5);
+  EXPECT_GT(most - least, 5e-5);
+}
+
 TEST(ToolProgram, SameInputTwiceGivesTheSameLogBitForBit) {
   Shell shell;
   const std::string arguments =
@@ -129,8 +162,6 @@ TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   };
   EXPECT_THAT(refusal("box:20x30x10 --tool-radius 0.001"),
               HasSubstr("--tool-radius is for a point"));
-  EXPECT_THAT(refusal("ball:4 --texture-amplitude 1e-4"),
-              HasSubstr("--texture-amplitude is for a"));
   EXPECT_THAT(refusal("ball:4 --preset paper"), HasSubstr("--preset paper uses a point tool"));
   EXPECT_THAT(refusal("bowl:4"), HasSubstr("give one of ball:R, capsule:LxR"));
   EXPECT_THAT(refusal("bowl:4"), HasSubstr("or mesh:FILE"));
@@ -199,10 +230,9 @@ TEST(ToolProgram, KeysOfASetUpFileAreItsOptions) {
             "mesh:" + shell.path("part.stl"));
 }
 
-TEST(ToolProgram, TextureOfASetUpFileIsRefusedToo) {
+TEST(ToolProgram, WhatIsOfAPointIsRefusedInASetUpFileToo) {
   Shell shell;
-  for (const char* keys : {"[material]\ntexture_amplitude = 0.0001\n",
-                           "[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
+  for (const char* keys : {"[surface]\ntool_radius = 0.001\n", "[surface]\npreset = \"paper\"\n"}) {
     shell.write("set.toml", keys);
     const Outcome outcome = shell.run("touch synthetic:torus --setup set.toml --tool ball:3");
     EXPECT_EQ(outcome.code, 2) << keys;

@@ -61,6 +61,15 @@ class Tools(unittest.TestCase):
         self.assertAlmostEqual(contact.force[0], -0.75, delta=0.02)
         np.testing.assert_allclose(contact.frictions.sum(axis=0), contact.force - (0, 0, 1.5), atol=0.02)
 
+    def test_a_tool_feels_a_texture(self):
+        box = pp.Tool("box:40x60x20", spacing=0.004)
+        proxy = pp.ToolProxy(box, pp.Plane(), stiffness=500, texture_amplitude=1e-4, texture_wavelength=4e-3)
+        force = pressed(proxy, 0.007).force[2]  # carved 0 to 2 amplitudes deep
+        self.assertLess(force, 1.5 - 1e-3)
+        self.assertGreater(force, 1.5 - 500 * 2e-4)
+        with self.assertRaisesRegex(pp.Error, "wavelength"):
+            pp.ToolProxy(box, pp.Plane(), texture_wavelength=0)
+
     def test_a_mesh_is_a_tool(self):
         corners = 0.01 * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
         faces = np.array([(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),

@@ -58,7 +58,8 @@ TEST_F(ToolStep, KeepsTheContractOnWhatMovesAndStands) {
   PlaneField floor({.reanchor_reach = 0.02});
   const UnionField all({&ball, &floor});
   for (const char* name : {"box:20x30x10", "capsule:50x4", "gripper:6x12x30"}) {
-    ToolProxy proxy(std::make_shared<const Tool>(Tool::from_text(name, 4e-3)));
+    ToolProxy proxy(std::make_shared<const Tool>(Tool::from_text(name, 4e-3)),
+                    {.texture = {.amplitude = 1e-4}});
     for (int i = 0; i < 3000; ++i) {
       if (i % 50 == 0) {
         const double height = -0.03 + 0.005 * (i / 50 % 3);

@@ -57,21 +57,10 @@ TEST(ViewSettings, PresentValuesAreWithinTheirBounds) {
   }
 }
 
-TEST(ViewSettings, OfAToolThatTurnsThereIsNoTextureAndNoPaper) {
-  ViewScope scope = kAll;
-  scope.turns = true;
-  EXPECT_NE(find(list_settings({}, scope), "friction"), nullptr);
-  for (const char* key : {"texture", "wavelength"}) {
-    EXPECT_NE(find(list_settings({}, kAll), key), nullptr) << key;
-    EXPECT_EQ(find(list_settings({}, scope), key), nullptr) << key;
-  }
+TEST(ViewSettings, OfAToolThatTurnsThereIsNoPaper) {
   const std::vector<std::string> names = preset_names(true);
   EXPECT_EQ(std::ranges::count(names, "paper"), 0);
   EXPECT_EQ(names.size() + 1, preset_names().size());
-  for (const std::string& name : names) {
-    const ContactSettings feel = preset({}, name, scope).feel;
-    EXPECT_EQ(feel.texture.amplitude, 0) << name;
-  }
 }
 
 TEST(ViewSettings, OfCloudsThatStandStillThereIsNoTimeToSet) {

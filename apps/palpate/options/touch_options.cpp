@@ -51,8 +51,8 @@ void add_material_options(OptionTable& table, TouchChoices& o) {
             number("between 0 and 1", [](double x) { return x >= 0 && x <= 1; }),
             "fraction of the friction, 0 to 1, at the cloud's lowest intensity; rises to full "
             "friction at the highest");
-  table.add(proxy, proxy.texture.amplitude).only_for(kPoints);
-  table.add(proxy, proxy.texture.wavelength).only_for(kPoints);
+  table.add(proxy, proxy.texture.amplitude);
+  table.add(proxy, proxy.texture.wavelength);
 }
 
 std::vector<std::string> list_of(const std::string& text) {

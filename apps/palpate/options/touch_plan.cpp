@@ -60,8 +60,6 @@ void check_tool(const TouchPlan& plan) {
   const SurfacePlan& surface = plan.surface;
   require(surface.field.tool_radius == 0,
           "--tool-radius is of a point, and a --tool's shape is its own; remove one of them");
-  require(surface.proxy.texture.amplitude == 0,
-          "texture is not rendered with a --tool that turns; remove texture_amplitude, or --tool");
   require(!surface.paper, "--preset paper uses a point tool; remove --tool");
   require(!plan.ros.bridge.robot,
           "--robot follows a point, and does not know where a --tool is; remove one of them");

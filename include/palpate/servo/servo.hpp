@@ -166,7 +166,7 @@ struct ServoOptions {
   FieldOptions field = {};
   ProxyOptions proxy = {};
   /// What the hand holds; null: a point. Experimental. A device that measures its orientation turns
-  /// it, and gets torque and grip where it renders them; texture is not rendered.
+  /// it, and gets torque and grip where it renders them.
   std::shared_ptr<const Tool> tool = {};
   /// ToolOptions::gyration. Where torque is rendered, 0 stands for the largest up to the tool's
   /// with which turns are stable on the device, at least 10 mm at the hand (docs/method.md 8.1).

@@ -16,6 +16,7 @@ namespace palpate {
 struct ToolOptions {
   double stiffness = 500;  ///< K of forces and of the grip, N/m
   Friction friction = {};  ///< of every contact (docs/method.md 4.1)
+  Texture texture = {};    ///< under every sample (docs/method.md 4.2)
   /// g, m, 1e-4 to 10: turns have the stiffness K g^2 (N m/rad). 0: the tool's radius of gyration,
   /// at least 10 mm and at most half of its extent (1 mm for a point).
   double gyration = 0;
@@ -64,7 +65,7 @@ struct ToolContact {
 /// One proxy belongs to one thread. step() and reset() never allocate, lock, throw or call the
 /// system. Input that is not finite or in range (an orientation whose length is
 /// not about 1) latches a fault: a zero wrench until reset(). More than half a turn
-/// between hand and proxy is taken the short way round. Texture is not rendered.
+/// between hand and proxy is taken the short way round.
 class ToolProxy {
  public:
   /// @throws Error without a tool, and when an option is not finite or out of its range.
@@ -87,10 +88,10 @@ class ToolProxy {
   /// The same of a field that serves all samples alike.
   [[nodiscard]] ToolContact step(const Field& field, const Pose& hand, double dt) noexcept;
 
-  /// Another stiffness of forces and turns, N/m, finite and not below 0, and another friction, in
-  /// the range that the constructor takes, from the next step on; in contact stiffness changes as
-  /// the energy tank allows (docs/method.md 3.5).
-  void change(double stiffness, const Friction& friction) noexcept;
+  /// Another stiffness of forces and turns, N/m, finite and not below 0, another friction and
+  /// texture, in the range that the constructor takes, from the next step on; in contact stiffness
+  /// changes as the energy tank allows (docs/method.md 3.5).
+  void change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
   /// Where the tool is. At the origin until the first step or reset().
   [[nodiscard]] const Pose& pose() const noexcept;
