@@ -167,8 +167,10 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& opt
     const Bytes bytes = read_bytes(path);
     const Input input{bytes.span(), piped ? "standard input" : path.string(), options,
                       path.parent_path() / ".", &faces};
-    std::string format = read_input(input).format;
-    return triangles_of(input, faces, std::move(format));
+    CloudFile file = read_input(input);
+    TriangleMesh mesh = triangles_of(input, faces, std::move(file.format));
+    mesh.facts = file.mesh.value_or(MeshFacts());
+    return mesh;
   } catch (const std::bad_alloc&) {
     throw Error(path.string() + ": not enough memory to read it. Simplify the mesh first.");
   }

@@ -151,6 +151,28 @@ TEST(ToolProgram, AMeshIsHeldAsTheShapeThatItIs) {
               Eigen::Vector3d(10, 15, 5).norm() * 1e-2, 1e-9);
 }
 
+// A box with a face twice, and a face without an area.
+TEST(ToolProgram, SaysWhichFacesOfAMeshAreLeftOut) {
+  Shell shell;
+  test::TestMesh box = test::box_mesh(Eigen::Vector3d(10, 15, 5));
+  box.faces.push_back(box.faces.front());
+  box.faces.push_back({0, 1, 1});
+  shell.write("part.stl", test::as_stl(box));
+  for (const char* command : {"info", "touch synthetic:torus --duration 0.1"}) {
+    const Outcome outcome =
+        shell.run(fmt::format("{} --tool mesh:part.stl --json a.json", command));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("1 faces of the mesh left out, which have no area"));
+    EXPECT_THAT(outcome.out, HasSubstr("1 faces of the mesh left out, which are there twice"));
+    const Json report = Json::parse(shell.read("a.json"));
+    const Json tool = report.is_array() ? report[0]["tool"] : report["tool"];
+    EXPECT_EQ(tool["faces_dropped"], 1) << command;
+    EXPECT_EQ(tool["faces_duplicate"], 1) << command;
+  }
+  shell.write("part.stl", box_stl());
+  EXPECT_THAT(shell.run("info --tool mesh:part.stl").out, Not(HasSubstr("left out")));
+}
+
 TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   Shell shell;
   shell.write("large.ply", test::as_ply(test::box_mesh(Eigen::Vector3d(30, 20, 10))));

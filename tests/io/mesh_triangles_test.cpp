@@ -75,6 +75,17 @@ TEST(MeshTriangles, APolygonIsCoveredFromACornerThatSeesAllOfIt) {
   EXPECT_THAT(refused_mesh(written(folder, "comb.obj", comb)), HasSubstr("with triangles alone"));
 }
 
+TEST(MeshTriangles, WhatIsLeftOutIsCounted) {
+  const test::Folder folder;
+  const std::string faces =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 nan 1\nf 1 2 3\nf 2 3 1\nf 1 2 2\nf 1 2 4\n";
+  const TriangleMesh mesh = read_mesh(written(folder, "a.obj", faces));
+  EXPECT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.facts.triangles, 1u);
+  EXPECT_EQ(mesh.facts.duplicates, 1u);
+  EXPECT_EQ(mesh.facts.dropped, 2u);
+}
+
 TEST(MeshTriangles, OfAFileWithoutFacesThereAreNone) {
   const test::Folder folder;
   EXPECT_THAT(refused_mesh(written(folder, "a.obj", "v 0 0 0\nv 1 0 0\n")),
@@ -82,7 +93,7 @@ TEST(MeshTriangles, OfAFileWithoutFacesThereAreNone) {
   EXPECT_THAT(refused_mesh(written(folder, "a.xyz", "0 0 0\n1 0 0\n")),
               HasSubstr("no faces in it"));
   EXPECT_THAT(refused_mesh(written(folder, "a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n")),
-              HasSubstr("no faces in it"));
+              HasSubstr("none of the 1 faces is finite and has an area"));
 }
 
 }  // namespace

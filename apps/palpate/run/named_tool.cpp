@@ -133,6 +133,7 @@ SampledTool NamedTool::sampled(double radius) const {
   SampledTool result{.tool = nullptr,
                      .name = plan_.text,
                      .unit = unit_,
+                     .mesh = mesh_.facts,
                      .radius = radius,
                      .turn_stiffness = plan_.turn_stiffness};
   if (plan_.spacing) {

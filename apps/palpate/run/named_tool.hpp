@@ -19,6 +19,7 @@ struct SampledTool {
   std::shared_ptr<const Tool> tool;
   std::string name;       ///< as it was named
   std::string unit = {};  ///< of a mesh, in words; empty: as it was named
+  MeshFacts mesh = {};    ///< of its faces
   double spacing = 0;     ///< between samples, at most, m
   double radius = 0;      ///< R of what it touches, m; 0: unknown
   bool cornered = false;  ///< no spacing leaves few enough: they are corners and creases

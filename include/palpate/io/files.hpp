@@ -101,6 +101,7 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices{};                ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< indices of vertices
   std::string format{};                                   ///< such as "STL, binary"
+  MeshFacts facts{};                                      ///< which faces of the file they are
 };
 
 /// Reads the faces of PLY, OBJ, STL, glTF and GLB, as Tool::mesh() takes them. Left out is what

@@ -198,9 +198,16 @@ CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::
   return file;
 }
 
+void require_faces(const Input& input, const Mesh& mesh, const FaceSurvey& survey) {
+  if (!survey.used.empty()) return;
+  fail(input, fmt::format("none of the {} faces is finite and has an area", mesh.ends.size()),
+       "Check how the file was generated, and its units and scale");
+}
+
 // The faces of use to who wants them instead of points.
 CloudFile hand_over(const Input& input, const Mesh& mesh, const FaceSurvey& survey,
                     std::string format) {
+  require_faces(input, mesh, survey);
   Mesh& wanted = *input.faces;
   wanted.vertices = mesh.vertices;
   for (const std::size_t i : survey.used) {
@@ -234,10 +241,7 @@ std::span<const std::uint32_t> Mesh::face(std::size_t i) const {
 
 CloudFile sample_faces(const Input& input, const Mesh& mesh, std::string format) {
   FaceSurvey survey = survey_faces(input, mesh);
-  if (survey.used.empty()) {
-    fail(input, fmt::format("none of the {} faces is finite and has an area", mesh.ends.size()),
-         "Check how the file was generated, and its units and scale");
-  }
+  require_faces(input, mesh, survey);
   if (input.faces != nullptr) return hand_over(input, mesh, survey, std::move(format));
   return sample(input, mesh, survey, std::move(format));
 }
