@@ -17,17 +17,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// An STL file in millimetres of a box of 20 x 30 x 10, around its handle.
-std::string box_stl() {
-  return test::as_stl(test::box_mesh(Eigen::Vector3d(10, 15, 5)));
-}
-
 double largest(const std::vector<std::string>& cells) {
   double most = 0;
   for (const std::string& cell : cells) most = std::max(most, std::abs(number(cell)));
   return most;
 }
-
 TEST(ToolProgram, ExploresWithABoxAndTellsPoseAndWrench) {
   Shell shell;
   const Outcome outcome = shell.run(
@@ -134,45 +128,6 @@ TEST(ToolProgram, SameInputTwiceGivesTheSameLogBitForBit) {
   EXPECT_TRUE(a == without_times(shell, "b.csv"));
 }
 
-TEST(ToolProgram, AMeshIsHeldAsTheShapeThatItIs) {
-  Shell shell;
-  shell.write("part.stl", box_stl());
-  const std::string rest = " --duration 1 --json report.json --log ";
-  const Outcome mesh = shell.run("touch synthetic:torus --tool mesh:part.stl" + rest + "a.csv");
-  ASSERT_EQ(mesh.code, 0) << mesh.err;
-  EXPECT_THAT(mesh.out, HasSubstr("taken as millimetres"));
-  const Json report = Json::parse(shell.read("report.json"));
-  EXPECT_NEAR(report["tool"]["extent_m"].get<double>(), Eigen::Vector3d(10, 15, 5).norm() * 1e-3,
-              1e-9);
-  EXPECT_GT(report["largest_force_N"].get<double>(), 0.1);
-  EXPECT_EQ(shell.run("touch synthetic:torus --tool mesh:part.stl,unit=0.01" + rest + "b.csv").code,
-            0);
-  EXPECT_NEAR(Json::parse(shell.read("report.json"))["tool"]["extent_m"].get<double>(),
-              Eigen::Vector3d(10, 15, 5).norm() * 1e-2, 1e-9);
-}
-
-// A box with a face twice, and a face without an area.
-TEST(ToolProgram, SaysWhichFacesOfAMeshAreLeftOut) {
-  Shell shell;
-  test::TestMesh box = test::box_mesh(Eigen::Vector3d(10, 15, 5));
-  box.faces.push_back(box.faces.front());
-  box.faces.push_back({0, 1, 1});
-  shell.write("part.stl", test::as_stl(box));
-  for (const char* command : {"info", "touch synthetic:torus --duration 0.1"}) {
-    const Outcome outcome =
-        shell.run(fmt::format("{} --tool mesh:part.stl --json a.json", command));
-    ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_THAT(outcome.out, HasSubstr("1 faces of the mesh left out, which have no area"));
-    EXPECT_THAT(outcome.out, HasSubstr("1 faces of the mesh left out, which are there twice"));
-    const Json report = Json::parse(shell.read("a.json"));
-    const Json tool = report.is_array() ? report[0]["tool"] : report["tool"];
-    EXPECT_EQ(tool["faces_dropped"], 1) << command;
-    EXPECT_EQ(tool["faces_duplicate"], 1) << command;
-  }
-  shell.write("part.stl", box_stl());
-  EXPECT_THAT(shell.run("info --tool mesh:part.stl").out, Not(HasSubstr("left out")));
-}
-
 TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   Shell shell;
   shell.write("large.ply", test::as_ply(test::box_mesh(Eigen::Vector3d(30, 20, 10))));
@@ -198,38 +153,6 @@ TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   EXPECT_THAT(refusal("ball:4 --stiffness 1 --turn-stiffness 1000"),
               HasSubstr("--turn-stiffness 1000 is out of range where the stiffness is 1 N/m"));
   EXPECT_THAT(shell.run("touch synthetic:torus --turn-stiffness 1").err, HasSubstr("add --tool"));
-}
-
-TEST(ToolProgram, AdviceOfAMeshInMillimetresWorksWhenItIsFollowed) {
-  Shell shell;
-  shell.write("large.ply", test::as_ply(test::box_mesh(Eigen::Vector3d(30, 20, 10))));
-  const Outcome refused = shell.run("info --tool mesh:large.ply");
-  EXPECT_EQ(refused.code, 1);
-  const std::string advice = "mesh:large.ply,unit=0.001";
-  ASSERT_THAT(refused.err, HasSubstr("give " + advice));
-  EXPECT_EQ(shell.run("info --tool " + advice).code, 0);
-}
-
-// A rugged sheet: all of its vertices are corners.
-TEST(ToolProgram, AMeshOfCreasesAloneIsSaidToBeOne) {
-  std::string obj;
-  constexpr int kSide = 30;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const int height = 31 * i * i % 7;
-    obj += fmt::format("v {} {} {}\n", 2 * (i / kSide), 2 * (i % kSide), height);
-  }
-  for (int i = 0; i + 1 < kSide; ++i) {
-    for (int k = 1; k < kSide; ++k) {
-      const int a = kSide * i + k;
-      obj += fmt::format("f {} {} {}\nf {} {} {}\n", a, a + 1, a + kSide, a + 1, a + kSide + 1,
-                         a + kSide);
-    }
-  }
-  Shell shell;
-  shell.write("rugged.obj", obj);
-  const Outcome outcome = shell.run("info --tool mesh:rugged.obj");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("most are at corners and creases of the mesh"));
 }
 
 TEST(ToolProgram, OnACameraTheRadiusIsNotKnown) {

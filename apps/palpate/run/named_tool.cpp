@@ -46,6 +46,31 @@ Box box_around(const Tool& tool) {
   return box;
 }
 
+std::string words_of(const Eigen::Vector3d& size) {
+  return fmt::format("{} x {} x {}", length(size.x()), length(size.y()), length(size.z()));
+}
+
+// Refuses a mesh that is larger than what a hand holds, or lies farther from its handle, and says
+// which. `box`: m, around the vertices; `unit`: of the file, m.
+void check_reach(const MeshName& name, double unit, const Box& box) {
+  const double farthest = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()).maxCoeff();
+  if (farthest <= Tool::kLongest) return;
+  const bool large = 0.5 * box.size().maxCoeff() > Tool::kLongest;
+  const bool millimetres = unit == 1 && farthest <= 1000 * Tool::kLongest;
+  const std::string mesh = std::string(kMeshTool) + name.path;
+  const std::string remedy =
+      millimetres ? mesh + ",unit=0.001 if it is in millimetres"
+                  : mesh + ",unit=METRES, the metres of a unit of the file, if it is another";
+  throw Error(fmt::format(
+      "--tool: {} {} if a unit of the file is {}; nobody holds what reaches more than {}: give "
+      "{}{}",
+      name.path,
+      large ? "is " + words_of(box.size())
+            : fmt::format("reaches {} from its origin, where the handle is,", length(farthest)),
+      length(unit), length(Tool::kLongest), remedy,
+      large ? ", or a smaller part" : ", or move it to its origin"));
+}
+
 }  // namespace
 
 double SampledTool::gyration(double stiffness) const {
@@ -112,16 +137,9 @@ NamedTool::NamedTool(ToolPlan plan) : plan_(std::move(plan)) {
   const double unit = name.unit.value_or(session::likely_unit(mesh_.format, size.maxCoeff()));
   for (Eigen::Vector3d& vertex : mesh_.vertices) vertex *= unit;
   const bool guessed = !name.unit && unit != 1;
-  unit_ =
-      fmt::format("{}{}, {} x {} x {}", mesh_.format, guessed ? session::kTakenAsMillimetres : "",
-                  length(unit * size.x()), length(unit * size.y()), length(unit * size.z()));
-  const Box box = box_around(mesh_.vertices);
-  const double farthest = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs()).maxCoeff();
-  if (farthest <= Tool::kLongest) return;
-  throw Error(fmt::format(
-      "--tool: {} reaches {} from its origin, where the handle is; nobody holds more than {}: give "
-      "{}{},unit=0.001 if it is in millimetres, or move it to its origin",
-      name.path, length(farthest), length(Tool::kLongest), kMeshTool, name.path));
+  unit_ = fmt::format("{}{}, {}", mesh_.format, guessed ? session::kTakenAsMillimetres : "",
+                      words_of(unit * size));
+  check_reach(name, unit, box_around(mesh_.vertices));
 }
 
 Tool NamedTool::with_spacing(double spacing) const {
