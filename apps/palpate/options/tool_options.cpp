@@ -71,7 +71,8 @@ void add_tool_shape(OptionTable& table, ToolPlan& tool) {
       [&tool](const std::string& text) { tool.text = checked_tool(text); }, kToolHelp);
   table
       .add("--tool-spacing", tool.spacing, "METRES",
-           number("between 1e-6 and 1 m", [](double x) { return x >= kLeastSpacing && x <= 1; }),
+           number("between 1e-6 and 1 m",
+                  [](double x) { return x >= kLeastSpacing && x <= kLargestSpacing; }),
            "how far the samples of a --tool's surface are apart (default: half of the support "
            "radius R of what is touched, more where that would be over 500 samples)")
       .only_for(kTurns);

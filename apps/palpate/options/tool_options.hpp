@@ -9,7 +9,9 @@ namespace palpate::app {
 
 // N m/rad: no device's; a table's leg does not give way to a hand's turn by more (judgement)
 inline constexpr double kStiffestTurn = 1e4;
-inline constexpr double kLeastSpacing = 1e-6;  // m, of --tool-spacing (judgement)
+// m, of --tool-spacing (judgement)
+inline constexpr double kLeastSpacing = 1e-6;
+inline constexpr double kLargestSpacing = 1;
 
 class OptionTable;
 

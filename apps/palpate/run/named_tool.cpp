@@ -147,6 +147,32 @@ Tool NamedTool::with_spacing(double spacing) const {
   return Tool::mesh(mesh_.vertices, mesh_.triangles, spacing);
 }
 
+// What has too many samples is told a spacing that leaves few enough, at most twice as large as is
+// needed.
+Tool NamedTool::as_spaced(double spacing) const {
+  try {
+    return with_spacing(spacing);
+  } catch (const Error&) {
+    for (double wider = 2 * spacing; wider <= kLargestSpacing; wider *= 2) {
+      if (!is_sampled(wider)) continue;
+      throw UsageError(
+          fmt::format("--tool-spacing (tool_spacing of [tool]): {} m leaves more than {} samples "
+                      "of {}; give {} or more",
+                      spacing, grouped(Tool::kMostSamples), plan_.text, wider));
+    }
+    throw;
+  }
+}
+
+bool NamedTool::is_sampled(double spacing) const {
+  try {
+    (void)with_spacing(spacing);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 SampledTool NamedTool::sampled(double radius) const {
   SampledTool result{.tool = nullptr,
                      .name = plan_.text,
@@ -156,7 +182,7 @@ SampledTool NamedTool::sampled(double radius) const {
                      .turn_stiffness = plan_.turn_stiffness};
   if (plan_.spacing) {
     result.spacing = *plan_.spacing;
-    result.tool = std::make_shared<const Tool>(with_spacing(result.spacing));
+    result.tool = std::make_shared<const Tool>(as_spaced(result.spacing));
     return result;
   }
   const double area = surface_of(mesh_.triangles.empty() ? box_around(with_spacing(Tool::kLongest))

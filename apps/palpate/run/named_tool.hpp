@@ -55,7 +55,7 @@ class NamedTool {
 
   /// Samples half of `radius` apart (m, R of what it touches; 0: it is not known yet), or as far as
   /// kMostSamples allow, unless the plan says how far.
-  /// @throws Error as Tool does.
+  /// @throws Error as Tool does, UsageError where the plan's spacing leaves too many samples.
   [[nodiscard]] SampledTool sampled(double radius) const;
 
   /// Samples that a step of 1 ms bears (ToolProxy::max_evaluations()).
@@ -63,6 +63,8 @@ class NamedTool {
 
  private:
   [[nodiscard]] Tool with_spacing(double spacing) const;
+  [[nodiscard]] bool is_sampled(double spacing) const;
+  [[nodiscard]] Tool as_spaced(double spacing) const;
 
   ToolPlan plan_;
   TriangleMesh mesh_;
