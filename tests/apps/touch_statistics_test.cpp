@@ -1,5 +1,6 @@
 #include "apps/palpate/run/touch_statistics.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,8 @@ namespace palpate::app {
 namespace {
 
 using Eigen::Vector3d;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 ServoState step(double time, const Vector3d& hip, const Vector3d& force) {
   ServoState result;
@@ -122,7 +125,7 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
   each.field_notes = FieldNote::thinned;
   statistics.add(each);
   std::string names;
-  for (const CountedNote& note : statistics.notes()) {
+  for (const CountedNote& note : statistics.notes(false)) {
     EXPECT_EQ(note.steps, 1u);
     names += std::string(note.name) + " ";
   }
@@ -138,7 +141,24 @@ TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
     each.field_notes = each.field_notes | static_cast<FieldNote>(1u << bit);
   }
   statistics.add(each);
-  EXPECT_EQ(statistics.notes().size(), 16u);
+  EXPECT_EQ(statistics.notes(false).size(), 16u);
+}
+
+// A tool is not in one place, and its hand need not have gone far.
+TEST(TouchStatistics, NotesOfAToolAreTrueOfATool) {
+  TouchStatistics statistics;
+  ServoState each;
+  each.contact.notes = ContactNote::sweep_truncated | ContactNote::fell;
+  each.field_notes = FieldNote::behind;
+  statistics.add(each);
+  const std::vector<CountedNote> point = statistics.notes(false);
+  const std::vector<CountedNote> tool = statistics.notes(true);
+  ASSERT_EQ(tool.size(), 3u);
+  EXPECT_THAT(point[0].text, HasSubstr("the hand moved too far"));
+  EXPECT_THAT(tool[0].text, HasSubstr("over an edge"));
+  EXPECT_STREQ(tool[1].text, point[1].text);
+  EXPECT_THAT(point[2].text, StartsWith("the tool was behind"));
+  EXPECT_THAT(tool[2].text, StartsWith("a part of the tool was behind"));
 }
 
 }  // namespace

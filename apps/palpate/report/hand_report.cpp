@@ -149,9 +149,9 @@ void add_compared(Report& report, const MeasuredForces& forces) {
       d.rms, d.median, d.direction, d.only_measured, d.only_rendered);
 }
 
-void add_notes(Report& report, const TouchStatistics& s) {
+void add_notes(Report& report, const TouchStatistics& s, bool of_tool) {
   Json& notes = report.data["notes"] = Json::array();
-  for (const CountedNote& each : s.notes()) {
+  for (const CountedNote& each : s.notes(of_tool)) {
     report.item("notes", {"notes", Mark::warning}, "{steps} ({_share} of steps): {text}",
                 each.steps, share(each.steps, s.steps()), each.text);
     notes.back()["note"] = each.name;
@@ -217,7 +217,7 @@ Report report_of(const HandReport& hand, const std::string& title) {
   if (hand.unguarded != nullptr) add_unguarded(report, *hand.unguarded);
   add_forces(report, hand);
   if (hand.compared != nullptr) add_compared(report, *hand.compared);
-  add_notes(report, s);
+  add_notes(report, s, hand.hand.tool != nullptr);
   report.data["advice"] = advice(hand);
   for (const std::string& sentence : advice(hand)) report.note({"advice", Mark::warning}, sentence);
   if (!hand.unlogged.empty()) report.row({"log", Mark::error}, "{log_problem}", hand.unlogged);

@@ -18,6 +18,7 @@ struct Note {
   const char* text;
   ContactNote contact;
   FieldNote field;
+  const char* of_tool = nullptr;  // the text where it is another for a tool that turns
 
   [[nodiscard]] bool is_in(const ServoState& step) const {
     return has(step.contact.notes, contact) || has(step.field_notes, field);
@@ -28,7 +29,9 @@ constexpr std::array<Note, 17> kNotes = {{
     {"sweep_truncated",
      "the hand moved too far in one step, so the proxy caught up over the next steps; move slower "
      "or use shorter steps",
-     ContactNote::sweep_truncated, FieldNote::none},
+     ContactNote::sweep_truncated, FieldNote::none,
+     "the tool could not follow the hand within one step, as with a fast hand or over an edge, so "
+     "it went on in the next steps; move slower or press less deep"},
     {"lost",
      "no surface was found near the proxy, so the force faded; a larger --radius closes holes",
      ContactNote::lost, FieldNote::none},
@@ -82,7 +85,9 @@ constexpr std::array<Note, 17> kNotes = {{
      ContactNote::none, FieldNote::work_spent},
     {"behind",
      "the tool was behind the surface that a camera sees; the unseen side exerts no force",
-     ContactNote::none, FieldNote::behind},
+     ContactNote::none, FieldNote::behind,
+     "a part of the tool was behind the surface that a camera sees; there the unseen side exerts "
+     "no force"},
     {"not_loaded",
      "the tool was where the cloud was not prepared yet, so there was no surface; move more slowly "
      "until all of it is",
@@ -129,10 +134,12 @@ void TouchStatistics::add(const ServoState& step) {
   last_ = step;
 }
 
-std::vector<CountedNote> TouchStatistics::notes() const {
+std::vector<CountedNote> TouchStatistics::notes(bool of_tool) const {
   std::vector<CountedNote> counted;
   for (std::size_t i = 0; i < kNotes.size(); ++i) {
-    if (notes_[i] > 0) counted.push_back({kNotes[i].name, kNotes[i].text, notes_[i]});
+    const Note& note = kNotes[i];
+    const char* const text = of_tool && note.of_tool ? note.of_tool : note.text;
+    if (notes_[i] > 0) counted.push_back({note.name, text, notes_[i]});
   }
   return counted;
 }

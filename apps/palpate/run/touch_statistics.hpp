@@ -51,8 +51,9 @@ class TouchStatistics {
   /// The integral of F . dh along the path by trapezoids, J, as if forces changed without steps. It
   /// shows whether the surface is passive, not whether a device is.
   [[nodiscard]] double path_energy() const { return path_energy_; }
-  /// Notes of contacts and of the field, counted.
-  [[nodiscard]] std::vector<CountedNote> notes() const;
+  /// Notes of contacts and of the field, counted. `of_tool`: of a hand that holds a tool that
+  /// turns.
+  [[nodiscard]] std::vector<CountedNote> notes(bool of_tool) const;
   /// Steps that the proxy could not take.
   [[nodiscard]] std::size_t faults() const { return faults_; }
   /// Quantiles of computing times to 5 %, and the exact maximum; zero without steps.
