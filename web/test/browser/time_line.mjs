@@ -75,3 +75,13 @@ test("on a phone the time line has its row", () =>
     assert.ok(box.width > 120, `${box.width} pixels for the slider`);
     await picture(page, "time-line-phone");
   }));
+
+// WebGL has no pictures without a height, and a window can be so low that all else would fill it.
+for (const [name, width] of [["wide", 900], ["narrow", 390]]) {
+  test(`in a low window that is ${name} the picture keeps a height`, () =>
+    withRecording({ viewport: { width, height: 300 }, reducedMotion: "reduce" }, async (page) => {
+      const box = await page.locator("#view").boundingBox();
+      assert.ok(box.height > 90, `${box.height} pixels for the picture`);
+      await picture(page, `low-${name}`);
+    }));
+}
