@@ -54,7 +54,8 @@ bool ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const
 // holds it until it has been outside: on a cloud it would be held by both sides of a surface.
 void ToolProxy::Inside::begin(const ToolSurface& surface, const Pose& hand, bool outside,
                               ToolContact& contact) noexcept {
-  if (outside && !surface.is_across(Descent::kOutside * descent_.gaps().radius())) {
+  const double valleys = 2 * options_.texture.amplitude;  // they are below the planes of points
+  if (outside && !surface.is_across(Descent::kOutside * descent_.gaps().radius() + valleys)) {
     state_ = State::begun;
     return;
   }
