@@ -49,7 +49,7 @@ ros::RobotGuide::Answer old_answer(const ServoState& state) {
   const bool told = !has(state.field_notes, FieldNote::no_surface | FieldNote::behind) &&
                     !has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged);
   if (!told) return {.reason = "its notes"};
-  return {.target = state.contact.proxy};
+  return {.target = state.tool};
 }
 
 class Judge {
@@ -68,9 +68,9 @@ class Judge {
     }
     if (!answer.reason.empty()) waits_[std::string(answer.reason)] += kTicksALook * kTick;
     note_patience(answer, state, now);
-    if (answer.target) told(*answer.target, now);
+    if (answer.target) told(answer.target->position, now);
     if (answer.retreats) {
-      went_back(*answer.target, now);
+      went_back(answer.target->position, now);
     } else {
       back_.reset();
     }
@@ -79,9 +79,10 @@ class Judge {
       return;
     }
     if (last_)
-      score_.hand_moves = std::max(
-          score_.hand_moves, 1e3 * ((*answer.target - *last_).norm() - (state.hip - hip_).norm()));
-    last_ = answer.target;
+      score_.hand_moves =
+          std::max(score_.hand_moves,
+                   1e3 * ((answer.target->position - *last_).norm() - (state.hip - hip_).norm()));
+    last_ = answer.target->position;
     hip_ = state.hip;
   }
 
@@ -195,7 +196,7 @@ Score play(const Trial& trial, Rule rule) {
         },
         SimulatedStreamOptions{.latency = watcher.delay + 0.01, .lead = 0.01});
   }
-  ros::RobotGuide guide(scene, {.preset = "crisp"}, trial.tool_radius);
+  ros::RobotGuide guide(scene, {.preset = "crisp"}, ros::RobotShape(trial.tool_radius));
   SceneField field(scene, {.tool_radius = trial.tool_radius});
   Proxy proxy({.stiffness = kStiffness});
   ServoState state;
@@ -204,6 +205,7 @@ Score play(const Trial& trial, Rule rule) {
     for (Feed& feed : feeds) feed.stream->advance(now);
     field.update(now, trial.hip[i], proxy.position());
     state.contact = proxy.step(field, trial.hip[i], kTick);
+    state.tool.position = state.contact.proxy;
     state.field_notes = field.notes();
     state.step = i + 1;
     state.time = now;

@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr Reason kMoved = "a surface moved over the tool";
+constexpr Reason kLags = "the tool does not keep up with the hand";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
@@ -57,46 +58,51 @@ std::vector<const Source*> sources_of(const Scene& scene, const std::vector<std:
 
 }  // namespace
 
-RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options,
-                       double tool_radius)
-    : options_(options), tool_radius_(tool_radius), sources_(sources_of(scene, options.sources)) {
-  for (const Source* source : sources_) (void)source->seen({}, 0);  // requests frames
+RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, RobotShape shape)
+    : options_(options), shape_(std::move(shape)), sources_(sources_of(scene, options.sources)) {
+  for (const Source* source : sources_) (void)source->seen(Ball{}, 0);  // requests frames
 }
 
 // The highest answer of the sources counts, in the order of Seen::Verdict. But free yields to solid
 // where its frame is older than kStays, or than the moment when the solid came. `memory`: of that
 // moment, of the tool or the robot, which stay where they are for long enough; it is renewed. The
-// hand and the path bring copies.
-RobotGuide::Verdict RobotGuide::judge(const Vector3d& x, double now, Memory& memory) const {
+// hand and the path bring copies. Where a part of what is solid is not seen, all of it counts as
+// not seen: one camera has to show all.
+RobotGuide::Verdict RobotGuide::judge(const Pose& pose, double now, Memory& memory) const {
+  const std::vector<Ball> balls = shape_.at(pose);
   const auto rank = [](const Seen& seen) {
     return std::tuple(seen.verdict, -seen.behind, -seen.age);
   };
   Verdict best;
   Verdict solid;
-  Memory last = (x - memory.where).norm() <= kJoin ? memory : Memory{};
+  Memory last = shape_.way(memory.where, pose) <= kJoin ? memory : Memory{};
   for (const Source* source : sources_) {
-    std::optional<Seen> seen = source->seen({x, tool_radius_}, now);
+    std::optional<Seen> seen = source->seen(balls, now);
     if (!seen && !source->points()) seen = {.verdict = Seen::Verdict::old};  // nothing came yet
     if (!seen) continue;
     if (best.source == nullptr || rank(*seen) > rank(best.seen)) best = {source, *seen};
     if (seen->verdict != Seen::Verdict::solid) continue;
     const double stamp = now - seen->age;
     if (seen->came) {
-      last = stamp > last.came ? Memory{source, stamp, x} : Memory{last.source, last.came, x};
+      last = stamp > last.came ? Memory{source, stamp, pose} : Memory{last.source, last.came, pose};
       memory = last;
     }
     if (solid.source == nullptr || last.source == source) solid = {source, *seen};
   }
   const bool outdated = now - best.seen.age < last.came || best.seen.age > kStays;
-  return best.free() && solid.source != nullptr && outdated ? solid : best;
+  Verdict verdict = best.free() && solid.source != nullptr && outdated ? solid : best;
+  if (verdict.solid()) verdict.seen.verdict = std::min(verdict.seen.verdict, verdict.seen.rest);
+  return verdict;
 }
 
 // Largest lag of the rendered surface behind the seen one, m. The seen one moves on while a frame
 // is prepared; the rendered one takes an interval to get there, and waits if the next frame is
-// late. In one frame the lag grows by at most one frame's motion; more has another cause.
+// late. In one frame the lag grows by at most one frame's motion; more has another cause. A wide
+// tool's drift is no surface's.
 double RobotGuide::allowed_ahead(const ServoState& state, const Verdict& proxy, double dt) {
   const double interval = proxy.source->state().interval;
-  const double speed = state.contact.touching ? state.contact.drift.dot(proxy.seen.towards) : 0;
+  const bool moved = state.contact.touching && !shape_.is_wide();
+  const double speed = moved ? state.contact.drift.dot(proxy.seen.towards) : 0;
   const double before = interval > 0 ? speed_ * std::max(1 - dt / (2 * interval), 0.0) : 0;
   speed_ = std::max({speed, before, 0.0});
   const double lag = speed_ * (proxy.seen.age + 2 * interval);
@@ -105,28 +111,43 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Verdict& proxy, 
 
 // Is the straight path from the robot to the target seen to be free? A surface may have come over
 // the robot in one frame, as far as it does slowly: as near to it the path may be so deep in it.
-bool RobotGuide::may_go_to(const Vector3d& target, double now) const {
-  if (!robot_.position) return true;
-  const Vector3d path = target - *robot_.position;
+bool RobotGuide::may_go_to(const Pose& target, double now) const {
+  if (!robot_.pose) return true;
+  const double way = shape_.way(*robot_.pose, target);
   // Balls half a radius apart leave 3 % of the radius between them.
-  const double step = std::max(kPathStep, tool_radius_ / 2);
+  const double step = std::max(kPathStep, shape_.thinnest() / 2);
   Memory memory = robot_.memory;
-  for (double gone = kPathStep; gone < path.norm(); gone += step) {
-    const Verdict verdict = judge(*robot_.position + gone * path.normalized(), now, memory);
+  for (double gone = kPathStep; gone < way; gone += step) {
+    const Pose there = RobotShape::between(*robot_.pose, target, gone / way);
+    const Verdict verdict = judge(there, now, memory);
     const bool leaves = gone <= kJump && verdict.solid() && verdict.seen.behind <= kJump;
     if (!verdict.free() && !leaves) return false;
   }
   return true;
 }
 
+// A tool that is lifted goes aside from the rays to its parts: is all of it in front then? It is
+// lifted farther where it is not quite.
+bool RobotGuide::comes_out(Pose& target, double now) const {
+  if (!shape_.is_wide()) return true;
+  for (int k = 0; k < kTries; ++k) {
+    Memory memory = tool_;
+    const Verdict verdict = judge(target, now, memory);
+    if (verdict.free()) return true;
+    if (!verdict.solid() || verdict.seen.behind > kJump) return false;
+    target.position += verdict.seen.lift * verdict.seen.towards;
+  }
+  return false;
+}
+
 RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pressed) {
   const double dt = std::clamp(now - std::exchange(looked_, now), 0.0, kLongestStep);
-  if (options_.hand) return follow(state.hip, now);
+  if (options_.hand) return follow({state.hip, state.orientation}, now);
   if (has(state.field_notes, FieldNote::tool_too_large)) {
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
-  const Verdict proxy = judge(state.contact.proxy, now, tool_);
+  const Verdict proxy = judge(state.tool, now, tool_);
   if (proxy.source == nullptr) return without_view(state, dt, pressed);
   // What a cloud has there may hold the tool later, whatever a camera sees.
   if (has(state.field_notes, FieldNote::not_loaded)) {
@@ -135,14 +156,16 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   }
   const double ahead = proxy.solid() ? proxy.seen.behind : 0;
   // Only a surface that the robot has followed may lag behind the seen one.
-  const bool lags = robot_.position && (follows_ || now - followed_ <= kFreeFor);
+  const bool lags = robot_.pose && (follows_ || now - followed_ <= kFreeFor);
   const double allowed = allowed_ahead(state, proxy, dt);
   const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
   if (proxy.solid() && !free) followed_ = -kNever;
   Memory memory = tool_;
-  note(free ? judge(state.hip, now, memory) : proxy, free, dt, pressed);
+  note(free ? judge({state.hip, state.orientation}, now, memory) : proxy, free, dt, pressed);
   if (!follows_) return wait(proxy, now, dt);
-  const Vector3d target = state.contact.proxy + proxy.seen.lift * proxy.seen.towards;
+  Pose target = state.tool;
+  target.position += proxy.seen.lift * proxy.seen.towards;
+  if (proxy.solid() && !comes_out(target, now)) return wait(proxy, now, dt);
   if (!pressed && !may_go_to(target, now)) return wait(proxy, now, dt);
   return follow(target, now - proxy.seen.age, ahead);
 }
@@ -170,9 +193,9 @@ void RobotGuide::note(const Verdict& hand, bool proxy_free, double dt, bool pres
   follows_ = proxy_free && (follows_ || may_start(pressed));
 }
 
-RobotGuide::Answer RobotGuide::follow(const Vector3d& target, double stamp, double ahead) {
+RobotGuide::Answer RobotGuide::follow(const Pose& target, double stamp, double ahead) {
   // It is where the tool is.
-  robot_ = {.position = target, .memory = tool_, .clear = stamp, .seen = looked_};
+  robot_ = {.pose = target, .memory = tool_, .clear = stamp, .seen = looked_};
   ahead_ = ahead;
   followed_ = looked_;
   return {.target = target};
@@ -187,13 +210,13 @@ void RobotGuide::miss_hand(double now) {
   if (now - looked_ > kLateHand) forget();
 }
 
-void RobotGuide::is_at(const std::optional<Vector3d>& position) {
-  robot_ = {.position = position, .memory = robot_.memory, .clear = -kNever, .seen = -kNever};
+void RobotGuide::is_at(const std::optional<Pose>& pose) {
+  robot_ = {.pose = pose, .memory = robot_.memory, .clear = -kNever, .seen = -kNever};
 }
 
 // Nothing was seen meanwhile.
 void RobotGuide::forget() {
-  is_at(robot_.position);
+  is_at(robot_.pose);
   free_for_.reset();
   followed_ = -kNever;
   ahead_ = 0;
@@ -207,7 +230,7 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
     return Answer{.reason = reason, .why = std::string(reason)};
   };
   const Reason reason = broken_path(state);
-  if (!reason.empty() && !robot_.position) return waits(reason);
+  if (!reason.empty() && !robot_.pose) return waits(reason);
   if (!reason.empty()) followed_ = -kNever;
   if (reason.empty() && !state.contact.touching) {
     count_free(dt);
@@ -216,12 +239,14 @@ RobotGuide::Answer RobotGuide::without_view(const ServoState& state, double dt, 
   }
   follows_ = reason.empty() && (follows_ || may_start(pressed));
   if (!follows_) return waits(reason.empty() ? kNotYet : reason);
-  if (!pressed && robot_.position && (state.contact.proxy - *robot_.position).norm() > kJoin)
-    return waits(kApart);
+  if (!pressed && robot_.pose && shape_.way(*robot_.pose, state.tool) > kJoin) return waits(kApart);
   // In the step in which a surface moved over it, it may still be a little inside.
   if (has(state.contact.notes, ContactNote::reanchored | ContactNote::not_converged))
     return waits(kMoved);
-  return follow(state.contact.proxy, looked_);
+  // Some part of a tool may not have been looked at.
+  if (shape_.is_wide() && has(state.contact.notes, ContactNote::sweep_truncated))
+    return waits(kLags);
+  return follow(state.tool, looked_);
 }
 
 }  // namespace palpate::ros

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <limits>
 #include <optional>
 #include <string>
@@ -10,25 +9,26 @@
 #include "palpate/ros/bridge.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
+#include "ros/robot_shape.hpp"
 
 namespace palpate::ros {
 
-/// Decides where a robot may go: to the proxy, where a camera sees that it is free, or on a surface
-/// from its front. Else it waits at its last target, and goes back towards the camera when what is
-/// seen comes over it no faster than it may go back; no target lies in what the newest frame shows.
-/// It follows again once hand and proxy have been seen free for half a second, or the dead man's
-/// button is pressed again. One thread calls it.
+/// Decides where a robot may go: to the proxy, where a camera sees that all of it is free, or on a
+/// surface from its front. Else it waits at its last target, and goes back towards the camera when
+/// what is seen comes over it no faster than it may go back; no target lies in what the newest
+/// frame shows. It follows again once hand and proxy have been seen free for half a second, or the
+/// dead man's button is pressed again. One thread calls it.
 class RobotGuide {
  public:
-  /// The scene outlives it. `tool_radius`: of the ball that has to be free, m.
+  /// The scene outlives it. `shape`: what has to be free.
   /// @throws Error when the scene has no source of a name in `options.sources`.
-  RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, double tool_radius);
+  RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& options, RobotShape shape);
 
   struct Answer {
-    std::optional<Eigen::Vector3d> target = {};  ///< m, world; unset: no target is sent
-    bool retreats = false;                       ///< the target leads back
-    std::string_view reason = {};                ///< why it does not follow; empty: it does
-    std::string why = {};                        ///< the same with its numbers
+    std::optional<Pose> target = {};  ///< unset: no target is sent
+    bool retreats = false;            ///< the target leads back
+    std::string_view reason = {};     ///< why it does not follow; empty: it does
+    std::string why = {};             ///< the same with its numbers
   };
 
   /// Called some hundred times a second. `now`: s, on the clock of the sources' stamps. `pressed`:
@@ -43,17 +43,17 @@ class RobotGuide {
   void miss_hand(double now);
 
   /// The robot is there, whatever target was answered last.
-  void is_at(const std::optional<Eigen::Vector3d>& position);
+  void is_at(const std::optional<Pose>& pose);
 
  private:
   // What came last over the tool, or over the robot.
   struct Memory {
     const Source* source = nullptr;                          // that saw it come; null: none did
     double came = -std::numeric_limits<double>::infinity();  // when, s
-    Eigen::Vector3d where = Eigen::Vector3d::Zero();         // over this position, m
+    Pose where = {};                                         // over this pose
   };
 
-  // The sources' answer about one ball.
+  // The sources' answer about one pose.
   struct Verdict {
     const Source* source = nullptr;  // that decided; null: there is no camera
     Seen seen = {};
@@ -63,14 +63,15 @@ class RobotGuide {
     [[nodiscard]] bool sighted() const { return free() || solid(); }
   };
 
-  [[nodiscard]] Verdict judge(const Eigen::Vector3d& x, double now, Memory& memory) const;
+  [[nodiscard]] Verdict judge(const Pose& pose, double now, Memory& memory) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Verdict& proxy, double dt);
-  [[nodiscard]] bool may_go_to(const Eigen::Vector3d& target, double now) const;
+  [[nodiscard]] bool may_go_to(const Pose& target, double now) const;
+  [[nodiscard]] bool comes_out(Pose& target, double now) const;
   [[nodiscard]] bool may_start(bool pressed) const;
   void count_free(double dt);
   void note(const Verdict& hand, bool proxy_free, double dt, bool pressed);
   // `stamp`: of the newest frame, which shows the target free, s.
-  [[nodiscard]] Answer follow(const Eigen::Vector3d& target, double stamp, double ahead = 0);
+  [[nodiscard]] Answer follow(const Pose& target, double stamp, double ahead = 0);
   [[nodiscard]] Answer wait(const Verdict& proxy, double now, double dt);
   void note_held(const Verdict& held, double now);
   bool note_clear(double stamp);
@@ -85,16 +86,16 @@ class RobotGuide {
   };
 
   struct Robot {
-    std::optional<Eigen::Vector3d> position = {};  // where it is, m, world
+    std::optional<Pose> pose = {};  // where it is, world
     Memory memory = {};
-    double clear = 0;  // stamp of the last frame that showed nothing over its position, s
+    double clear = 0;  // stamp of the last frame that showed nothing over it, s
     double gone = 0;   // how far it has gone back since then, m
-    double seen = 0;   // when its position was seen last, s
+    double seen = 0;   // when it was seen last, s
     Over over = {};
   };
 
   const RosBridgeOptions::Robot options_;
-  const double tool_radius_;
+  const RobotShape shape_;
   const std::vector<const Source*> sources_;  // that count
   Robot robot_;
   Memory tool_;

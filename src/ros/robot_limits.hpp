@@ -24,6 +24,8 @@ inline constexpr double kFreeFor = 0.5;
 // m that a surface comes nearer in one frame; a hand or tool in between is thicker (judgement)
 inline constexpr double kJump = 0.01;
 inline constexpr double kStays = 1;  // s; frames of working cameras are younger (judgement)
+// Steps to the front for one frame: each leaves r^2 / 2 D of a ball's rim (judgement).
+inline constexpr int kTries = 3;
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 }  // namespace palpate::ros

@@ -42,6 +42,19 @@ std::string robot_topic(const RosBridgeOptions::Robot& robot) {
   return (robot.ns.empty() ? std::string(preset->ns) : robot.ns) + std::string(preset->topic);
 }
 
+RobotShape shape_of(const RosBridgeOptions::Robot& robot, const ServoOptions& servo) {
+  if (!servo.tool) return RobotShape(servo.field.tool_radius);
+  if (servo.tool->opens())
+    throw Error("robot: no target says how far a gripper is open; give the hand a rigid tool");
+  std::vector<Ball> balls = robot.shape;
+  if (balls.empty()) {
+    for (const auto& sample : servo.tool->samples()) {
+      balls.push_back({sample.position, sample.radius});
+    }
+  }
+  return RobotShape(std::move(balls));
+}
+
 }  // namespace
 
 double look_rate(const RosBridgeOptions& options) {
@@ -54,7 +67,7 @@ RobotTarget::RobotTarget(const dds::Participant& participant,
                          const Servo& servo)
     : options_(options),
       servo_(servo),
-      guide_(scene, options, servo.options().field.tool_radius),
+      guide_(scene, options, shape_of(options, servo.options())),
       target_(participant, robot_topic(options), {.reliable = true}),
       due_(options.rate),
       state_{.topic = target_.topic()} {}
@@ -65,7 +78,7 @@ void RobotTarget::look(double now, const message::Time& stamp) {
   step_ = state.step;
   RobotGuide::Answer answer = decide(state, now);
   if (!due_.due(now)) return;
-  const bool sent = answer.target && send(state, *answer.target, stamp);
+  const bool sent = answer.target && send(*answer.target, stamp);
   if (sent) at_ = answer.target;
   if (answer.target && !sent) {
     guide_.is_at(at_);
@@ -89,11 +102,10 @@ RobotGuide::Answer RobotTarget::decide(const ServoState& state, double now) {
   return {.reason = why, .why = std::string(why)};
 }
 
-bool RobotTarget::send(const ServoState& state, const Eigen::Vector3d& position,
-                       const message::Time& stamp) {
+bool RobotTarget::send(const Pose& target, const message::Time& stamp) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = options_.T_robot_world.linear() * state.orientation.toRotationMatrix();
-  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * position);
+  pose.linear() = options_.T_robot_world.linear() * target.orientation.toRotationMatrix();
+  pose.translation() = options_.T_robot_world * Eigen::Vector3d(options_.scale * target.position);
   return target_.write({{stamp, options_.frame}, message::pose_of(pose)});
 }
 

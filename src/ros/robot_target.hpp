@@ -35,7 +35,8 @@ class Every {
 /// target, or stops by its own controller's watchdog.
 class RobotTarget {
  public:
-  /// Scene and servo outlive it. @throws Error when the preset is none, or a source of the options.
+  /// Scene and servo outlive it. @throws Error when the preset is none, or a source of the
+  /// options, and for a gripper.
   RobotTarget(const dds::Participant& participant, const RosBridgeOptions::Robot& options,
               const Scene& scene, const Servo& servo);
 
@@ -50,7 +51,7 @@ class RobotTarget {
   [[nodiscard]] std::string_view objection(const ServoState& state, double now);
   [[nodiscard]] RobotGuide::Answer decide(const ServoState& state, double now);
   // False: it could not be sent in time.
-  bool send(const ServoState& state, const Eigen::Vector3d& position, const message::Time& stamp);
+  bool send(const Pose& target, const message::Time& stamp);
   void count(const RobotGuide::Answer& answer, double now);
 
   RosBridgeOptions::Robot options_;
@@ -58,12 +59,12 @@ class RobotTarget {
   RobotGuide guide_;
   dds::Writer<message::PoseStamped> target_;
   Every due_;
-  std::uint64_t step_ = 0;                  // the last that was seen
-  double stepped_ = 0;                      // when it was new, s
-  bool up_ = true;                          // is the dead man's button?
-  std::optional<Eigen::Vector3d> at_ = {};  // the last target that was sent, m, world
-  double counted_ = 0;                      // up to when waits are, s; 0: from now on
-  mutable std::mutex mutex_;                // of what follows
+  std::uint64_t step_ = 0;       // the last that was seen
+  double stepped_ = 0;           // when it was new, s
+  bool up_ = true;               // is the dead man's button?
+  std::optional<Pose> at_ = {};  // the last target that was sent, world
+  double counted_ = 0;           // up to when waits are, s; 0: from now on
+  mutable std::mutex mutex_;     // of what follows
   RosBridge::RobotState state_;
 };
 

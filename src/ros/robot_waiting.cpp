@@ -13,14 +13,12 @@ constexpr Reason kPassed = "the surface passed over the tool";
 constexpr Reason kCame = "something came between camera and tool";
 constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
 constexpr Reason kPath = "the way to the tool is not seen free";
-// Steps back for one frame: each leaves r^2 / 2 D of a ball's rim (judgement).
-constexpr int kTries = 3;
 
 }  // namespace
 
 RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt) {
   ahead_ = 0;
-  const Verdict held = robot_.position ? judge(*robot_.position, now, robot_.memory) : Verdict{};
+  const Verdict held = robot_.pose ? judge(*robot_.pose, now, robot_.memory) : Verdict{};
   note_held(held, now);
   Answer answer;
   if (held.solid()) {
@@ -35,7 +33,7 @@ RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt)
   }
   if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
   if (!goes_back(held, now, dt)) return answer;
-  answer.target = robot_.position;
+  answer.target = robot_.pose;
   answer.retreats = true;
   return answer;
 }
@@ -48,8 +46,8 @@ bool RobotGuide::goes_back(Verdict held, double now, double dt) {
   const bool clears = held.seen.measured > 0 && note_clear(now - held.seen.age);
   robot_.gone += clears ? step - held.seen.measured : step;
   for (int k = 0; k < kTries; ++k) {
-    robot_.position = *robot_.position + step * held.seen.towards;
-    held = judge(*robot_.position, now, robot_.memory);
+    robot_.pose->position += step * held.seen.towards;
+    held = judge(*robot_.pose, now, robot_.memory);
     if (!held.solid() || !(held.seen.measured > 0)) return held.sighted();
     step = held.seen.measured;
     robot_.gone += step;
@@ -57,7 +55,7 @@ bool RobotGuide::goes_back(Verdict held, double now, double dt) {
   return false;
 }
 
-// Lets the robot go back only from what comes over its position no faster than it may go back: by
+// Lets the robot go back only from what comes over it no faster than it may go back: by
 // what is seen and foreseen of it since a frame that showed nothing there. What came by more than
 // kJump at once, or unseen, stands between it and the camera: the path back would lead into it. A
 // shorter loss of sight than kFreeFor changes nothing.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "depth/input.hpp"
@@ -133,27 +134,79 @@ void add(const Gap& gap, const std::optional<Gap>& before, double span, Seen& se
   seen.came = compares && before->free();
 }
 
+/// A ray through a ball, to a point on its disc.
+struct Probe {
+  const Ball* ball;
+  Vector3d point;
+};
+
+/// Leaves of many balls' rays the one through each pixel that reaches farthest: their windows show
+/// the same surface.
+void keep_farthest(const PosedFrame& view, std::vector<Probe>& probes) {
+  constexpr long kOutside = -1;  // no pixel
+  struct Place {
+    long pixel = kOutside;
+    double reach = 0;
+    Probe probe;
+  };
+  const Eigen::Isometry3d to_sensor = view.T_world_sensor.inverse();
+  std::vector<Place> places;
+  for (const Probe& probe : probes) {
+    const Vector3d seen = to_sensor * probe.point;
+    Place& place = places.emplace_back(Place{.probe = probe});
+    const auto at = seen_at(view.frame.camera, seen);
+    if (!at) continue;
+    place.pixel = std::lround(at->y()) * view.frame.camera.width + std::lround(at->x());
+    place.reach =
+        reach_along(seen.normalized(), to_sensor * probe.ball->center, probe.ball->radius);
+  }
+  std::ranges::stable_sort(places, [](const Place& a, const Place& b) {
+    return std::tuple(a.pixel, b.reach) < std::tuple(b.pixel, a.reach);
+  });
+  probes.clear();
+  long pixel = kOutside - 1;
+  for (const Place& place : places) {
+    if (std::exchange(pixel, place.pixel) != place.pixel) probes.push_back(place.probe);
+  }
+}
+
+/// Rays that look at all of the balls.
+std::vector<Probe> probes_of(const PosedFrame& view, std::span<const Ball> balls) {
+  const Vector3d eye = view.T_world_sensor.translation();
+  const Pinhole& p = view.frame.camera.pinhole;
+  std::vector<Probe> probes;
+  for (const Ball& ball : balls) {
+    const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
+    for (const Vector3d& point : points_on(ball, eye, pitch)) probes.push_back({&ball, point});
+  }
+  if (balls.size() > 1) keep_farthest(view, probes);
+  return probes;
+}
+
+Vector3d middle_of(std::span<const Ball> balls) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Ball& ball : balls) sum += ball.center;
+  return sum / static_cast<double>(balls.size());
+}
+
 /// `before`: an earlier frame that gives how fast things come; null: there is none. `half`: of the
 /// windows, pixels.
-Seen judge(const PosedFrame& newest, const PosedFrame* before, const Ball& ball, double now,
-           int half) {
-  const Vector3d eye = newest.T_world_sensor.translation();
+Seen judge(const PosedFrame& newest, const PosedFrame* before, std::span<const Ball> balls,
+           double now, int half) {
   Seen seen;
   seen.age = now - newest.frame.stamp;
-  seen.towards = (eye - ball.center).normalized();
-  if (look(newest, ball, ball.center, half).outside) return seen;
-  const Pinhole& p = newest.frame.camera.pinhole;
-  const double pitch = kStride * (eye - ball.center).norm() / std::max(p.fx, p.fy);
+  seen.towards = (newest.T_world_sensor.translation() - middle_of(balls)).normalized();
   const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
   seen.verdict = Seen::Verdict::free;
-  for (const Vector3d& point : points_on(ball, eye, pitch)) {
-    const Look shown = look(newest, ball, point, half);
+  for (const auto& [ball, point] : probes_of(newest, balls)) {
+    const Look shown = look(newest, *ball, point, half);
     if (shown.gap) {
-      add(*shown.gap, span > 0 ? look(*before, ball, point, half).gap : std::nullopt, span, seen);
-    } else if (seen.verdict == Seen::Verdict::free) {
-      seen.verdict = shown.outside ? Seen::Verdict::outside : Seen::Verdict::nothing;
+      add(*shown.gap, span > 0 ? look(*before, *ball, point, half).gap : std::nullopt, span, seen);
+    } else if (seen.rest == Seen::Verdict::free) {
+      seen.rest = shown.outside ? Seen::Verdict::outside : Seen::Verdict::nothing;
     }
   }
+  if (seen.verdict == Seen::Verdict::free) seen.verdict = seen.rest;
   return seen;
 }
 
@@ -210,7 +263,7 @@ bool Sight::before_counts(double now, double lasts) const {
   return newest_.frame.stamp - before_.frame.stamp <= FrameLifetime::kLost * *interval;
 }
 
-std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& limits) {
+std::optional<Seen> Sight::at(std::span<const Ball> balls, double now, const FrameLimits& limits) {
   const std::lock_guard lock(mutex_);
   if (frames_ == 0) return std::nullopt;
   note_question(now);
@@ -221,7 +274,7 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& l
   const PosedFrame* base = nullptr;
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
   if (frames_ > 2 && base == nullptr && is_base(base_, newest_)) base = &base_;
-  Seen seen = judge(newest_, base, ball, now, kHalfWindow);
+  Seen seen = judge(newest_, base, balls, now, kHalfWindow);
   if (seen.verdict == Seen::Verdict::outside) return seen;
   if (seen.age > lasts) {
     seen.verdict = Seen::Verdict::old;
@@ -229,9 +282,9 @@ std::optional<Seen> Sight::at(const Ball& ball, double now, const FrameLimits& l
   }
   if (seen.verdict != Seen::Verdict::nothing || !before_counts(now, lasts)) return seen;
   // Around the point the newest frame shows what came since the one before.
-  if (judge(newest_, base, ball, now, kWideWindow).verdict != Seen::Verdict::free) return seen;
+  if (judge(newest_, base, balls, now, kWideWindow).verdict != Seen::Verdict::free) return seen;
   const PosedFrame* earlier = frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr;
-  return judge(before_, earlier, ball, now, kHalfWindow);
+  return judge(before_, earlier, balls, now, kHalfWindow);
 }
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "depth/frame_timing.hpp"
@@ -36,10 +37,15 @@ class Sight {
   /// Forgets all frames.
   void forget();
 
-  /// Returns what was seen of a ball at `now` (s, on the clock of the stamps). A frame counts until
-  /// the next one is due, and no longer than `limits`. Frequent calls let it measure when frames
-  /// are due: by how old they are at the first call. Nothing: no frame has come.
-  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, const FrameLimits& limits);
+  /// Returns what was seen of all of these balls, one or more, at `now` (s, on the clock of the
+  /// stamps). A frame counts until the next one is due, and no longer than `limits`. Frequent calls
+  /// let it measure when frames are due: by how old they are at the first call. Nothing: no frame
+  /// has come.
+  [[nodiscard]] std::optional<Seen> at(std::span<const Ball> balls, double now,
+                                       const FrameLimits& limits);
+  [[nodiscard]] std::optional<Seen> at(const Ball& ball, double now, const FrameLimits& limits) {
+    return at(std::span(&ball, 1), now, limits);
+  }
 
  private:
   void note_question(double now);

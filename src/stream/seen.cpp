@@ -33,10 +33,10 @@ FrameLimits Streaming::frame_limits(const Source::Inside& source) const {
   return {.at_first = latency + std::min(missed, silence), .later = latency + silence};
 }
 
-std::optional<Seen> Source::seen(const Ball& ball, double now) const {
+std::optional<Seen> Source::seen(std::span<const Ball> balls, double now) const {
   Streaming& streaming = *inside_->streaming;
   streaming.watched = true;
-  std::optional<Seen> seen = streaming.sight.at(ball, now, streaming.frame_limits(*inside_));
+  std::optional<Seen> seen = streaming.sight.at(balls, now, streaming.frame_limits(*inside_));
   if (!seen && state().depth > 0) seen.emplace();  // a camera whose frames were not kept before
   return seen;
 }

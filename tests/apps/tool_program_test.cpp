@@ -140,6 +140,8 @@ TEST(ToolProgram, RefusesWhatItDoesNotRenderAndWhatIsNoTool) {
   EXPECT_THAT(refusal("box:20x30x10 --tool-radius 0.001"),
               HasSubstr("--tool-radius is for a point"));
   EXPECT_THAT(refusal("ball:4 --preset paper"), HasSubstr("--preset paper uses a point tool"));
+  EXPECT_THAT(refusal("gripper:10x10x30 --robot crisp --view --headless"),
+              HasSubstr("not how far it is open"));
   EXPECT_THAT(refusal("bowl:4"), HasSubstr("give one of ball:R, capsule:LxR"));
   EXPECT_THAT(refusal("bowl:4"), HasSubstr("or mesh:FILE"));
   EXPECT_THAT(refusal("box:20x30"), HasSubstr("give box:XxYxZ in millimetres"));

@@ -18,10 +18,10 @@ TEST_F(ARobot, FollowsInFreeSpaceAndOnTheSurface) {
   camera("camera", at_rest);
   starts();
   tool_at({0, 0, 0.1});
-  EXPECT_EQ(runs(0.5).target, Vector3d(0, 0, 0.1));
+  EXPECT_EQ(place_of(runs(0.5)), Vector3d(0, 0, 0.1));
   presses_at(0);
   const RobotGuide::Answer pressed = runs(1);
-  EXPECT_EQ(pressed.target, Vector3d::Zero());
+  EXPECT_EQ(place_of(pressed), Vector3d::Zero());
   EXPECT_TRUE(pressed.reason.empty());
 }
 
@@ -36,7 +36,7 @@ TEST_F(ARobot, WaitsBehindWhatTheCameraSeesUntilHandAndToolHaveBeenFreeForAWhile
   EXPECT_FALSE(runs(2).target) << "the hand is still behind";
   tool_at({0, 0, 0.05});
   EXPECT_FALSE(runs(0.45).target);
-  EXPECT_EQ(runs(0.1).target, Vector3d(0, 0, 0.05));
+  EXPECT_EQ(place_of(runs(0.1)), Vector3d(0, 0, 0.05));
 }
 
 TEST_F(ARobot, DoesNotBeginALittleBehindWhatTheCameraSees) {
@@ -54,7 +54,6 @@ auto coming(double speed) {
 }
 
 constexpr double kSlowly = 0.8 * kRetreat;
-constexpr double kNoise = 4e-3;  // m; three deviations of a window there, and more
 
 TEST_F(ARobot, GoesBackSlowlyFromWhereASurfaceCameOverIt) {
   camera("camera", coming(kSlowly));
@@ -69,9 +68,9 @@ TEST_F(ARobot, GoesBackSlowlyFromWhereASurfaceCameOverIt) {
   each_ = [&](const RobotGuide::Answer& answer) {
     if (!answer.retreats) return;
     why = answer.why;
-    if (before) longest = std::max(longest, (*answer.target - *before).norm());
-    before = answer.target;
-    last = answer.target->z();
+    if (before) longest = std::max(longest, (answer.target->position - *before).norm());
+    before = place_of(answer);
+    last = answer.target->position.z();
     deepest = std::max(deepest, coming(kSlowly)(pushed_) - last);
   };
   runs(0.6);
@@ -95,7 +94,7 @@ TEST_P(ARobotBeforeAFastSurface, StandsStill) {
   presses_at(0);
   ASSERT_TRUE(runs(0.9).reason.empty());
   each_ = [&](const RobotGuide::Answer& answer) {
-    const double told = answer.target ? answer.target->z() : 1;
+    const double told = answer.target ? answer.target->position.z() : 1;
     EXPECT_LE(height(pushed_) - told, kNoise) << now_;
   };
   const RobotGuide::Answer over = runs(2);
@@ -211,7 +210,7 @@ TEST_F(ARobot, DoesNotGoBackFromWhatCameBetweenAlsoAfterAFrameWasLost) {
 
 TEST_F(ARobot, StandsStillWhereItIsNotToGoBack) {
   camera("camera", coming(kSlowly));
-  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .retreat = 0}, 0);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .retreat = 0}, RobotShape(0));
   presses_at(0);
   const RobotGuide::Answer answer = runs(2);
   EXPECT_FALSE(answer.target);
@@ -239,7 +238,7 @@ TEST_F(ARobot, DoesNotFollowToTheFrontOfWhatSlidesOverATouchedSurface) {
   state_.contact.drift = {0, 0, 0.1};
   ASSERT_TRUE(runs(0.9).target);
   each_ = [](const RobotGuide::Answer& answer) {
-    EXPECT_LT(answer.target.value_or(Vector3d::Zero()).z(), 0.01);
+    EXPECT_LT(place_of(answer).value_or(Vector3d::Zero()).z(), 0.01);
   };
   EXPECT_FALSE(runs(1).target);
 }
@@ -274,7 +273,7 @@ TEST_F(ARobot, FollowsASurfaceThatComesSlowlyInFrontOfIt) {
     state_.contact.drift = {0, 0, (height(now_ - kLag) - height(now_ - kLag - 1e-3)) / 1e-3};
     const RobotGuide::Answer answer = runs(kLook);
     ASSERT_TRUE(answer.reason.empty()) << now_ << " " << answer.why;
-    deepest = std::max(deepest, height(now_) - answer.target->z());
+    deepest = std::max(deepest, height(now_) - answer.target->position.z());
   }
   EXPECT_LT(deepest, 0.7 * kSpeed * kLag) << "less than the proxy";
 }

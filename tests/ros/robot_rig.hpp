@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 inline constexpr double kFrame = 1.0 / 30;  // s
 inline constexpr double kLook = 1.0 / 250;  // s
 inline constexpr double kRetreat = 0.05;    // m/s
+inline constexpr double kNoise = 4e-3;      // m; three deviations of a window there, and more
 
 /// A robot that follows a proxy, and hand, over walls that cameras see from z = 0.5 m. The walls
 /// are at heights that change with time.
@@ -34,7 +35,7 @@ class ARobot : public ::testing::Test {
     guide_.emplace(scene_,
                    RosBridgeOptions::Robot{
                        .preset = "crisp", .sources = std::move(sources), .retreat = kRetreat},
-                   0);
+                   shape_);
   }
   // The last answer of some time in which the tool stays where it is.
   RobotGuide::Answer runs(double seconds, bool anew = false) {
@@ -48,7 +49,7 @@ class ARobot : public ::testing::Test {
   }
   void tool_at(const Vector3d& place) {
     state_.hip = place;
-    state_.contact.proxy = place;
+    state_.tool.position = place;
     state_.contact.touching = false;
   }
   // Held at a height of `proxy`, the hand so much below.
@@ -64,6 +65,7 @@ class ARobot : public ::testing::Test {
     bool on = true;
     int every = 1;  ///< frames of the quickest camera
   };
+  RobotShape shape_{0};
   Scene scene_;
   std::vector<Camera> cameras_;
   std::optional<RobotGuide> guide_;
@@ -86,6 +88,10 @@ class ARobot : public ::testing::Test {
   }
   int frames_ = 0;
 };
+
+inline std::optional<Vector3d> place_of(const RobotGuide::Answer& answer) {
+  return answer.target ? std::optional(answer.target->position) : std::nullopt;
+}
 
 inline double at_rest(double /*t*/) {
   return 0;

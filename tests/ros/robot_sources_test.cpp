@@ -78,7 +78,7 @@ TEST_F(ARobot, FollowsToTheFrontOfWhatCameALittleWhileAFrameWasLost) {
   cameras_.back().on = true;
   const RobotGuide::Answer answer = runs(1.1 * kFrame);
   ASSERT_TRUE(answer.target) << answer.why;
-  EXPECT_NEAR(answer.target->z(), 0.008, 1e-3);
+  EXPECT_NEAR(answer.target->position.z(), 0.008, 1e-3);
 }
 
 TEST_F(ARobot, WaitsWhereACameraHasEnded) {
@@ -244,20 +244,21 @@ TEST_F(ARobot, BelievesNoOlderFrameOfTheToolWhileItWaitsElsewhere) {
 
 TEST_F(ARobot, NeedsAllOfABallFree) {
   camera("camera", at_rest);
-  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp"}, 0.02);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp"}, RobotShape(0.02));
   tool_at({0, 0, 0.022});
   EXPECT_TRUE(runs(0.5).target);
   tool_at({0, 0, 0.012});
-  EXPECT_GT(runs(0.1).target.value().z(), 0.015) << "in front of it, as far as noise lets tell";
+  EXPECT_GT(runs(0.1).target.value().position.z(), 0.015)
+      << "in front of it, as far as noise lets tell";
   tool_at({0, 0, 0});
   EXPECT_FALSE(runs(0.1).target);
 }
 
 TEST_F(ARobot, FollowsTheHandItselfWhereItIsTold) {
   camera("camera", at_rest);
-  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .hand = true}, 0);
+  guide_.emplace(scene_, RosBridgeOptions::Robot{.preset = "crisp", .hand = true}, RobotShape(0));
   presses_at(0, 0.03);
-  EXPECT_EQ(runs(0.5).target, Vector3d(0, 0, -0.03));
+  EXPECT_EQ(place_of(runs(0.5)), Vector3d(0, 0, -0.03));
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(Seen, IsNothingOfClouds) {
     cloud.positions.emplace_back(0.01f * static_cast<float>(i % 20),
                                  0.01f * static_cast<float>(i / 20), 0);
   }
-  EXPECT_FALSE(scene.add("cloud", cloud).seen({}, 0));
+  EXPECT_FALSE(scene.add("cloud", cloud).seen(Ball{}, 0));
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class ASight : public ::testing::Test {
 };
 
 TEST_F(ASight, SaysNothingBeforeAFrameHasCome) {
-  EXPECT_FALSE(sight_.at({}, 0, kLimits));
+  EXPECT_FALSE(sight_.at(Ball{}, 0, kLimits));
 }
 
 TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
@@ -152,7 +152,7 @@ TEST_F(ASight, LearnsNothingFromWhoAsksForATimeOfAnotherClock) {
   stamp_ = 1000;
   for (int k = 0; k < 20; ++k) {
     sees(wall(0.5));
-    if (k == 17) (void)sight_.at({}, 0, kLimits);
+    if (k == 17) (void)sight_.at(Ball{}, 0, kLimits);
     EXPECT_EQ(at({0, 0, 0.4}).verdict, Verdict::free);
   }
   EXPECT_EQ(at({0, 0, 0.4}, 0, kFramePeriod + 1e-3).verdict, Verdict::old);

@@ -61,8 +61,8 @@ void check_tool(const TouchPlan& plan) {
   require(surface.field.tool_radius == 0,
           "--tool-radius is of a point, and a --tool's shape is its own; remove one of them");
   require(!surface.paper, "--preset paper uses a point tool; remove --tool");
-  require(!plan.ros.bridge.robot,
-          "--robot follows a point, and does not know where a --tool is; remove one of them");
+  require(!plan.ros.bridge.robot || !plan.tool.text.starts_with("gripper:"),
+          "--robot tells where a tool is, and not how far it is open; give a --tool that is rigid");
 }
 
 // Where a cloud is explored, K is computed later, and checked again.

@@ -71,6 +71,14 @@ void check_reach(const MeshName& name, double unit, const Box& box) {
       large ? ", or a smaller part" : ", or move it to its origin"));
 }
 
+std::vector<Ball> balls_of(const Tool& tool) {
+  std::vector<Ball> balls;
+  for (const Tool::Point& sample : tool.samples()) {
+    balls.push_back({sample.position, sample.radius});
+  }
+  return balls;
+}
+
 }  // namespace
 
 double SampledTool::gyration(double stiffness) const {
@@ -91,11 +99,7 @@ double SampledTool::turns_with(double stiffness) const {
 }
 
 std::vector<Ball> SampledTool::balls() const {
-  std::vector<Ball> balls;
-  for (const Tool::Point& sample : tool->samples()) {
-    balls.push_back({sample.position, sample.radius});
-  }
-  return balls;
+  return balls_of(*tool);
 }
 
 // What else to do, where samples so near each other are not too many.
@@ -173,6 +177,19 @@ bool NamedTool::is_sampled(double spacing) const {
   }
 }
 
+// The surface of the box around it, m^2.
+double NamedTool::area() const {
+  return surface_of(mesh_.triangles.empty() ? box_around(with_spacing(Tool::kLongest))
+                                            : box_around(mesh_.vertices));
+}
+
+std::vector<Ball> NamedTool::looked_at() const {
+  constexpr double kPixels = 2.5e-3;     // m, of a depth camera of 640 pixels (judgement)
+  constexpr double kMostLooks = 10'000;  // samples: 15 ms a look (judgement)
+  const double spacing = std::max(kPixels, std::sqrt(area() / kMostLooks));
+  return balls_of(with_spacing(std::min(spacing, plan_.spacing.value_or(spacing))));
+}
+
 SampledTool NamedTool::sampled(double radius) const {
   SampledTool result{.tool = nullptr,
                      .name = plan_.text,
@@ -185,11 +202,9 @@ SampledTool NamedTool::sampled(double radius) const {
     result.tool = std::make_shared<const Tool>(as_spaced(result.spacing));
     return result;
   }
-  const double area = surface_of(mesh_.triangles.empty() ? box_around(with_spacing(Tool::kLongest))
-                                                         : box_around(mesh_.vertices));
   constexpr auto kMost = static_cast<double>(kMostSamples);
   // A surface has a sample a square of its spacing, or twice as many.
-  double spacing = std::max(kWanted * radius, std::sqrt(area / (2 * kMost)));
+  double spacing = std::max(kWanted * radius, std::sqrt(area() / (2 * kMost)));
   if (!(spacing > 0)) spacing = Tool::kLongest;  // a line of balls has no area
   std::size_t before = 0;
   for (int i = 0; i < kSpacings; ++i) {

@@ -36,7 +36,7 @@ struct SampledTool {
   /// Is it a ball or a row of them, which no spacing changes?
   [[nodiscard]] bool is_of_balls() const { return tool->samples().front().radius > 0; }
 
-  /// Its samples as balls around its handle, m.
+  /// The samples as balls around its handle, m.
   [[nodiscard]] std::vector<Ball> balls() const;
 
   /// Why something may pass between its samples, or a step take long, and what to do; empty: all
@@ -58,6 +58,10 @@ class NamedTool {
   /// @throws Error as Tool does, UsageError where the plan's spacing leaves too many samples.
   [[nodiscard]] SampledTool sampled(double radius) const;
 
+  /// Its surface around the handle, m, so dense that cameras miss nothing that is wider than two of
+  /// their pixels at half a metre; of large tools less. @throws Error as Tool does.
+  [[nodiscard]] std::vector<Ball> looked_at() const;
+
   /// Samples that a step of 1 ms bears (ToolProxy::max_evaluations()).
   static constexpr std::size_t kMostSamples = 500;
 
@@ -65,6 +69,7 @@ class NamedTool {
   [[nodiscard]] Tool with_spacing(double spacing) const;
   [[nodiscard]] bool is_sampled(double spacing) const;
   [[nodiscard]] Tool as_spaced(double spacing) const;
+  [[nodiscard]] double area() const;
 
   ToolPlan plan_;
   TriangleMesh mesh_;

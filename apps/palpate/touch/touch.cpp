@@ -171,6 +171,7 @@ struct Start {
     check_texture(plan.surface.proxy.texture.amplitude, loaded.scene);
     place_hands(hands, {plan.motion, plan.surface, plan.page, tool ? &*tool : nullptr}, trajectory,
                 loaded.scene);
+    if (plan.ros.bridge.robot && tool) plan.ros.bridge.robot->shape = tool->looked_at();
     begin_run(loaded, plan.surface.soft_material(hands.front().stiffness));
   }
 

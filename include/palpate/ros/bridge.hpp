@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/geometry/shapes.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/sensor/stream.hpp"
 #include "palpate/servo/servo.hpp"
@@ -33,6 +34,10 @@ struct RosBridgeOptions {
         {};  ///< targets are sent only while this button of the hand is down, 0 to 31
     /// Names of the sources whose cameras show which positions are free; empty: all.
     std::vector<std::string> sources = {};
+    /// The surface of the first hand's tool (ServoOptions::tool) as it is looked at: balls around
+    /// its handle, m, in its axes; what is smaller may pass between them. Empty: the tool's
+    /// samples.
+    std::vector<Ball> shape = {};
     /// Speed at which it goes back from a surface that came over it, m/s, 0 to 1; 0: it stays.
     double retreat = 0.05;
   };

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -107,11 +108,11 @@ struct Snapshot {
 /// The sensor's confidence in it at `time` (s), 0-1.
 [[nodiscard]] double presence(const Snapshot& snapshot, double time) noexcept;
 
-/// What a depth camera's newest frames show of a ball.
+/// What a depth camera's newest frames show of a ball, or of several as one body.
 struct Seen {
   /// In rising order: of several cameras' answers, the last one in this list counts.
   enum class Verdict {
-    outside,  ///< the ball, or part of it, is not in the picture
+    outside,  ///< it, or part of it, is not in the picture
     nothing,  ///< nothing is measured there
     solid,    ///< it, or part of it, is behind what is seen
     free,     ///< it is in front of that
@@ -119,14 +120,14 @@ struct Seen {
   };
 
   Verdict verdict = Verdict::outside;
-  double behind =
-      0;            ///< m; a solid ball that goes so far towards the camera is free, noise allowed
-  double lift = 0;  ///< m; how far to move it towards the camera: up to what is measured, less
-                    ///< where most of that may be noise; no less than `behind`
+  Verdict rest = Verdict::free;  ///< of a solid one's other parts: outside, nothing or free
+  double behind = 0;  ///< m; a solid one that goes so far towards the camera is free, noise allowed
+  double lift = 0;    ///< m; how far to move it towards the camera: up to what is measured, less
+                      ///< where most of that may be noise; no less than `behind`
   double measured = 0;  ///< m; of `lift`, what the frame shows without what is foreseen
   bool came = false;    ///< a solid one was free some frames before
   double age = 0;       ///< of the frame, s
-  Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from the ball to the camera
+  Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from its middle to the camera
 };
 
 /// One sensor or file: its pose, and the newest snapshot of what it sees.
@@ -223,15 +224,18 @@ class Source {
   /// weight or presence outside 0-1, or times that are not finite and in order.
   void publish(std::shared_ptr<const Snapshot> snapshot);
 
-  /// What the newest depth frames show of a ball (m, world) at time `now` (s, on the clock of their
-  /// stamps). What they show counts where it will be by then, if it goes on as in the last 0.1 s,
-  /// and hides the ball where noise, at three deviations, cannot feign that. A frame is too old
-  /// once the next one should have replaced it: at the longest gap between the stamps of the last
-  /// 16, lost frames left out, and their longest delay; of the first nine 2.5 mean intervals after
-  /// it came; at the latest PolicyOptions::silence after that. So is the last one before keep();
-  /// one of set() never is. From raw depths, not from the surface. Nothing for clouds, and until a
-  /// frame is pushed after the first call. Any thread but a servo's.
-  [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const;
+  /// What the newest depth frames show of all of these balls, one or more (m, world), at time `now`
+  /// (s, on the clock of their stamps). What they show counts where it will be by then, if it goes
+  /// on as in the last 0.1 s, and hides them where noise, at three deviations, cannot feign that. A
+  /// frame is too old once the next one should have replaced it: at the longest gap between the
+  /// stamps of the last 16, lost frames left out, and their longest delay; of the first nine 2.5
+  /// mean intervals after it came; at the latest PolicyOptions::silence after that. So is the last
+  /// one before keep(); one of set() never is. From raw depths, not from the surface. Nothing for
+  /// clouds, and until a frame is pushed after the first call. Any thread but a servo's.
+  [[nodiscard]] std::optional<Seen> seen(std::span<const Ball> balls, double now) const;
+  [[nodiscard]] std::optional<Seen> seen(const Ball& ball, double now) const {
+    return seen(std::span(&ball, 1), now);
+  }
 
   /// The newest surface's newest layer (of one that came by publish(), its first), for those who
   /// draw or explore; may be null. Any thread but a servo's.
