@@ -169,9 +169,16 @@ const std::vector<DeviceProfile>& device_profiles() {
 DeviceProfile device_profile(std::string_view name, const std::vector<DeviceProfile>& among) {
   const auto found = std::ranges::find(among, name, &DeviceProfile::name);
   if (found != among.end()) return *found;
+  if (name.ends_with(".toml")) {
+    const std::vector<DeviceProfile> own = read_device_profiles(std::string(name));
+    if (own.size() == 1) return own.front();
+    throw Error(fmt::format("{}: it has {} profiles; leave the device's alone", name, own.size()));
+  }
   std::string names;
   for (const DeviceProfile& each : among) names += (names.empty() ? "" : ", ") + each.name;
-  throw Error(fmt::format("unknown device profile '{}'; the profiles are {}", name, names));
+  throw Error(fmt::format(
+      "unknown device profile '{}'; the profiles are {}, and files of your own: NAME.toml", name,
+      names));
 }
 
 }  // namespace palpate

@@ -27,6 +27,9 @@ RemoteDeviceOptions checked(RemoteDeviceOptions o) {
   require.not_negative("maximum_torque", o.maximum_torque, "give 0 or more N m");
   require.not_negative("maximum_grip", o.maximum_grip, "give 0 or more newtons");
   require.not_negative("angular_damping", o.angular_damping, "give 0 or more N m s/rad");
+  require.not_negative("damping", o.damping, "give 0 or more N s/m");
+  require.not_negative("mass", o.mass, "give 0 or more kg");
+  require.not_negative("delay", o.delay.value_or(0), "give 0 or more seconds");
   require.not_negative("workspace_radius", o.workspace_radius, "give 0 or more metres");
   require.positive("rate", o.rate, "give a positive number of steps per second");
   require.positive("client_timeout", o.client_timeout, "give a positive time in seconds");
@@ -44,6 +47,9 @@ DeviceInfo info_of(const RemoteDeviceOptions& options) {
   info.maximum_torque = options.maximum_torque;
   info.maximum_grip = options.maximum_grip;
   info.angular_damping = options.angular_damping;
+  info.damping = options.damping;
+  info.mass = options.mass;
+  info.delay = options.delay;
   info.has_orientation = info.has_gripper = options.turns;
   info.rate = options.rate;
   info.workspace_radius = options.workspace_radius;
@@ -51,6 +57,21 @@ DeviceInfo info_of(const RemoteDeviceOptions& options) {
 }
 
 }  // namespace
+
+RemoteDeviceOptions remote_options(const DeviceProfile& profile) {
+  RemoteDeviceOptions options;
+  options.maximum_force = profile.maximum_force.value_or(options.maximum_force);
+  options.maximum_stiffness = profile.maximum_stiffness.value_or(options.maximum_stiffness);
+  options.maximum_torque = profile.maximum_torque.value_or(options.maximum_torque);
+  options.maximum_grip = profile.maximum_grip.value_or(options.maximum_grip);
+  options.angular_damping = profile.angular_damping.value_or(options.angular_damping);
+  options.damping = profile.damping.value_or(options.damping);
+  options.mass = profile.mass.value_or(options.mass);
+  options.workspace_radius = profile.workspace_radius.value_or(options.workspace_radius);
+  options.rate = profile.rate.value_or(options.rate);
+  options.delay = profile.delay;
+  return options;
+}
 
 std::string default_remote_path() {
   return runtime_path("remote device", "palpate-device");

@@ -28,7 +28,7 @@ class RobotShape {
 
  private:
   std::vector<Ball> balls_;
-  double lever_ = 0;         // m, of the farthest
+  double lever_ = 0;  // m, of the farthest
   double thinnest_ = 0;
 };
 

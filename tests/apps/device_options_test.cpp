@@ -42,6 +42,9 @@ TEST(DevicePlacement, IsTakenOffTheDevicesName) {
   EXPECT_EQ(remote.path, "/tmp/hand");
   EXPECT_EQ(remote.placement.scale, 0.5);
   EXPECT_EQ(parse_device("remote,clutch=0").path, "");
+  const DevicePlan wrist = parse_device("remote:/tmp/hand,profile=wrist.toml,scale=0.5");
+  EXPECT_EQ(wrist.path, "/tmp/hand");
+  EXPECT_EQ(wrist.profile, "wrist.toml");
   EXPECT_EQ(parse_device("simulated,scale=2").placement.scale, 2);
   EXPECT_FALSE(parse_device("haply").placement.scale);
   EXPECT_FALSE(parse_device("haply").placement.clutch);
@@ -57,6 +60,7 @@ TEST(DevicePlacement, RefusesWhatIsNoValueOrNotForThatDevice) {
   EXPECT_TRUE(contains(refusal("remote,frame=a b"), "not a valid source name"));
   EXPECT_TRUE(contains(refusal("remote,scale=1,scale=1"), "twice"));
   EXPECT_TRUE(contains(refusal("remote:/tmp/hand,scal=1"), "scale=S"));
+  EXPECT_TRUE(contains(refusal("simulated,profile=omega"), "scale=S"));
   EXPECT_TRUE(contains(refusal("scripted,scale=2"), "simulated"));
   EXPECT_TRUE(contains(refusal("simulated,clutch=1"), "only with remote and hardware"));
   EXPECT_TRUE(contains(refusal("simulated,frame=left"), "only with remote and hardware"));

@@ -79,6 +79,32 @@ TEST(HandsProgram, AnotherProgramsHandFeelsTheSurface) {
   EXPECT_EQ(columns(shell.read("forces.csv"))["fz"].size(), report["steps"]);
 }
 
+// A tilted box that is pressed on the plane turns the hand back, as far as the profile's motors do.
+TEST(HandsProgram, AnotherProgramsWristFeelsTheTorque) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  shell.write("wrist.toml", "[wrist]\nmaximum_force = 10\nmaximum_torque = 0.02\n");
+  const auto run = shell.start(
+      "touch plane.xyz --scale 2 --viewpoint 0,0,1 --stiffness 500 --tool box:20x30x10 --device "
+      "remote:hand,profile=wrist.toml");
+  ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listening on hand"); }));
+  test::RemoteClient client(shell.path("hand"), shell.path("client"));
+  client.packet().version = RemoteVersion::kTurns;
+  client.packet().turns.renders_torque = true;
+  client.packet().turns.orientation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
+  EXPECT_TRUE(arrives(client, 30e-3));
+  double most = 0;
+  int step = 0;
+  EXPECT_TRUE(until([&] {
+    client.say(30e-3 - 20e-3 * (1 - std::cos(1e-2 * ++step)));
+    const auto heard = client.hear();
+    if (heard) most = std::max(most, -heard->torque.y());
+    return most > 0.01;
+  })) << most;
+  EXPECT_LE(most, 0.016 + 1e-12) << "0.8 of what it holds";
+  EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
+}
+
 TEST(HandsProgram, AClosedTerminalEndsARunAsCtrlCDoes) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());
@@ -144,6 +170,8 @@ TEST(HandsProgram, ASilentDeviceSaysWhyAndEndsWithTheDuration) {
 TEST(HandsProgram, WhereASocketCannotBeIsSaidBeforeTheCloudIsRead) {
   Shell shell;
   shell.write("file", "");
+  const Outcome kind = shell.run("touch missing.ply --device remote:file,profile=spoon");
+  EXPECT_TRUE(contains(kind.err, "unknown device profile 'spoon'")) << kind.err;
   const Outcome file = shell.run("touch missing.ply --device remote:file");
   EXPECT_EQ(file.code, 1);
   EXPECT_TRUE(contains(file.err, "not a socket")) << file.err;

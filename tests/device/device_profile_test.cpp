@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "palpate/base/error.hpp"
-#include "palpate/device/device.hpp"
+#include "palpate/device/remote.hpp"
 #include "support/folder.hpp"
 
 namespace palpate {
@@ -57,6 +57,32 @@ TEST(DeviceProfile, ReadsAUsersOwn) {
   EXPECT_EQ(read[0].damping, 1);
   EXPECT_FALSE(read[0].maximum_force);
   EXPECT_THROW(static_cast<void>(read_device_profiles(folder / "none.toml")), Error);
+  EXPECT_EQ(device_profile(folder / "my.toml").rate, 2000);
+  folder.write("two.toml", "[arm]\nmass = 0.2\n[leg]\nmass = 2\n");
+  EXPECT_THROW(static_cast<void>(device_profile(folder / "two.toml")), Error);
+}
+
+TEST(DeviceProfile, IsThatOfARemoteDevice) {
+  const test::Folder folder;
+  const SteadyClock clock;
+  DeviceProfile profile;
+  profile.maximum_torque = 0.3;
+  profile.maximum_grip = 4;
+  profile.angular_damping = 1e-4;
+  profile.damping = 2;
+  profile.mass = 0.3;
+  profile.delay = 5e-3;
+  RemoteDeviceOptions options = remote_options(profile);
+  options.path = folder / "device";
+  const RemoteDevice device(clock, options);
+  EXPECT_EQ(device.info().maximum_force, RemoteDeviceOptions().maximum_force) << "it does not say";
+  EXPECT_EQ(device.info().maximum_torque, 0.3);
+  EXPECT_EQ(device.info().maximum_grip, 4);
+  EXPECT_EQ(device.info().angular_damping, 1e-4);
+  EXPECT_EQ(device.info().damping, 2);
+  EXPECT_EQ(device.info().mass, 0.3);
+  EXPECT_EQ(device.info().delay, 5e-3);
+  EXPECT_EQ(device.info().rate, 1000);
 }
 
 TEST(DeviceProfile, SaysWhatIsWrongAndWhere) {

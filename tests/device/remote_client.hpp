@@ -59,8 +59,8 @@ class RemoteClient {
 
   struct Heard {
     unsigned flags = 0;
-    double z = 0;       // N
-    double torque = 0;  // about z, N m; of version 2
+    double z = 0;                                      // N
+    Eigen::Vector3d torque = Eigen::Vector3d::Zero();  // N m; of version 2
   };
   /// The newest force that waits; none when there is none.
   std::optional<Heard> hear() {
@@ -71,7 +71,7 @@ class RemoteClient {
       heard.emplace();
       heard->flags = bytes[6];
       std::memcpy(&heard->z, &bytes[48], sizeof heard->z);
-      std::memcpy(&heard->torque, &bytes[72], sizeof heard->torque);
+      std::memcpy(heard->torque.data(), &bytes[56], sizeof heard->torque);
     }
     return heard;
   }

@@ -18,6 +18,8 @@ namespace {
 constexpr double kStiffness = 500;  // N/m
 constexpr double kDepth = 5e-3;     // that the clients go into the wall, m
 
+constexpr double kLever = 0.01;  // of the torque, m
+
 struct Session {
   int states = 0;
   double deepest = 0;   // m
@@ -31,7 +33,7 @@ DeviceState serve(RemoteDevice& device, Session& session) {
   const DeviceState state = device.read();
   const bool felt = state.status == DeviceState::Status::ok;
   const double force = felt ? -kStiffness * std::min(0.0, state.position.z()) : 0;
-  device.write({0, 0, force});
+  device.write_wrench({.force = {0, 0, force}, .torque = {0, kLever * force, 0}});
   session.states += felt ? 1 : 0;
   session.deepest = std::min(session.deepest, state.position.z());
   session.largest = std::max(session.largest, force);
@@ -43,7 +45,9 @@ Session run(const std::string& program) {
   const test::Folder folder;
   const SteadyClock clock;
   // However busy the machine is: no silence, and no start so soft that it hides the wall.
-  RemoteDevice device(clock, {.path = folder / "device", .client_timeout = 60, .soft_start = 1e-3});
+  RemoteDevice device(
+      clock,
+      {.path = folder / "device", .maximum_torque = 1, .client_timeout = 60, .soft_start = 1e-3});
   Session session;
   std::jthread server([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) serve(device, session);
@@ -87,7 +91,14 @@ TEST(RemoteDeviceClient, InCIsADevice) {
 TEST(RemoteDeviceClient, InPythonIsADevice) {
   const std::string program = PALPATE_CLIENT_PYTHON;
   if (program.empty()) GTEST_SKIP() << "there is no python3";
-  check(run(program));
+  const Session session = run(program);
+  check(session);
+  double force = 0;
+  double torque = 0;
+  const auto at = session.printed.find("largest");
+  ASSERT_NE(at, std::string::npos) << session.printed;
+  ASSERT_EQ(std::sscanf(&session.printed[at], "largest %lf N, %lf N m", &force, &torque), 2);
+  EXPECT_NEAR(torque, kLever * force, 1e-4) << "it has a wrist";
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST_F(RemoteDeviceTest, TellsAClientThatTurnsTheTorque) {
   const auto heard = client.hear();
   ASSERT_TRUE(heard);
   EXPECT_EQ(heard->z, -1.5);
-  EXPECT_EQ(heard->torque, 0.25);
+  EXPECT_EQ(heard->torque, Vector3d(0, 0, 0.25));
   device.write_wrench({.torque = {0, std::numeric_limits<double>::quiet_NaN(), 0}});
   EXPECT_EQ(device.read().status, DeviceState::Status::failed);
 }

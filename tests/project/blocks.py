@@ -95,6 +95,8 @@ class Desk:
         self.write_sequence("FOLDER")
         setups = [block for block in blocks(ROOT / "docs" / "setup.md") if block.language == "toml"]
         self.write("desk.toml", setups[0].text)
+        profile = next(block for block in blocks(ROOT / "docs" / "remote_device.md") if block.language == "toml")
+        self.write("wrist.toml", profile.text)
         self.run(["palpate", "touch", "camera:simulated", "--simulated-time", "--duration", "0.3", "--record", "run.mcap",
                   "--log", "forces.csv"])
         recording = (self.folder / "run.mcap").read_bytes()

@@ -91,7 +91,9 @@ PlacementOptions parse_placement(std::string& device) {
   return placement;
 }
 
+constexpr std::string_view kRemote = "remote";
 constexpr std::string_view kRemotePath = "remote:";
+constexpr std::string_view kProfile = ",profile=";
 constexpr const char* kPlacementOptions = "scale=S, offset=X/Y/Z, frame=CAMERA and clutch=BUTTON";
 
 constexpr std::array<Named<DeviceKind>, 3> kDevices = {{{"scripted", DeviceKind::scripted},
@@ -121,6 +123,12 @@ std::string device_meant_by(const std::string& text) {
 // The device without its placement. Drivers list themselves which other options there are.
 DevicePlan plan_of(const std::string& text) {
   if (names_hardware(text)) return {DeviceKind::hardware, text};
+  if (const std::size_t at = text.find(kProfile);
+      at != std::string::npos && text.starts_with(kRemote)) {
+    DevicePlan plan = plan_of(text.substr(0, at));
+    plan.profile = text.substr(at + kProfile.size());
+    return plan;
+  }
   const std::size_t comma = text.find(',');
   if (comma < text.find('=') && text.find('=') != std::string::npos) {
     throw UsageError(fmt::format("'{}' is not an option of {}; the options are {}",
@@ -169,7 +177,8 @@ void add_device_option(OptionTable& table, std::vector<DevicePlan>& devices) {
       "device with mass and friction that is pulled along it; remote: another program, over a "
       "socket (docs/remote_device.md); forcedimension[:N], openhaptics[:NAME], haply[:ID]: "
       "hardware ('palpate devices' lists it; docs/devices.md). Options after the name: ,scale=S "
-      "scales its motion; ,offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns its axes to "
+      "scales its motion; ,profile=NAME or FILE.toml: what remote and hardware ones hold; "
+      ",offset=X/Y/Z (m) moves its origin; ,frame=CAMERA turns its axes to "
       "that camera (x right, y away from it, z up); ,clutch=BUTTON: while held, the hand moves "
       "without the tool. Repeat for each hand, up to four; several hands run in real time. "
       "Default: scripted with --trajectory, else simulated");

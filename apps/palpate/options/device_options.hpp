@@ -33,6 +33,7 @@ struct DevicePlan {
   DeviceKind kind = DeviceKind::simulated;
   /// Socket of a remote device (empty: default_remote_path()), or what open_device() takes.
   std::string path = {};
+  std::string profile = {};  ///< device_profile() of a remote one; empty: none
   PlacementOptions placement = {};
 
   /// Does it go where a trajectory or an exploration leads it?
@@ -42,7 +43,7 @@ struct DevicePlan {
 };
 
 /// "scripted", "simulated", "remote", "remote:PATH" or the name of hardware (open_device()), with
-/// options of its placement.
+/// options of its placement, and of a remote one its profile.
 /// @throws UsageError when it is none of them, or an option is not for it.
 [[nodiscard]] DevicePlan parse_device(const std::string& text);
 

@@ -41,11 +41,13 @@ std::string socket_path(const DevicePlan& plan) {
 void open_socket(Hand& hand, const MotionPlan& motion, const GuardOptions& guard,
                  const Clock& clock) {
   RemoteDeviceOptions device;
-  device.path = socket_path(hand.chosen);
-  device.rate = motion.rate.value_or(device.rate);
-  if (std::isfinite(guard.maximum_force)) {
+  if (const std::string& profile = hand.chosen.profile; !profile.empty()) {
+    device = remote_options(device_profile(profile));
+  } else if (std::isfinite(guard.maximum_force)) {
     device.maximum_force = guard.maximum_force / Servo::kForceShare;
   }
+  device.path = socket_path(hand.chosen);
+  device.rate = motion.rate.value_or(device.rate);
   auto opened = std::make_unique<RemoteDevice>(clock, device);
   hand.socket = opened.get();
   hand.duration = motion.duration;

@@ -127,8 +127,8 @@ struct DeviceProfile {
 /// The kinds that come with palpate, "unknown" first.
 [[nodiscard]] const std::vector<DeviceProfile>& device_profiles();
 
-/// The kind of that name.
-/// @throws Error that lists the kinds.
+/// The kind of that name; of one that ends in ".toml", the only kind in that file.
+/// @throws Error that lists the kinds, or as read_device_profiles() does.
 [[nodiscard]] DeviceProfile device_profile(
     std::string_view name, const std::vector<DeviceProfile>& among = device_profiles());
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "palpate/base/clock.hpp"
@@ -11,19 +12,25 @@
 namespace palpate {
 
 struct RemoteDeviceOptions {
-  std::string path = {};          ///< of the socket; empty: default_remote_path()
-  double maximum_force = 5;       ///< of the hardware, continuous, N; longer forces are shortened
-  double maximum_stiffness = 0;   ///< N/m that its maker allows; 0: unknown
-  double maximum_torque = 0;      ///< of the hardware, continuous, N m; 0: it renders none
-  double maximum_grip = 0;        ///< the same of its gripper, N
-  double angular_damping = 0;     ///< viscous, of its turns, N m s/rad; 0: unknown
-  bool turns = false;             ///< clients tell orientation and opening (version 2)
-  double workspace_radius = 0.1;  ///< m; only reported, never enforced
-  double rate = 1000;             ///< steps a second, Hz
-  double client_timeout = 0.1;    ///< s without a valid packet after which the client is lost
-  double fade = 0.05;             ///< s in which the largest force then goes to zero
-  double soft_start = 0.5;        ///< s in which the largest force comes back
+  std::string path = {};         ///< of the socket; empty: default_remote_path()
+  double maximum_force = 5;      ///< of the hardware, continuous, N; longer forces are shortened
+  double maximum_stiffness = 0;  ///< N/m that its maker allows; 0: unknown
+  double maximum_torque = 0;     ///< of the hardware, continuous, N m; 0: it renders none
+  double maximum_grip = 0;       ///< the same of its gripper, N
+  double angular_damping = 0;    ///< viscous, of its turns, N m s/rad; 0: unknown
+  bool turns = false;            ///< clients tell orientation and opening (version 2)
+  double damping = 0;            ///< viscous, of the hardware by itself, N s/m; 0: unknown
+  double mass = 0;               ///< that the hand moves with it, kg; 0: unknown
+  std::optional<double> delay = {};  ///< DeviceInfo::delay, s, the socket's included
+  double workspace_radius = 0.1;     ///< m; only reported, never enforced
+  double rate = 1000;                ///< steps a second, Hz
+  double client_timeout = 0.1;       ///< s without a valid packet after which the client is lost
+  double fade = 0.05;                ///< s in which the largest force then goes to zero
+  double soft_start = 0.5;           ///< s in which the largest force comes back
 };
+
+/// What a profile says of the hardware; the rest as by default.
+[[nodiscard]] RemoteDeviceOptions remote_options(const DeviceProfile& profile);
 
 /// Any program as a device: it sends where the hand is and receives the force, in datagrams over a
 /// UNIX socket that only its user may open (docs/remote_device.md).
