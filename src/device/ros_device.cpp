@@ -8,6 +8,7 @@
 
 #include "device/drivers.hpp"
 #include "device/ros_link.hpp"
+#include "geometry/turn.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::device {
@@ -46,17 +47,24 @@ class RosDriver final : public DeviceDriver {
     check_options(
         name, {"ns", "pose", "wrench", "twist", "joy", "profile", "delay", "rotation", "joints"});
     set_up(link_, name);
-    info_ = info_of(device_profile(name.option("profile", "unknown")), "ros:" + name.device);
+    const DeviceProfile profile = device_profile(name.option("profile", "unknown"));
+    info_ = info_of(profile, "ros:" + name.device);
+    // No message tells whether the device has motors at its wrist.
+    const bool told = name.options.contains("profile");
+    if (link_.takes_torque && told) info_.maximum_torque = profile.maximum_torque.value_or(0);
     connect();
     measure(name);
   }
 
-  ~RosDriver() override { link_.write(Vector3d::Zero()); }
+  ~RosDriver() override { link_.write({}); }
   RosDriver(const RosDriver&) = delete;
   RosDriver& operator=(const RosDriver&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] DeviceState exchange(const Vector3d& force) override;
+  [[nodiscard]] DeviceState exchange(const Vector3d& force) override {
+    return exchange_wrench({.force = force});
+  }
+  [[nodiscard]] DeviceState exchange_wrench(const Wrench& wrench) override;
 
  private:
   void connect();
@@ -67,6 +75,7 @@ class RosDriver final : public DeviceDriver {
   bool take();
   [[nodiscard]] double age() const { return message::system_now() - *reading_.stamp; }
   void estimate_velocity(double now);
+  void estimate_turns(double now);
   [[nodiscard]] DeviceState ours() const;
 
   RosLink link_;
@@ -77,6 +86,8 @@ class RosDriver final : public DeviceDriver {
   double velocity_time_ = 0;          // when a velocity came last
   Vector3d from_ = Vector3d::Zero();  // a position from which the velocity is found, and its time
   double from_time_ = 0;
+  Eigen::Quaterniond turned_ = Eigen::Quaterniond::Identity();  // the same of turns
+  double turned_time_ = 0;
 };
 
 void RosDriver::connect() {
@@ -175,9 +186,10 @@ bool RosDriver::take() {
   return posed;
 }
 
-DeviceState RosDriver::exchange(const Vector3d& force) {
+DeviceState RosDriver::exchange_wrench(const Wrench& wrench) {
   const double begin = clock_.now();
-  if (!link_.write(link_.axes.forces.transpose() * force)) {
+  const Eigen::Matrix3d to_node = link_.axes.forces.transpose();
+  if (!link_.write({to_node * wrench.force, to_node * wrench.torque})) {
     throw Error(
         fmt::format("{}: the force could not be sent on {}", info_.name, link_.force_topic));
   }
@@ -193,8 +205,21 @@ DeviceState RosDriver::exchange(const Vector3d& force) {
   if (!link_.listened())
     throw Error(fmt::format("{}: no node subscribes to {}", info_.name, link_.force_topic));
   check_age();
-  if (const double now = clock_.now(); now - velocity_time_ > kSilence) estimate_velocity(now);
+  const double now = clock_.now();
+  if (now - velocity_time_ > kSilence) estimate_velocity(now);
+  if (info_.maximum_torque > 0) estimate_turns(now);
   return ours();
+}
+
+// From orientations, whatever a node tells: many leave their twists' angular part at zero.
+void RosDriver::estimate_turns(double now) {
+  const double span = now - turned_time_;
+  if (span < kVelocitySpan) return;
+  const Eigen::Quaterniond turned = reading_.state.orientation;
+  reading_.state.angular_velocity =
+      span < 4 * kVelocitySpan ? Vector3d(turn_between(turned_, turned) / span) : Vector3d::Zero();
+  turned_ = turned;
+  turned_time_ = now;
 }
 
 void RosDriver::estimate_velocity(double now) {
@@ -213,6 +238,7 @@ DeviceState RosDriver::ours() const {
   state.position = to_ours * state.position;
   state.velocity = to_ours * state.velocity;
   state.orientation = Eigen::Quaterniond(to_ours) * state.orientation;
+  state.angular_velocity = to_ours * state.angular_velocity;
   return state;
 }
 

@@ -16,6 +16,7 @@ namespace {
 
 using namespace message;
 using Eigen::Vector3d;
+using palpate::Wrench;  // not the message's
 
 // Force Dimension's: x towards the operator, y to the right.
 const Eigen::Matrix3d kForceDimension =
@@ -39,8 +40,13 @@ void put_button(std::uint32_t bit, bool down, RosReading& reading) {
   reading.state.buttons = (reading.state.buttons & ~(1U << bit)) | (down ? 1U << bit : 0U);
 }
 
-void put_wrench(const Vector3d& force, WrenchStamped& message) {
-  message.wrench.force = vector_of(force);
+void put_wrench(const Wrench& wrench, WrenchStamped& message) {
+  message.wrench = {vector_of(wrench.force), vector_of(wrench.torque)};
+}
+
+void wrench_to(RosLink& link, const std::string& topic) {
+  link.force_to<WrenchStamped>(topic, put_wrench);
+  link.takes_torque = true;
 }
 
 // The presets: docs/ros2.md names the packages.
@@ -54,7 +60,7 @@ void crtk(RosLink& link, const DeviceName& name) {
                         if (!message.position.empty())
                           reading.state.gripper = message.position.front();
                       });
-  link.force_to<WrenchStamped>(ns + "/body/servo_cf", put_wrench);
+  wrench_to(link, ns + "/body/servo_cf");
 }
 
 // The parameter transform_rotation of fd's ee_pose_broadcaster: radians about z, y and x, as its
@@ -82,7 +88,8 @@ Eigen::Matrix3d broadcast_rotation(const DeviceName& name) {
       .toRotationMatrix();
 }
 
-// Count of numbers that the effort controller takes: forces, then torques and the gripper's.
+// Count of numbers that the effort controller takes: forces, of devices with motors at the wrist
+// torques, then the gripper's, whose opening no message tells.
 std::size_t joints_of(const DeviceName& name) {
   const std::string text = name.option("joints", "3");
   if (text.size() == 1 && text[0] >= '3' && text[0] <= '7')
@@ -99,11 +106,15 @@ void fd(RosLink& link, const DeviceName& name) {
     put_button(0, message.data, reading);
   });
   const std::size_t joints = joints_of(name);
-  link.force_to<Float64MultiArray>(ns + "/fd_controller/commands",
-                                   [=](const Vector3d& force, Float64MultiArray& message) {
-                                     message.data.assign(force.data(), force.data() + 3);
-                                     message.data.resize(joints, 0);
-                                   });
+  link.takes_torque = joints >= 6;
+  link.force_to<Float64MultiArray>(
+      ns + "/fd_controller/commands",
+      [joints, torque = link.takes_torque](const Wrench& wrench, Float64MultiArray& message) {
+        message.data.assign(wrench.force.data(), wrench.force.data() + 3);
+        if (torque)
+          message.data.insert(message.data.end(), wrench.torque.data(), wrench.torque.data() + 3);
+        message.data.resize(joints, 0);
+      });
 }
 
 void ros_force_dimension(RosLink& link, const DeviceName& name) {
@@ -122,8 +133,8 @@ void ros_force_dimension(RosLink& link, const DeviceName& name) {
   link.on<Float64>(ns + "/feedback/gripper_gap", [](const Float64& message, RosReading& reading) {
     reading.state.gripper = message.data;
   });
-  link.force_to<Vector3>(ns + "/command/force", [](const Vector3d& force, Vector3& message) {
-    message = vector_of(force);
+  link.force_to<Vector3>(ns + "/command/force", [](const Wrench& wrench, Vector3& message) {
+    message = vector_of(wrench.force);
   });
 }
 
@@ -137,7 +148,7 @@ void omni(RosLink& link, const DeviceName& name) {
                                    });
   link.force_to<OmniFeedback>(
       ns + "/force_feedback",
-      [](const Vector3d& force, OmniFeedback& message) { message.force = vector_of(force); });
+      [](const Wrench& wrench, OmniFeedback& message) { message.force = vector_of(wrench.force); });
 }
 
 void haply_isir(RosLink& link, const DeviceName& name) {
@@ -153,8 +164,8 @@ void haply_isir(RosLink& link, const DeviceName& name) {
     reading.has_velocity = true;
   });
   link.force_to<Float32MultiArray>(ns + "/haply_forces",
-                                   [](const Vector3d& force, Float32MultiArray& message) {
-                                     const Eigen::Vector3f numbers = force.cast<float>();
+                                   [](const Wrench& wrench, Float32MultiArray& message) {
+                                     const Eigen::Vector3f numbers = wrench.force.cast<float>();
                                      message.data.assign(numbers.data(), numbers.data() + 3);
                                    });
 }
@@ -175,7 +186,7 @@ void generic(RosLink& link, const DeviceName& name) {
       }
     });
   }
-  link.force_to<WrenchStamped>(wrench, put_wrench);
+  wrench_to(link, wrench);
 }
 
 struct RosPreset {

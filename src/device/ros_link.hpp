@@ -82,11 +82,11 @@ struct RosLink {
     buttons = std::make_unique<RosTopicInput<T>>(participant, topic, std::move(put), true);
   }
   template <message::Message T>
-  void force_to(const std::string& topic, std::function<void(const Eigen::Vector3d&, T&)> put) {
+  void force_to(const std::string& topic, std::function<void(const Wrench&, T&)> put) {
     auto writer = std::make_shared<dds::Writer<T>>(participant, topic,
                                                    dds::Quality{.reliable = true, .depth = 1});
-    write = [writer, put = std::move(put), message = T{}](const Eigen::Vector3d& force) mutable {
-      put(force, message);
+    write = [writer, put = std::move(put), message = T{}](const Wrench& wrench) mutable {
+      put(wrench, message);
       if constexpr (requires { message.header; })
         message.header.stamp = message::to_time(message::system_now());
       return writer->write(message);
@@ -99,11 +99,12 @@ struct RosLink {
   std::unique_ptr<RosInput> pose;
   std::unique_ptr<RosInput> buttons;  // null: there are none
   std::vector<std::unique_ptr<RosInput>> others;
-  std::function<bool(const Eigen::Vector3d&)> write;
+  std::function<bool(const Wrench&)> write;  // in the node's axes for forces
   std::function<bool()> listened;
   std::string pose_topic;
   std::string force_topic;
   RosAxes axes;
+  bool takes_torque = false;  // the node's message has a place for it
 };
 
 /// Subscribes and publishes as the preset `name.device` requires (docs/ros2.md).
