@@ -37,7 +37,8 @@ Reason broken_path(const ServoState& state) {
   if (has(state.field_notes, FieldNote::no_surface)) return "no source has a surface";
   if (has(state.field_notes, FieldNote::not_loaded)) return kNotLoaded;
   if (has(state.field_notes, FieldNote::behind)) return kBehind;
-  if (has(state.contact.notes, ContactNote::lost | ContactNote::fell | ContactNote::freed))
+  if (has(state.contact.notes,
+          ContactNote::lost | ContactNote::fell | ContactNote::freed | ContactNote::inside))
     return "the surface let the tool go";
   return {};
 }

@@ -167,11 +167,13 @@ TEST_F(ARobot, FollowsOnCloudsUntilASurfaceLetsTheToolGo) {
   EXPECT_FALSE(runs(kLook).target);
   state_.contact.notes = ContactNote::none;
   EXPECT_TRUE(runs(kLook).target) << "a surface that moved a little is no reason to stop";
-  state_.contact.notes = ContactNote::freed;
-  EXPECT_FALSE(runs(kLook).target);
-  state_.contact.notes = ContactNote::none;
-  EXPECT_FALSE(runs(0.45).target);
-  EXPECT_TRUE(runs(0.1).target);
+  for (const ContactNote note : {ContactNote::freed, ContactNote::inside}) {
+    state_.contact.notes = note;
+    EXPECT_FALSE(runs(kLook).target);
+    state_.contact.notes = ContactNote::none;
+    EXPECT_FALSE(runs(0.45).target);
+    EXPECT_TRUE(runs(0.1).target);
+  }
   state_.field_notes = FieldNote::behind;
   EXPECT_FALSE(runs(1).target);
   state_.field_notes = FieldNote::none;
