@@ -194,6 +194,29 @@ TEST(ToolTexture, NoSampleSinksInUnseen) {
   }
 }
 
+// Deeper than 0.28 of its wavelength a relief folds over: it has places without a slope, and what
+// is in a fold is held. That is no fault, and the hand comes out.
+TEST(ToolTexture, AFoldedReliefIsNoFault) {
+  const PlaneField plane;
+  for (Tool& tool : four_tools()) {
+    ToolProxy proxy = proxy_of(std::move(tool), carved({.amplitude = 1e-3, .wavelength = 1e-3}));
+    int touching = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double t = kTick * i;
+      const Pose hand =
+          pose_at({0.02 * std::sin(3 * t), 0.02 * std::sin(2 * t), 0.04 + 0.045 * std::cos(7 * t)},
+                  {0, 0, t}, 0.01);
+      const ToolContact contact = proxy.step(plane, hand, kTick);
+      ASSERT_FALSE(has(contact.notes, ContactNote::fault));
+      touching += contact.touching ? 1 : 0;
+    }
+    EXPECT_GT(touching, 300);
+    const Pose away = pose_at({0, 0, 0.2}, {0, 0, 3}, 0.01);
+    for (int i = 0; i < 3000; ++i) (void)proxy.step(plane, away, kTick);
+    EXPECT_LT((proxy.pose().position - away.position).norm(), 1e-9);
+  }
+}
+
 // A page's sliders change it under a hand: the tool goes to the bottom of another relief.
 TEST(ToolTexture, ChangesUnderATool) {
   const PlaneField plane;
