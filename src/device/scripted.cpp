@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/turn.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
 
@@ -14,8 +15,11 @@ void check(const Trajectory& trajectory) {
     throw Error("a trajectory without rows cannot be played: give at least one row");
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     const TrajectoryRow& row = trajectory[i];
-    if (!std::isfinite(row.time) || !row.position.allFinite()) {
-      throw Error(fmt::format("row {} of the trajectory is not finite: remove or correct it", i));
+    const Eigen::Quaterniond turned = row.orientation.value_or(Eigen::Quaterniond::Identity());
+    if (!std::isfinite(row.time) || !row.position.allFinite() || !is_about_unit(turned) ||
+        !std::isfinite(row.opening.value_or(0))) {
+      throw Error(fmt::format(
+          "row {} of the trajectory is not finite, or no pose: remove or correct it", i));
     }
     if (i > 0 && !(row.time > trajectory[i - 1].time)) {
       throw Error(
@@ -30,6 +34,8 @@ ScriptedDevice::ScriptedDevice(Trajectory trajectory) : rows_(std::move(trajecto
   info_.name = "scripted";
   info_.maximum_force = 0;
   info_.keeps_time = true;
+  info_.has_orientation = rows_.front().orientation.has_value();
+  info_.has_gripper = rows_.front().opening.has_value();
   if (rows_.size() > 1) {
     info_.rate = static_cast<double>(rows_.size() - 1) / (rows_.back().time - rows_.front().time);
   }
@@ -40,15 +46,21 @@ DeviceState ScriptedDevice::read() noexcept {
   if (next_ == rows_.size()) {
     state_.status = DeviceState::Status::finished;
     state_.velocity.setZero();
+    state_.angular_velocity.setZero();
     return state_;
   }
   const TrajectoryRow& row = rows_[next_];
+  const Eigen::Quaterniond turned = row.orientation.value_or(Eigen::Quaterniond::Identity());
   if (next_ > 0) {
     const TrajectoryRow& before = rows_[next_ - 1];
-    state_.velocity = (row.position - before.position) / (row.time - before.time);
+    const double span = row.time - before.time;
+    state_.velocity = (row.position - before.position) / span;
+    state_.angular_velocity = turn_between(state_.orientation, turned) / span;
   }
   state_.time = row.time;
   state_.position = row.position;
+  state_.orientation = turned;
+  state_.gripper = row.opening.value_or(0);
   ++next_;
   return state_;
 }

@@ -175,8 +175,13 @@ void SimulatedDevice::Inside::fail(const char* what) noexcept {
 TargetSource::Target SimulatedDevice::Inside::target_at(double time) noexcept {
   if (source != nullptr) return source->target(time, mass.position);
   TargetSource::Target along;
-  along.position = trajectory.empty() ? options.position : trajectory.at(time);
+  along.position = options.position;
   along.orientation = resting();
+  if (trajectory.empty()) return along;
+  const Pose pose = trajectory.at(time);
+  along.position = pose.position;
+  if (trajectory.front().orientation) along.orientation = pose.orientation;
+  along.opening = pose.opening;
   return along;
 }
 
@@ -192,9 +197,10 @@ bool SimulatedDevice::Inside::fetch(double time) noexcept {
 }
 
 void SimulatedDevice::Inside::begin() noexcept {
-  if (!fetch(0) || source == nullptr) return;
-  mass.position = target.position;
-  if (wrist) wrist->put(target.orientation.normalized());
+  if (!fetch(0)) return;
+  const bool turned = !trajectory.empty() && trajectory.front().orientation;
+  if (source != nullptr) mass.position = target.position;
+  if (wrist && (source != nullptr || turned)) wrist->put(target.orientation.normalized());
 }
 
 // What the encoders read, and how fast it changes.

@@ -5,14 +5,15 @@
 #include <cstddef>
 #include <utility>
 
+#include "palpate/geometry/pose.hpp"
 #include "palpate/io/trajectory.hpp"
 
 // Moves a hand's target between given positions: along a trajectory, or after commands that come
 // one by one. One thread uses each; real-time but for construction.
 namespace palpate {
 
-/// The position on a trajectory at times that grow: linear between rows, at rest before the first
-/// and after the last.
+/// The pose on a trajectory at times that grow: linear between rows, at rest before the first and
+/// after the last.
 class Playback {
  public:
   /// `trajectory`: empty, or such that check() accepts it.
@@ -23,17 +24,25 @@ class Playback {
   [[nodiscard]] double end() const noexcept { return rows_.back().time; }
   [[nodiscard]] const TrajectoryRow& front() const noexcept { return rows_.front(); }
 
-  /// m; `time` is not before that of the last call, unless rewind() came between. Not empty.
-  [[nodiscard]] Eigen::Vector3d at(double time) noexcept {
+  /// `time` is not before that of the last call, unless rewind() came between. Not empty.
+  [[nodiscard]] Pose at(double time) noexcept {
     while (cursor_ + 1 < rows_.size() && rows_[cursor_ + 1].time <= time) ++cursor_;
-    const TrajectoryRow& a = rows_[cursor_];
-    if (cursor_ + 1 == rows_.size() || time <= a.time) return a.position;
-    const TrajectoryRow& b = rows_[cursor_ + 1];
-    return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
+    const Pose a = pose_of(rows_[cursor_]);
+    const double since = time - rows_[cursor_].time;
+    if (cursor_ + 1 == rows_.size() || since <= 0) return a;
+    const Pose b = pose_of(rows_[cursor_ + 1]);
+    const double share = since / (rows_[cursor_ + 1].time - rows_[cursor_].time);
+    return {a.position + share * (b.position - a.position),
+            a.orientation.slerp(share, b.orientation), a.opening + share * (b.opening - a.opening)};
   }
   void rewind() noexcept { cursor_ = 0; }
 
  private:
+  static Pose pose_of(const TrajectoryRow& row) noexcept {
+    return {row.position, row.orientation.value_or(Eigen::Quaterniond::Identity()),
+            row.opening.value_or(0)};
+  }
+
   Trajectory rows_;
   std::size_t cursor_ = 0;  // row before the time of the last call
 };

@@ -92,7 +92,8 @@ struct PlayedTrajectory {
   double held_at = 0;          // on the trajectory, when a press was held back last
   std::size_t next_press = 0;  // that is not over
 
-  [[nodiscard]] Vector3d position() noexcept { return rows.at(time); }
+  [[nodiscard]] Pose pose() noexcept { return rows.empty() ? Pose() : rows.at(time); }
+  [[nodiscard]] Vector3d position() noexcept { return pose().position; }
   [[nodiscard]] bool ends() noexcept;
   [[nodiscard]] bool skips(double pull) noexcept;
 };
@@ -154,6 +155,8 @@ void TeleoperatedHand::Inside::begin(double now, const Vector3d& position) noexc
   if (played.rows.empty()) return;
   target.position = played.rows.front().position;
   played.time = played.rows.front().time;
+  target.orientation = played.pose().orientation;
+  target.opening = played.pose().opening;
   mode = Mode::playing;
 }
 
@@ -260,8 +263,11 @@ void TeleoperatedHand::Inside::go(const Vector3d& goal, double speed, double dt)
 
 void TeleoperatedHand::Inside::turn(double dt) noexcept {
   if (mode == Mode::released) return;
-  const TargetSource::Target goal =
-      mode == Mode::following ? command.target : TargetSource::Target();
+  Pose goal = played.pose();
+  if (mode == Mode::following) {
+    goal.orientation = command.target.orientation;
+    goal.opening = command.target.opening;
+  }
   const double angle = target.orientation.angularDistance(goal.orientation);
   const double reach = options.speed * dt;
   if (kLever * angle <= reach) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/turn.hpp"
 #include "io/table.hpp"
 #include "io/text_scanner.hpp"
 #include "io/time_unit.hpp"
@@ -21,10 +22,12 @@ namespace palpate {
 
 namespace {
 
-// First what every trajectory has, then what a measured force takes.
-constexpr std::array<std::string_view, 7> kColumns = {"t",  "hip_x", "hip_y", "hip_z",
-                                                      "fx", "fy",    "fz"};
+// First what every trajectory has, then what a measured force, an orientation and an opening take.
+constexpr std::array<std::string_view, 12> kColumns = {
+    "t", "hip_x", "hip_y", "hip_z", "fx", "fy", "fz", "qx", "qy", "qz", "qw", "gripper"};
 constexpr std::size_t kNeeded = 4;
+constexpr std::size_t kTurned = 7;
+constexpr std::size_t kOpening = 11;
 
 std::vector<std::string_view> split(std::string_view line, std::string_view separator) {
   std::vector<std::string_view> cells;
@@ -79,7 +82,7 @@ class Reader {
       take_line(line);
     }
     if (stream.bad()) fail("could not be read completely");
-    if (slots_.empty()) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
+    if (!begun_) fail("is empty: the first line must name the columns t,hip_x,hip_y,hip_z");
     if (rows_.empty()) fail("has no rows: give at least one step");
     return std::move(rows_);
   }
@@ -101,7 +104,7 @@ class Reader {
     }
     const std::string_view text = io::trim(line);
     if (text.empty() || text.front() == '#') return;
-    if (slots_.empty()) {
+    if (!begun_) {
       separator_ = separator_of(text);
       take_columns(split(text, separator_));
     } else {
@@ -110,18 +113,29 @@ class Reader {
   }
 
   void take_columns(const std::vector<std::string_view>& names) {
-    for (std::size_t wanted = 0; wanted < (options_.forces ? kColumns.size() : kNeeded); ++wanted) {
+    begun_ = true;
+    for (std::size_t wanted = 0; wanted < kColumns.size(); ++wanted) {
       const auto found = std::ranges::find(names, kColumns[wanted]);
       if (found != names.end()) {
-        slots_.push_back(static_cast<std::size_t>(found - names.begin()));
-        continue;
+        slots_[wanted] = static_cast<std::size_t>(found - names.begin());
+      } else if (wanted < kNeeded) {
+        fail(fmt::format("no column '{}': {} must name t,hip_x,hip_y,hip_z (it reads '{}')",
+                         kColumns[wanted], named() ? "the list of columns" : "the header line",
+                         fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
       }
-      if (wanted >= kNeeded) break;
-      fail(fmt::format("no column '{}': {} must name t,hip_x,hip_y,hip_z (it reads '{}')",
-                       kColumns[wanted], named() ? "the list of columns" : "the header line",
-                       fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
     }
-    if (slots_.size() < kColumns.size()) slots_.resize(kNeeded);
+    if (!options_.forces || count(kNeeded, kTurned) < kTurned - kNeeded) {
+      std::fill(slots_.begin() + kNeeded, slots_.begin() + kTurned, std::nullopt);
+    }
+    const std::size_t turned = count(kTurned, kOpening);
+    if (turned > 0 && turned < kOpening - kTurned)
+      fail("an orientation has four columns, qx,qy,qz,qw: name all of them, or none");
+  }
+
+  [[nodiscard]] std::size_t count(std::size_t begin, std::size_t end) const {
+    return static_cast<std::size_t>(std::count_if(
+        slots_.begin() + static_cast<std::ptrdiff_t>(begin),
+        slots_.begin() + static_cast<std::ptrdiff_t>(end), [](const auto& slot) { return slot; }));
   }
 
   void row(const std::vector<std::string_view>& cells) {
@@ -130,7 +144,9 @@ class Reader {
                        options_.columns.size()));
     }
     std::array<double, kColumns.size()> values{};
-    for (std::size_t i = 0; i < slots_.size(); ++i) values[i] = value(cells, i);
+    for (std::size_t i = 0; i < slots_.size(); ++i) {
+      if (slots_[i]) values[i] = value(cells, i);
+    }
     if (const auto wrong = io::not_in_seconds(values[0])) {
       fail(fmt::format("{}. {}.", wrong->what, wrong->remedy));
     }
@@ -141,11 +157,15 @@ class Reader {
     TrajectoryRow& added = rows_.emplace_back();
     added.time = values[0];
     added.position = {values[1], values[2], values[3]};
-    if (slots_.size() > kNeeded) added.force = {values[4], values[5], values[6]};
+    if (slots_[kNeeded]) added.force = {values[4], values[5], values[6]};
+    if (slots_[kOpening]) added.opening = values[kOpening];
+    if (!slots_[kTurned]) return;
+    added.orientation = {values[10], values[7], values[8], values[9]};
+    if (!is_about_unit(*added.orientation)) fail("qx,qy,qz,qw is no quaternion of unit length");
   }
 
   double value(const std::vector<std::string_view>& cells, std::size_t column) {
-    const std::size_t slot = slots_[column];
+    const std::size_t slot = *slots_[column];
     if (slot >= cells.size()) {
       fail(fmt::format("the row ends before column '{}'; a row of this file has at least {} values",
                        kColumns[column], slot + 1));
@@ -162,8 +182,8 @@ class Reader {
   std::size_t line_ = 0;
   const TrajectoryOptions& options_;
   std::string_view separator_ = ",";
-  std::vector<std::size_t>
-      slots_;  // of kColumns, in a row; without those of a force if it has none
+  bool begun_ = false;                                             // the columns are known
+  std::array<std::optional<std::size_t>, kColumns.size()> slots_;  // of kColumns, in a row
   Trajectory rows_;
 };
 

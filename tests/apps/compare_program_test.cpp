@@ -36,6 +36,28 @@ TEST(Compare, OfItsOwnLogIsZero) {
   EXPECT_LT(same["direction_deg"].get<double>(), 1e-6);
 }
 
+// A box that is turned while it is pressed on the plane, and one that is pulled over a torus.
+TEST(Compare, OfAToolsOwnLogIsZero) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  std::string way = "t,hip_x,hip_y,hip_z,qx,qy,qz,qw\n";
+  for (int k = 0; k < 600; ++k) {
+    const double half = 0.2 * std::sin(0.01 * k);
+    way += fmt::format("{},0,0,{},0,{},0,{}\n", 1e-3 * k, 5e-3 + 4e-3 * std::cos(0.02 * k),
+                       std::sin(half), std::cos(half));
+  }
+  shell.write("way.csv", way);
+  const std::string feel = "plane.xyz --tool box:20x30x10 ";
+  ASSERT_EQ(shell.run("touch " + feel + "--trajectory way.csv --log log.csv").code, 0);
+  EXPECT_NE(shell.read("log.csv").find(",qx,qy,qz,qw"), std::string::npos);
+  const auto same = compared(shell, feel + "--trajectory log.csv");
+  EXPECT_GT(same["steps"].get<int>(), 200);
+  EXPECT_EQ(same["rms_N"].get<double>(), 0);
+  const std::string torus = "synthetic:torus --stiffness 500 --tool box:20x30x10 ";
+  ASSERT_EQ(shell.run("touch " + torus + "--duration 1 --log log.csv").code, 0);
+  EXPECT_EQ(compared(shell, torus + "--trajectory log.csv")["rms_N"].get<double>(), 0);
+}
+
 TEST(Compare, OfAnExplorationsLogIsZero) {
   Shell shell;
   ASSERT_EQ(shell.run("touch synthetic:bumps --duration 1 --stiffness 500 --log log.csv").code, 0);

@@ -93,10 +93,10 @@ TEST_F(HandWrench, OfAnyNodeIsToldAsItIs) {
     return told && message::eigen(told->wrench.torque) == kTorque;
   })) << device->reason();
   EXPECT_EQ(message::eigen(node.told()->wrench.force), kForce);
-  EXPECT_TRUE(pushes_until(*device, [&] {
-    return (state_.angular_velocity - Vector3d(0, 0, kTurning)).norm() < 0.1 * kTurning;
-  })) << "found from orientations: "
-      << state_.angular_velocity.transpose();
+  EXPECT_TRUE(pushes_until(
+      *device,
+      [&] { return (state_.angular_velocity - Vector3d(0, 0, kTurning)).norm() < 0.1 * kTurning; }))
+      << "found from orientations: " << state_.angular_velocity.transpose();
 }
 
 // Its axes: x to the operator, y to the right; forces, torques, and a gripper that gets nothing.

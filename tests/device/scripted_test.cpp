@@ -30,6 +30,27 @@ TEST(ScriptedDevice, PlaysOneRowAStepThenIsFinished) {
   EXPECT_EQ(last.position, rows.back().position);
 }
 
+TEST(ScriptedDevice, HoldsAToolAsTheRowsSay) {
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.1, Vector3d::UnitX()));
+  Trajectory rows(2);
+  rows[0].orientation = Eigen::Quaterniond::Identity();
+  rows[0].opening = 0;
+  rows[1].time = 0.5;
+  rows[1].orientation = turned;
+  rows[1].opening = 0.02;
+  ScriptedDevice device(rows);
+  EXPECT_TRUE(device.info().has_orientation && device.info().has_gripper);
+  (void)device.read();
+  const DeviceState state = device.read();
+  EXPECT_EQ(state.orientation.coeffs(), turned.coeffs());
+  EXPECT_LT((state.angular_velocity - Vector3d(0.2, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(state.gripper, 0.02);
+  EXPECT_EQ(device.read().angular_velocity, Vector3d::Zero());
+  EXPECT_FALSE(ScriptedDevice(three_rows()).info().has_orientation);
+  rows[1].orientation = Eigen::Quaterniond(0, 0, 0, 0);
+  EXPECT_THROW(ScriptedDevice{rows}, Error);
+}
+
 TEST(ScriptedDevice, VelocityIsFromTheRowBeforeOverUnevenTimes) {
   ScriptedDevice device(three_rows());
   EXPECT_EQ(device.read().velocity, Vector3d::Zero());

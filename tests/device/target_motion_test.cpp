@@ -13,20 +13,38 @@ using Eigen::Vector3d;
 
 TEST(Playback, IsStraightBetweenRowsAndRestsBeforeAndAfterThem) {
   Playback way({{1, {0, 0, 0}}, {1.5, {0.1, 0, 0}}, {3.5, {0.1, 0.4, 0}}});
-  EXPECT_EQ(way.at(-1), Vector3d(0, 0, 0));
-  EXPECT_NEAR((way.at(1.25) - Vector3d(0.05, 0, 0)).norm(), 0, 1e-15);
-  EXPECT_NEAR((way.at(2) - Vector3d(0.1, 0.1, 0)).norm(), 0, 1e-15);
-  EXPECT_EQ(way.at(9), Vector3d(0.1, 0.4, 0));
+  EXPECT_EQ(way.at(-1).position, Vector3d(0, 0, 0));
+  EXPECT_NEAR((way.at(1.25).position - Vector3d(0.05, 0, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((way.at(2).position - Vector3d(0.1, 0.1, 0)).norm(), 0, 1e-15);
+  EXPECT_EQ(way.at(9).position, Vector3d(0.1, 0.4, 0));
   EXPECT_EQ(way.end(), 3.5);
   way.rewind();
-  EXPECT_NEAR((way.at(1.25) - Vector3d(0.05, 0, 0)).norm(), 0, 1e-15);
+  EXPECT_NEAR((way.at(1.25).position - Vector3d(0.05, 0, 0)).norm(), 0, 1e-15);
 }
 
 TEST(Playback, OneRowIsAPlaceAndNoRowIsNone) {
   Playback place({{2, {1, 2, 3}}});
-  EXPECT_EQ(place.at(0), Vector3d(1, 2, 3));
-  EXPECT_EQ(place.at(5), Vector3d(1, 2, 3));
+  EXPECT_EQ(place.at(0).position, Vector3d(1, 2, 3));
+  EXPECT_EQ(place.at(5).position, Vector3d(1, 2, 3));
   EXPECT_TRUE(Playback().empty());
+}
+
+TEST(Playback, TurnsAndOpensEvenlyBetweenRows) {
+  const auto turned = [](double angle) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  };
+  Trajectory rows(2);
+  rows[0].time = 1;
+  rows[0].orientation = turned(0.2);
+  rows[0].opening = 0.01;
+  rows[1].time = 3;
+  rows[1].orientation = turned(1);
+  rows[1].opening = 0.03;
+  Playback way(rows);
+  EXPECT_NEAR(way.at(0).orientation.angularDistance(turned(0.2)), 0, 1e-12);
+  EXPECT_NEAR(way.at(1.5).orientation.angularDistance(turned(0.4)), 0, 1e-12);
+  EXPECT_NEAR(way.at(1.5).opening, 0.015, 1e-15);
+  EXPECT_EQ(way.at(4).opening, 0.03);
 }
 
 using Eigen::Vector3d;

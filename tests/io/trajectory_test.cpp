@@ -39,6 +39,21 @@ TEST(Trajectory, ReadsWhatSpreadsheetsWrite) {
   EXPECT_EQ(parse("t\thip_x\thip_y\thip_z\n0\t1\t2\t3\n").size(), 1u);
 }
 
+TEST(Trajectory, ReadsHowAToolIsHeldWhereThatIsTold) {
+  const std::string header = "t,hip_x,hip_y,hip_z,qx,qy,qz,qw,gripper\n";
+  const Trajectory rows = parse(header + "0,1,2,3,0.6,0,0,0.8,0.01\n");
+  EXPECT_EQ(rows[0].orientation->coeffs(), Eigen::Vector4d(0.6, 0, 0, 0.8));
+  EXPECT_EQ(rows[0].opening, 0.01);
+  const Trajectory straight = parse("t,hip_x,hip_y,hip_z\n0,1,2,3\n");
+  EXPECT_FALSE(straight[0].orientation || straight[0].opening);
+  EXPECT_NE(message("t,hip_x,hip_y,hip_z,qx,qy,qz\n0,1,2,3,0,0,0\n").find("name all of them"),
+            std::string::npos);
+  EXPECT_NE(message(header + "0,1,2,3,0.6,0,0,0.9,0\n1,1,2,3,1,1,0,0,0\n").find("line 3: qx"),
+            std::string::npos);
+  EXPECT_NE(message(header + "0,1,2,3,0.6,0,0,0.8,nan\n").find("column 'gripper'"),
+            std::string::npos);
+}
+
 TEST(Trajectory, SaysThatTextIsUtf16) {
   EXPECT_NE(message(std::string("\xff\xfet\0,\0", 6)).find("line 1: this is UTF-16 text"),
             std::string::npos);
