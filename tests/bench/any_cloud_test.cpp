@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "any_cloud/ablation.hpp"
 #include "any_cloud/rows.hpp"
 #include "any_cloud/score.hpp"
 
