@@ -18,9 +18,8 @@ constexpr int kRestores = 4;  // of the looks: the last ones only lead out of th
 constexpr int kShortened = 3;
 constexpr double kWidest = 0.375;  // of R: margin within which a surface is nearly flat (judgement)
 constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
-constexpr int kRounds =
-    3;  // in which friction finds the contacts that it tips a tool on (judgement)
-constexpr double kWithin = 1.5;     // margins are so much wider than the motion that they are for
+constexpr int kRounds = 3;       // that find the contacts on which friction tips a tool (judgement)
+constexpr double kWithin = 1.5;  // margins are so much wider than the motion that they are for
 constexpr double kLongest = 0.25;   // of R, that a sample moves between two looks
 constexpr double kSlowest = 0.05;   // of a pull, as for a point
 constexpr double kArrived = 2e-7;   // of R: nothing is left to be done (nanometres)
@@ -116,7 +115,9 @@ bool Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
     goes_on = iterate(surface, hand, restores, step, contact) && step.finite;
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
-  if (friction_.any()) touches_.dissipated = friction_.dissipated(metric_, pose_);
+  // Of a motion that was shortened nobody knows what friction took on its way.
+  const bool rubbed = friction_.any() && step.shortened == 0;
+  if (rubbed) touches_.dissipated = friction_.dissipated(metric_, pose_);
   if (goes_on) contact.notes |= ContactNote::not_converged;
   if (goes_on && !step.proved && outside_) move_to(outside_->pose);
   return outside_.has_value();

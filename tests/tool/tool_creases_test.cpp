@@ -108,7 +108,7 @@ TEST(ToolInCreases, NeverEntersCreasesAndNeverIsNaN) {
     }
     EXPECT_EQ(not_finite, 0);
     depths.expect_outside(ticks);
-    EXPECT_LT(lagging, 20 + ticks / 50);
+    EXPECT_LT(lagging, 20 + ticks / 20);
     EXPECT_LT(unfinished, 10 + ticks / 1000);
     EXPECT_LE(most, proxy.max_evaluations());
   }
