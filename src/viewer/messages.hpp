@@ -178,7 +178,8 @@ constexpr std::uint32_t kClutched = 4096;
 constexpr std::uint32_t kOriented = 8192;  ///< set by encode(): an orientation follows
 constexpr std::uint32_t kBehind = 16384;
 constexpr std::uint32_t kNotLoaded = 32768;
-constexpr std::uint32_t kTool = 65536;  ///< a tool that turns follows
+constexpr std::uint32_t kTool = 65536;     ///< a tool that turns follows
+constexpr std::uint32_t kInside = 131072;  ///< it is inside of a surface, and touches nothing
 }  // namespace state_flag
 
 /// A tool that turns: its proxy is StateMessage::proxy, turned and opened so.

@@ -157,6 +157,7 @@ std::uint32_t StateReporter::flags(const ServoState& state, bool taken) {
   set(has(state.field_notes, FieldNote::behind), state_flag::kBehind);
   set(has(state.field_notes, FieldNote::not_loaded), state_flag::kNotLoaded);
   set(has(state.contact.notes, ContactNote::softer), state_flag::kSofter);
+  set(has(state.contact.notes, ContactNote::inside), state_flag::kInside);
   counts_ = counts;
   return flags;
 }

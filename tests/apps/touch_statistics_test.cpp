@@ -136,12 +136,14 @@ TEST(TouchStatistics, CountsEveryNoteUnderItsOwnName) {
 TEST(TouchStatistics, CountsEveryBitOfContactsAndFields) {
   TouchStatistics statistics;
   ServoState each;
-  for (int bit = 0; bit < 8; ++bit) {
-    each.contact.notes |= static_cast<ContactNote>(1u << bit);
-    each.field_notes = each.field_notes | static_cast<FieldNote>(1u << bit);
+  for (unsigned bit = 1; bit <= static_cast<unsigned>(ContactNote::inside); bit <<= 1) {
+    each.contact.notes |= static_cast<ContactNote>(bit);
+  }
+  for (unsigned bit = 1; bit <= static_cast<unsigned>(FieldNote::not_loaded); bit <<= 1) {
+    each.field_notes = each.field_notes | static_cast<FieldNote>(bit);
   }
   statistics.add(each);
-  EXPECT_EQ(statistics.notes(false).size(), 16u);
+  EXPECT_EQ(statistics.notes(false).size(), 9u + 8u);
 }
 
 // A tool is not in one place, and its hand need not have gone far.

@@ -57,10 +57,12 @@ constexpr std::array<Note, 17> kNotes = {{
      "the hand was held in free air, far from where it touched, so it was let go; it went through "
      "a "
      "hole or something thin",
-     ContactNote::freed, FieldNote::none},
+     ContactNote::freed, FieldNote::none,
+     "the tool was held in free air, or hard inside of something, so it was let go; something went "
+     "between its samples (a smaller --tool-spacing helps), or a surface came around it"},
     {"inside",
-     "the tool began inside the surface, so it touched nothing until it had been outside; begin "
-     "farther away",
+     "the tool was inside the surface or across it where it began or was let go, so it touched "
+     "nothing until it had been outside; begin farther away",
      ContactNote::inside, FieldNote::none},
     {"thinned",
      "there were more points near the tool than the patch holds, so some were ignored; give a "

@@ -24,9 +24,10 @@ enum class ContactNote : std::uint32_t {
                 ///< twice the hand's displacement and the surface's by half of |proxy - HIP| before
   freed = 1u << 7,   ///< the hand was held in free air, and the proxy came to it: at once where the
                      ///< proxy had passed through a surface and is trapped behind it; with more
-                     ///< than 10 N and 10 R from the proxy after 1 s, in 0.5 s
-  inside = 1u << 8,  ///< a tool that turns began inside of what is solid, between faces that leave
-                     ///< no way out: it touches nothing until it has been outside
+                     ///< than 10 N and 10 R from the proxy after 1 s, in 0.5 s; a tool that turns
+                     ///< also where it was held so inside of something, wherever the hand was
+  inside = 1u << 8,  ///< a tool that turns was put, or let go, inside of a surface or across it: it
+                     ///< touches nothing until it has been outside
 };
 
 [[nodiscard]] constexpr ContactNote operator|(ContactNote a, ContactNote b) noexcept {

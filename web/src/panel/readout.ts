@@ -93,6 +93,7 @@ export class Readout {
     const { status, reason } = tool.report;
     if (status !== "ok") return reason === undefined ? status : `${status}: ${reason}`;
     if (tool.has("behind") && !tool.has("touching")) return "behind what the camera sees: nothing is felt";
+    if (tool.has("inside")) return "inside of the surface: nothing is felt until the tool is out";
     if (this.nothing && !tool.has("notLoaded")) return "no surface here";
     if (!tool.has("touching")) return this.height === undefined ? "free" : `free, ${millimetres(this.height)} from the surface`;
     const deep = `touching, ${millimetres(depthOf(state))} deep${torqueOf(state)}`;

@@ -24,6 +24,7 @@ export const Flag = {
   behind: 16384, // what a camera sees: nothing is felt from there
   notLoaded: 32768, // the cloud is not read or prepared there
   holdsTool: 65536, // that turns
+  inside: 131072, // a tool that turns is, of a surface: nothing is felt until it is out
 } as const;
 
 /** A tool that turns; its proxy is the state's, turned and opened so. */
