@@ -24,7 +24,6 @@ constexpr float kHolds = 1.5f;  // R; judgement
 constexpr float kMeets = 1.1f;  // R; judgement
 
 // What the eye sees (docs/method.md 2.7); all are judgement.
-constexpr float kLift = 0.3f;  // R above the surface that a touching tool looks from
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which points count
 constexpr double kFades = 1;   // R of travel on which what was seen fades to a third
 

@@ -34,6 +34,7 @@ struct Rise {
   double share = 0;
 };
 
+inline constexpr float kLift = 0.3f;  ///< R above the surface that a touching tool looks from
 inline constexpr float kUnsharp = 2;  ///< residuals of a height that decides a side; judgement
 
 /// How a segment is seen from the tool. Its points' normals are turned to the tool's side of it.

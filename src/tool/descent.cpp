@@ -110,12 +110,12 @@ bool Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
   for (int look = 0; goes_on && look < kMostLooks; ++look) {
     ++contact.iterations;
     const bool restores =
-        step.settles || look + kRestores >= kMostLooks || step.shortened == kShortened;
+        step.settles || look + kRestores >= kMostLooks || step.shortened >= kShortened;
     if (restores && !step.settles && !step.whole) contact.notes |= ContactNote::sweep_truncated;
     goes_on = iterate(surface, hand, restores, step, contact) && step.finite;
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
-  // Of a motion that was shortened nobody knows what friction took on its way.
+  // What friction took on the way of a motion that was shortened is not known.
   const bool rubbed = friction_.any() && step.shortened == 0;
   if (rubbed) touches_.dissipated = friction_.dissipated(metric_, pose_);
   if (goes_on) contact.notes |= ContactNote::not_converged;

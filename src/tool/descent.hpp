@@ -47,8 +47,8 @@ class Descent {
   /// within `reach` (m) above.
   void lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept;
   /// Goes where the hand is, as far as the surface and its friction let it; `moved`: how far any
-  /// sample of the hand has moved since the last step, m, at most. False: it
-  /// was never outside, neither in this step nor in the one before.
+  /// sample of the hand has moved since the last step, m, at most.
+  /// False: it was outside neither in this step nor in the one before.
   bool follow(const ToolSurface& surface, const Pose& hand, double moved, const FrictionLaw& law,
               ToolContact& contact) noexcept;
 

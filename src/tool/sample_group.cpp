@@ -14,6 +14,9 @@ using Eigen::Vector3d;
 
 // R that a patch reaches beyond the samples that it is gathered for: as for a point (judgement).
 constexpr double kMargin = 0.35;
+// Cosine: points are above a sample and not beside it, as at a rim, where the way out leads down
+// within 60 degrees (judgement).
+constexpr double kBehind = 0.5;
 constexpr double kMoved = 0.15;  // R after which sides are decided again: as for a point
 
 }  // namespace
@@ -96,12 +99,24 @@ Sample TouchedScene::sample(const Patch* patch, const Vector3d& x) noexcept {
   return here;
 }
 
-double TouchedScene::height(const Patch* patch, const Vector3d& x) const noexcept {
-  if (!patch) return -radius();
+bool TouchedScene::is_behind(const Patch* patch, const Vector3d& x, double deeper) const noexcept {
+  if (!patch) return true;
+  const Sample here = evaluate(surface, *patch, x);
+  if (here.behind) return true;  // of what was seen from the other side alone
   ImplicitSurface planes = surface;
   planes.options.capped = false;
-  const Sample here = evaluate(planes, *patch, x);
-  return first_order_distance(here).value_or(here.value);
+  const Sample below = evaluate(planes, *patch, x);
+  const std::optional<double> height = first_order_distance(below);
+  if (!height || *height >= -deeper) return false;
+  return here.gradient.normalized().dot(below.gradient.normalized()) < -kBehind;
+}
+
+Vector3d TouchedScene::middle_of(int side) const noexcept {
+  for (const std::int32_t index : tool_->roots()) {
+    const Tool::Node& root = tool_->nodes()[static_cast<std::size_t>(index)];
+    if (root.side == side) return ball_of(root).center;
+  }
+  return pose_.position;
 }
 
 Surface TouchedScene::made_of(const Patch* patch, const Vector3d& x) noexcept {
@@ -139,10 +154,14 @@ void SampleGroup::update(double passed, bool changed, bool same) noexcept {
   now_.patch.advance(scene_->followed.layers().active());
 }
 
-/// Sides are those that a sample sees from where it looks.
+/// Sides are those that a sample sees from where it looks, and a little farther inside of the tool:
+/// of a surface that it lies on, rounding would decide.
 void SampleGroup::begin_at(const Vector3d& x) const noexcept {
+  const Vector3d inward = scene_->middle_of(node_->side) - x;
+  const double lift = static_cast<double>(kLift) * radius();
+  const Vector3d eye = x + lift / std::max(inward.norm(), lift) * inward;
   now_.looks = now_.others = true;
-  now_.stance = now_.faced = {x, Vector3d::Zero(), 2 * node_->radius, finger_};
+  now_.stance = now_.faced = {eye, Vector3d::Zero(), 2 * node_->radius, finger_};
   now_.patch.sides().forget();
 }
 
@@ -199,10 +218,12 @@ bool SampleGroup::is_free(const Ball& ball) const noexcept {
 }
 
 bool SampleGroup::is_behind(double deeper) const noexcept {
-  if (is_free(scene_->ball_of(*node_))) return false;
+  Ball reach = scene_->ball_of(*node_);
+  reach.radius += radius();  // points beyond say nothing
+  if (scene_->walk_is_free(reach)) return false;
   return std::ranges::any_of(scene_->samples_of(*node_), [&](const Tool::Point& sample) {
     const Vector3d x = scene_->in_world(sample);
-    return scene_->height(patch_for(x), x) < -deeper;
+    return scene_->is_behind(patch_for(x), x, deeper);
   });
 }
 

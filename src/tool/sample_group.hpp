@@ -47,8 +47,10 @@ class TouchedScene {
 
   /// The field at x, which `patch` covers; nullptr: nothing is known there, so it is solid.
   [[nodiscard]] Sample sample(const Patch* patch, const Eigen::Vector3d& x) noexcept;
-  /// How high x is above the planes of the points around it, m; as sample() where nobody knows.
-  [[nodiscard]] double height(const Patch* patch, const Eigen::Vector3d& x) const noexcept;
+  /// Is x deeper (m) than this below the planes of the points around it, behind their solid, which
+  /// is thin? So it is where nobody knows.
+  [[nodiscard]] bool is_behind(const Patch* patch, const Eigen::Vector3d& x,
+                               double deeper) const noexcept;
   /// What it is made of there.
   [[nodiscard]] Surface made_of(const Patch* patch, const Eigen::Vector3d& x) noexcept;
 
@@ -63,6 +65,8 @@ class TouchedScene {
     return sum;
   }
   [[nodiscard]] bool is_empty() const noexcept { return followed.layers().count == 0; }
+  /// The middle of what a finger is, m, world.
+  [[nodiscard]] Eigen::Vector3d middle_of(int side) const noexcept;
   /// The samples of a node.
   [[nodiscard]] std::span<const Tool::Point> samples_of(const Tool::Node& node) const noexcept {
     return tool_->samples().subspan(node.begin, node.end - node.begin);
@@ -117,8 +121,7 @@ class SampleGroup final : public Field {
   void release() noexcept;
   /// Sides are decided from where a sample looks next, of the points that are known already.
   void forget_sides() noexcept { now_.looks = now_.ready = false; }
-  /// Is a sample deeper (m) than this below the planes of the points around it? What lies behind
-  /// their solid, which is thin, is free.
+  /// Is one of its samples? TouchedScene::is_behind()
   [[nodiscard]] bool is_behind(double deeper) const noexcept;
 
   [[nodiscard]] const Patch& patch() const noexcept { return now_.patch; }

@@ -60,9 +60,10 @@ class ToolField::Inside final : public Field {
   double radius_ = 0;                   // R that the groups were made for, m
   FieldNote notes_ = FieldNote::none;   // of the last update
   std::uint64_t revision_ = 0;
-  double now_ = 0;                       // of the last update, s
-  double widened_ = 0;                   // TouchedScene::widened() then
-  mutable double moved_ = std::numeric_limits<double>::infinity();  // by the surface since the last step began, at most, m
+  double now_ = 0;                                                  // of the last update, s
+  double widened_ = 0;                                              // TouchedScene::widened() then
+  mutable double moved_ = std::numeric_limits<double>::infinity();  // by the surface since the last
+                                                                    // step began, at most, m
 };
 
 }  // namespace palpate

@@ -109,7 +109,7 @@ ToolContact ToolProxy::Inside::step(const ToolSurface& surface, const Pose& give
   report(surface, contact);
   end(surface);
   pull(before, hand, dt, changed_ ? &traits.step : nullptr, contact);
-  if (!has(contact.notes, Limit::kUnfinished)) hand_ = hand;
+  if (state_ == State::put || !has(contact.notes, Limit::kUnfinished)) hand_ = hand;
   last_hand_ = hand;
   const bool faulty = has(contact.notes, ContactNote::fault);
   if (!faulty && is_finite(contact.wrench) && in_range(pose())) return contact;

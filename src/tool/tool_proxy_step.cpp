@@ -39,7 +39,8 @@ bool ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const
   descent_.gaps().begin(surface, options_.texture, pose());
   if (state_ == State::put) surface.forget_sides();
   if (path_is_free(field, hand)) {
-    state_ = State::begun;
+    // Where nobody knows R there is no surface yet: one may come around the tool.
+    if (descent_.gaps().radius() > 0) state_ = State::begun;
     descent_.put(hand, true);
     return true;
   }
@@ -54,28 +55,29 @@ bool ToolProxy::Inside::move(const ToolSurface& surface, const Pose& hand, const
 // holds it until it has been outside: on a cloud it would be held by both sides of a surface.
 void ToolProxy::Inside::begin(const ToolSurface& surface, const Pose& hand, bool outside,
                               ToolContact& contact) noexcept {
+  surface.place(pose());
   const double valleys = 2 * options_.texture.amplitude;  // they are below the planes of points
   if (outside && !surface.is_across(Descent::kOutside * descent_.gaps().radius() + valleys)) {
     state_ = State::begun;
     return;
   }
   descent_.put(hand, false);
-  hand_ = hand;  // the tool has caught up with it
   contact.notes |= ContactNote::inside;
 }
 
 // Lets go of a hand that is held hard in free air for long, as a point does, or whose tool is
 // squeezed: something thin has come between the samples, or a surface came back around the tool.
-// The same of one that stays inside of something, wherever the hand is. The spring fades before.
+// One that is held hard by a tool inside of something is let go wherever it is. The spring fades
+// before.
 void ToolProxy::Inside::free_hand(const Field& field, const Pose& hand, bool outside, double dt,
                                   ToolContact& contact) noexcept {
   const double stretch = descent_.metric().between(hand, pose()).norm();
   const bool hard = stretch > Limit::kFar * descent_.gaps().radius() &&
                     options_.stiffness * stretch > Limit::kHardest;
   const bool squeezed = has(contact.notes, ContactNote::not_converged);
-  const bool away =
-      spring_.touching() &&
-      ((squeezed && !outside) || ((hard || squeezed) && descent_.gaps().is_free_at(field, hand)));
+  const bool wedged = hard && squeezed && !outside;
+  const bool away = spring_.touching() && (hard || squeezed) &&
+                    (wedged || descent_.gaps().is_free_at(field, hand));
   if (!spring_.hold_away(away, dt)) return;
   contact.notes |= ContactNote::freed;
   if (spring_.stiffness() > Limit::kGone * options_.stiffness) return;

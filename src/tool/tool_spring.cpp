@@ -24,13 +24,11 @@ void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& conta
   const double length = stretch.norm();
   if (step.jumped) leave(step.before, metric);
   const double wanted = std::max(0.0, away_.left() * step.full - fading_);
-  // It holds no more energy than the hand's motion would give to a spring at rest.
   const double share = length > step.moved ? step.moved / length : 1;
-  const double begun = share * share * wanted;
-  if (step.jumped) {
-    tank_.take_over(begun);
+  if (step.jumped) {  // it holds no more energy than the hand's motion would give to one at rest
+    tank_.take_over(share * share * wanted);
   } else if (step.touching && !touching_) {
-    tank_.restart(begun);
+    tank_.restart(share * wanted);
   }
   touching_ = contact.touching = step.touching;
   if (touching_) {

@@ -35,7 +35,8 @@ TEST(ToolBegins, AcrossABallItIsNotHeld) {
       inside += has(contact.notes, ContactNote::inside) ? 1 : 0;
     }
     EXPECT_LT(largest, 0.2) << k;  // held, a hand lifted so far would feel 17 N
-    EXPECT_GT(inside, k > 4 ? 40 : -1) << k;
+    const int least = k > 4 ? 40 : 0;  // less deep, one step may lead it out
+    EXPECT_GE(inside, least) << k;
     EXPECT_EQ((held.pose().position - start).x(), 0) << k;
     held.to(pose_at(start + Vector3d(0, 0, 0.035), turn), 1, 0);
     const ToolContact contact = held.to(pose_at(start, turn), 300, 50);
@@ -62,6 +63,47 @@ TEST(ToolBegins, AResetUnderALoadLetsGo) {
     }
     EXPECT_LT(largest, 0.2);
     EXPECT_EQ(held.pose().position, hand(z + 1e-4 * 699).position);
+  }
+}
+
+// A cloud that comes around a tool which was in an empty scene is a beginning, too.
+TEST(ToolBegins, ACloudThatComesAroundItDoesNotHoldIt) {
+  Scene scene;
+  Source& source = scene.add("ball");
+  HeldTool held(scene, Tool::box({0.02, 0.01, 0.03}, 2.5e-3));
+  const Vector3d start(0, 0, 0.049);
+  held.reset(pose_at(start));
+  for (int i = 0; i < 50; ++i) held.step(pose_at(start));
+  source.set(cloud_of(ball({.jitter = 0.2}, 0.04)));
+  double largest = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d lifted = start + Vector3d(0, 0, 1e-4 * i);
+    largest = std::max(largest, held.step(pose_at(lifted)).wrench.force.norm());
+  }
+  EXPECT_LT(largest, 0.2);
+}
+
+// A tool that is put where it lay, on a face or a little in it, lies there again.
+TEST(ToolBegins, WhereItLayItLiesAgain) {
+  Scene scene;
+  scene.add("ball", cloud_of(ball({.jitter = 0.2}, 0.04)));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(-1, 1);
+  for (int k = 0; k < 20; ++k) {
+    HeldTool held(scene, Tool::box({0.02, 0.03, 0.01}, 2.5e-3));
+    const double roll = angle(random);
+    const Vector3d turn(roll, angle(random), 0);
+    held.reset(pose_at({0, 0, 0.1}, turn));
+    double z = 0.1;
+    while (z > 0 && held.step(pose_at({0, 0, z}, turn)).wrench.force.norm() < 0.05) z -= 1e-4;
+    ASSERT_GT(z, 0);
+    held.reset(pose_at({0, 0, z}, turn));
+    int inside = 0;
+    for (int i = 0; i < 30; ++i) {
+      const ToolContact contact = held.step(pose_at({0, 0, z}, turn));
+      inside += has(contact.notes, ContactNote::inside) ? 1 : 0;
+    }
+    EXPECT_EQ(inside, 0) << k;
   }
 }
 

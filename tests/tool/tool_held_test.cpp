@@ -192,9 +192,10 @@ TEST(ToolHeld, SaysThatItIsSqueezed) {
   }
 }
 
-// A slot that has closed on a tool lets go of it: after a second its spring fades within half a
-// second, and then nothing holds a hand that is still inside.
-TEST(ToolHeld, IsLetGoWhereItStaysSqueezed) {
+// A slot that has closed on a tool holds a hand that presses, and lets go of one that pulls with
+// more than 10 N from more than 10 R: after a second the spring fades within half a second, and
+// nothing holds the hand, which is still inside.
+TEST(ToolHeld, IsLetGoWhereItIsHeldHardInside) {
   SlotField slot;
   ToolProxy proxy = proxy_of(Tool::box({0.02, 0.03, 0.01}, 5e-3));
   proxy.reset(pose_at({0, 0, 0}));
@@ -205,17 +206,23 @@ TEST(ToolHeld, IsLetGoWhereItStaysSqueezed) {
   double step = 0;
   Vector3d last = Vector3d::Zero();
   ToolContact contact;
-  for (int i = 0; i < 1600; ++i) {
-    contact = proxy.step(slot, pose_at({1e-5 * i, 0, 0}), kTick);
+  for (int i = 0; i < 2000; ++i) {
+    contact = proxy.step(slot, pose_at({5e-6 * i, 0, 0}), kTick);
+    EXPECT_FALSE(has(contact.notes, ContactNote::freed)) << i;
+  }
+  EXPECT_NEAR(contact.wrench.force.x(), -500 * 0.01, 1);
+  last = contact.wrench.force;
+  for (int i = 0; i < 2600; ++i) {
+    contact = proxy.step(slot, pose_at({0.01 + 1e-4 * i, 0, 0}), kTick);
     held = std::max(held, contact.wrench.force.norm());
     step = std::max(step, (contact.wrench.force - last).norm());
     last = contact.wrench.force;
   }
-  EXPECT_GT(held, 1);
-  EXPECT_LT(step, 0.1);
+  EXPECT_GT(held, 50);
+  EXPECT_LT(step, 1);
   EXPECT_TRUE(has(contact.notes, ContactNote::inside));
   EXPECT_EQ(contact.wrench.force, Vector3d(0, 0, 0));
-  EXPECT_EQ(contact.proxy.position.x(), 1e-5 * 1599);
+  EXPECT_EQ(contact.proxy.position.x(), 0.01 + 1e-4 * 2599);
 }
 
 // Nothing is known of where a solid ends: the tool stays, until it is free.
