@@ -67,8 +67,8 @@ RobotGuide::RobotGuide(const Scene& scene, const RosBridgeOptions::Robot& option
 // The highest answer of the sources counts, in the order of Seen::Verdict. But free yields to solid
 // where its frame is older than kStays, or than the moment when the solid came. `memory`: of that
 // moment, of the tool or the robot, which stay where they are for long enough; it is renewed. The
-// hand and the path bring copies. Where a part of what is solid is not seen, all of it counts as
-// not seen: one camera has to show all.
+// hand and the path bring copies. Where a part of a wide tool that is solid is not seen, all of it
+// counts as not seen: one camera has to show all. Of a ball one ray does.
 RobotGuide::Verdict RobotGuide::judge(const Pose& pose, double now, Memory& memory) const {
   const std::vector<Ball> balls = shape_.at(pose);
   const auto rank = [](const Seen& seen) {
@@ -92,7 +92,8 @@ RobotGuide::Verdict RobotGuide::judge(const Pose& pose, double now, Memory& memo
   }
   const bool outdated = now - best.seen.age < last.came || best.seen.age > kStays;
   Verdict verdict = best.free() && solid.source != nullptr && outdated ? solid : best;
-  if (verdict.solid()) verdict.seen.verdict = std::min(verdict.seen.verdict, verdict.seen.rest);
+  if (verdict.solid() && shape_.is_wide())
+    verdict.seen.verdict = std::min(verdict.seen.verdict, verdict.seen.rest);
   return verdict;
 }
 
