@@ -195,6 +195,7 @@ Seen judge(const PosedFrame& newest, const PosedFrame* before, std::span<const B
            double now, int half) {
   Seen seen;
   seen.age = now - newest.frame.stamp;
+  if (balls.empty()) return seen;
   seen.towards = (newest.T_world_sensor.translation() - middle_of(balls)).normalized();
   const double span = before != nullptr ? newest.frame.stamp - before->frame.stamp : 0;
   seen.verdict = Seen::Verdict::free;

@@ -43,6 +43,13 @@ TEST_F(ASight, SaysNothingBeforeAFrameHasCome) {
   EXPECT_FALSE(sight_.at(Ball{}, 0, kLimits));
 }
 
+TEST_F(ASight, SeesNothingOfNoBalls) {
+  sees(wall(0.5));
+  const Seen none = *sight_.at(std::span<const Ball>(), stamp_, kLimits);
+  EXPECT_EQ(none.verdict, Verdict::outside);
+  EXPECT_TRUE(none.towards.allFinite());
+}
+
 TEST_F(ASight, TellsFreePlacesFromSolidOnes) {
   sees(wall(0.5));
   EXPECT_EQ(at({0, 0, 0.4}).verdict, Verdict::free);
