@@ -1,69 +1,13 @@
-// What a robot that holds a tool is told: all of the tool has to be seen free, and turns are ways.
-#include <gmock/gmock.h>
-
+// What a robot that holds a tool is told: all of the tool has to be seen free.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "palpate/tool/tool.hpp"
-#include "ros/robot_rig.hpp"
+#include "ros/robot_tool_rig.hpp"
 
 namespace palpate::ros {
 namespace {
-
-using Eigen::AngleAxisd;
-using Eigen::Quaterniond;
-using ::testing::HasSubstr;
-
-constexpr double kSpacing = 2.5e-3;  // m
-
-RobotShape box_shape(double length = 0.08) {
-  const Tool box = Tool::box({length, 0.02, 0.01}, kSpacing);
-  std::vector<Ball> balls;
-  for (const Tool::Point& sample : box.samples()) {
-    balls.push_back({sample.position, 0});
-  }
-  return RobotShape(balls);
-}
-
-Quaterniond tilted(double angle) {
-  return Quaterniond(AngleAxisd(angle, Vector3d::UnitY()));
-}
-
-Quaterniond turned(double angle) {
-  return Quaterniond(AngleAxisd(angle, Vector3d::UnitZ()));
-}
-
-// A box of 80 x 20 x 10 mm around its handle, over a wall that a camera sees from above.
-class ARobotWithATool : public ARobot {
- protected:
-  void SetUp() override {
-    shape_ = box_shape();
-    camera("camera", at_rest);
-    starts();
-  }
-  void box_at(const Vector3d& place, const Quaterniond& orientation = Quaterniond::Identity()) {
-    tool_at(place);
-    state_.orientation = state_.tool.orientation = orientation;
-  }
-  // From the handle to the lowest corner of a box that is tilted.
-  static double below(double angle) { return 0.04 * std::sin(angle) + 0.005 * std::cos(angle); }
-  // The camera sees this from now on.
-  void sees(const DepthOf& depth) { sees_ = depth; }
-  RobotGuide::Answer looks(double seconds, bool anew = false) {
-    if (!sees_) return runs(seconds, anew);
-    RobotGuide::Answer answer;
-    for (const double end = now_ + seconds; now_ < end; now_ += kFrame) {
-      (void)cameras_.front().source->push(frame_of(small_camera(), now_, sees_),
-                                          [this] { return now_ + 0.01; });
-      answer = guide_->look(state_, now_, std::exchange(anew, false));
-    }
-    return answer;
-  }
-
- private:
-  DepthOf sees_;
-};
 
 TEST_F(ARobotWithATool, GoesWhereTheToolIsAndTurnsAsItDoes) {
   box_at({0, 0, 0.1}, tilted(0.3));
@@ -152,43 +96,6 @@ TEST_F(ARobotWithATool, IsLiftedIntoNothingBesideIt) {
   EXPECT_NEAR(lifted.target->position.z(), 0.005, 1.5e-3);
 }
 
-// A post stands 32 mm from the handle, between where the tool is and where it is to be.
-TEST_F(ARobotWithATool, TurnsNoWayThatIsNotSeenFree) {
-  sees([](double x, double y) { return std::hypot(x - 0.05, y - 0.05) < 0.012 ? 0.4 : 0.5; });
-  // The camera's y is the world's -y.
-  box_at({0, 0, 0.05});
-  ASSERT_TRUE(looks(0.6).target);
-  guide_->pause();
-  const double quarter = std::numbers::pi / 2;
-  box_at({0, 0, 0.05}, turned(-quarter));
-  EXPECT_EQ(looks(1).why, "the way to the tool is not seen free");
-  box_at({0, 0, 0.05}, turned(quarter));
-  const RobotGuide::Answer round = looks(1);
-  ASSERT_TRUE(round.target) << round.why;
-  EXPECT_EQ(round.target->orientation.coeffs(), turned(quarter).coeffs());
-}
-
-TEST_F(ARobotWithATool, GoesBackTurnedAsItIsFromWhatComesOverAPartOfIt) {
-  box_at({0, 0, 0.03});
-  ASSERT_TRUE(runs(0.9).target);
-  const double began = now_;
-  std::optional<Pose> last;
-  for (; now_ < began + 2; now_ += kFrame) {
-    // Under one end of the tool something rises, to 50 mm.
-    const double height = std::min(0.8 * kRetreat * (now_ - began), 0.05);
-    const auto step = [&](double x, double) { return x > 0.05 ? 0.5 - height : 0.5; };
-    (void)cameras_.front().source->push(frame_of(small_camera(), now_, step),
-                                        [this] { return now_ + 0.01; });
-    const RobotGuide::Answer answer = guide_->look(state_, now_, false);
-    if (!answer.retreats) continue;
-    last = answer.target;
-    EXPECT_LT(height - (last->position.z() - 0.005), kNoise);
-  }
-  ASSERT_TRUE(last);
-  EXPECT_NEAR(last->position.z() - 0.005, 0.05, 0.008);
-  EXPECT_EQ(last->orientation.coeffs(), Quaterniond::Identity().coeffs());
-}
-
 // A wall comes nearer than a tool goes that a wrist turns: only that counts as motion of a surface.
 TEST_F(ARobotWithATool, TakesAWristsWorkForNoMotionOfTheSurface) {
   box_at({0, 0, 0.005});
@@ -238,18 +145,6 @@ TEST_F(ARobotWithATool, IsToldNoPoseWithAPartInWhatTheCameraSees) {
   EXPECT_GT(told, 100);
   EXPECT_GT(proxy, 0.02) << "what it is protected from";
   EXPECT_LT(deepest, kNoise);
-}
-
-TEST(RobotShape, CountsATurnAsTheWayOfItsFarthestPart) {
-  const RobotShape box = box_shape();
-  const double lever = Vector3d(0.04, 0.01, 0.005).norm();
-  const Pose from;
-  const Pose to{{0, 0, 0.01}, turned(0.5)};
-  EXPECT_NEAR(box.way(from, to), 0.01 + 0.5 * lever, 1e-12);
-  EXPECT_NEAR(RobotShape(0.01).way(from, to), 0.01, 1e-12) << "a ball goes nowhere by a turn";
-  const Pose half = RobotShape::between(from, to, 0.5);
-  EXPECT_NEAR(box.way(from, half), 0.5 * box.way(from, to), 1e-12);
-  EXPECT_NEAR(half.orientation.angularDistance(turned(0.25)), 0, 1e-12);
 }
 
 // What a step on a cloud left open, or did not look at, is not told.
