@@ -32,7 +32,11 @@ RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt)
     answer.why = answer.reason;
   }
   if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;
-  if (!goes_back(held, now, dt)) return answer;
+  const Robot before = robot_;
+  if (!goes_back(held, now, dt)) {
+    robot_ = before;  // nobody is told
+    return answer;
+  }
   answer.target = robot_.pose;
   answer.retreats = true;
   return answer;

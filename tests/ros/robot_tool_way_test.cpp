@@ -44,6 +44,27 @@ TEST_F(ARobotWithATool, GoesBackTurnedAsItIsFromWhatComesOverAPartOfIt) {
   EXPECT_EQ(last->orientation.coeffs(), Quaterniond::Identity().coeffs());
 }
 
+// Back along its ray an end of it leaves the picture. A target that was not told is nowhere: the
+// robot is still where the surface comes over it.
+TEST_F(ARobotWithATool, IsStillWhereItWasToldLastWhereItCannotGoBackAsSeen) {
+  double height = 0;
+  camera("comes", [&](double) { return height; });
+  starts({"comes"});
+  box_at({0.06, 0, 0.02});
+  ASSERT_TRUE(runs(0.9).target);
+  int back = 0;
+  each_ = [&](const RobotGuide::Answer& answer) { back += answer.retreats ? 1 : 0; };
+  while (height < 0.044) {
+    height += 0.8 * kRetreat * kFrame;
+    runs(kFrame);
+  }
+  EXPECT_GT(back, 0);
+  back = 0;
+  const RobotGuide::Answer stays = runs(0.5);
+  EXPECT_EQ(back, 0);
+  EXPECT_THAT(stays.why, HasSubstr("over the tool"));
+}
+
 TEST(RobotShape, CountsATurnAsTheWayOfItsFarthestPart) {
   const RobotShape box = box_shape();
   const double lever = Vector3d(0.04, 0.01, 0.005).norm();
