@@ -21,10 +21,16 @@ constexpr Reason kLags = "the tool does not keep up with the hand";
 constexpr Reason kLarge = "the tool is too large for the surface: give a larger --radius";
 constexpr Reason kNotLoaded = "the cloud is not prepared yet where the tool is";
 constexpr Reason kApart = "the tool has to come back to where the robot is";
+constexpr Reason kPath = "the way to the tool is not seen free";
+constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 
 // m from the robot to the first checked position of its path, and between them; a finger is thicker
 // (judgement)
 constexpr double kPathStep = 0.005;
+// Balls that are looked at on a path at most, at all of its positions. 10 000 take 4 ms, and 12 on
+// a busy machine: a path takes some 30 ms at most, a camera's interval. By so much what was seen of
+// the target is older when it is told, and so long frames wait.
+constexpr double kMostBalls = 25'000;
 constexpr double kJoin = 0.02;  // m; how exactly a hand returns to a position (judgement)
 // s counted between two looks at most, so that a retreat makes no leap after a pause (judgement)
 constexpr double kLongestStep = 0.1;
@@ -111,21 +117,24 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Verdict& proxy, 
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
-// Is the straight path from the robot to the target seen to be free? A surface may have come over
-// the robot in one frame, as far as it does slowly: as near to it the path may be so deep in it.
-bool RobotGuide::may_go_to(const Pose& target, double now) const {
-  if (!robot_.pose) return true;
+// Why the robot may not go straight to the target; empty: that path is seen to be free. A surface
+// may have come over the robot in one frame, as far as it does slowly: as near to it the path may
+// be so deep in it.
+Reason RobotGuide::hindrance(const Pose& target, double now) const {
+  if (!robot_.pose) return {};
   const double way = shape_.way(*robot_.pose, target);
   // Balls half a radius apart leave 3 % of the radius between them.
   const double step = std::max(kPathStep, shape_.thinnest() / 2);
+  const double places = std::ceil((way - kPathStep) / step);
+  if (places * static_cast<double>(shape_.size()) > kMostBalls) return kApart;
   Memory memory = robot_.memory;
   for (double gone = kPathStep; gone < way; gone += step) {
     const Pose there = RobotShape::between(*robot_.pose, target, gone / way);
     const Verdict verdict = judge(there, now, memory);
     const bool leaves = gone <= kJump && verdict.solid() && verdict.seen.behind <= kJump;
-    if (!verdict.free() && !leaves) return false;
+    if (!verdict.free() && !leaves) return kPath;
   }
-  return true;
+  return {};
 }
 
 // A tool that is lifted goes aside from the rays to its parts: is all of it in front then? It is
@@ -164,11 +173,12 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   if (proxy.solid() && !free) followed_ = -kNever;
   Memory memory = tool_;
   note(free ? judge({state.hip, state.orientation}, now, memory) : proxy, free, dt, pressed);
-  if (!follows_) return wait(proxy, now, dt);
+  if (!follows_) return wait(proxy, now, dt, kNotYet);
   Pose target = state.tool;
   target.position += proxy.seen.lift * proxy.seen.towards;
-  if (proxy.solid() && !comes_out(target, now)) return wait(proxy, now, dt);
-  if (!pressed && !may_go_to(target, now)) return wait(proxy, now, dt);
+  if (proxy.solid() && !comes_out(target, now)) return wait(proxy, now, dt, kPath);
+  const Reason hindrance = pressed ? Reason{} : this->hindrance(target, now);
+  if (!hindrance.empty()) return wait(proxy, now, dt, hindrance);
   return follow(target, now - proxy.seen.age, ahead);
 }
 

@@ -65,14 +65,16 @@ class RobotGuide {
 
   [[nodiscard]] Verdict judge(const Pose& pose, double now, Memory& memory) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Verdict& proxy, double dt);
-  [[nodiscard]] bool may_go_to(const Pose& target, double now) const;
+  [[nodiscard]] std::string_view hindrance(const Pose& target, double now) const;
   [[nodiscard]] bool comes_out(Pose& target, double now) const;
   [[nodiscard]] bool may_start(bool pressed) const;
   void count_free(double dt);
   void note(const Verdict& hand, bool proxy_free, double dt, bool pressed);
   // `stamp`: of the newest frame, which shows the target free, s.
   [[nodiscard]] Answer follow(const Pose& target, double stamp, double ahead = 0);
-  [[nodiscard]] Answer wait(const Verdict& proxy, double now, double dt);
+  // `hindrance`: why it waits though the proxy is free.
+  [[nodiscard]] Answer wait(const Verdict& proxy, double now, double dt,
+                            std::string_view hindrance);
   void note_held(const Verdict& held, double now);
   bool note_clear(double stamp);
   [[nodiscard]] bool goes_back(Verdict held, double now, double dt);

@@ -15,7 +15,6 @@ inline constexpr std::array<Reason, 5> kReasons = {
     "the tool is behind what a camera sees", "",
     "a camera that looks where the tool is shows nothing new"};
 inline constexpr Reason kBehind = kReasons[2];
-inline constexpr Reason kNotYet = "hand and tool have to be free for half a second";
 
 // s that hand and tool are free before it starts, so that a hand that passes does not start it;
 // after a shorter loss of sight it goes on at once (judgement; 5 Hz with two frames lost in a row:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "palpate/geometry/pose.hpp"
@@ -21,6 +22,8 @@ class RobotShape {
   [[nodiscard]] double way(const Pose& from, const Pose& to) const;
   /// Where it is after a share (0 to 1) of that.
   [[nodiscard]] static Pose between(const Pose& from, const Pose& to, double share);
+  /// How many balls it is.
+  [[nodiscard]] std::size_t size() const { return balls_.size(); }
   /// Radius of its thinnest part, m; 0: it is a surface.
   [[nodiscard]] double thinnest() const { return thinnest_; }
   /// Do its parts see a camera along rays of their own?

@@ -12,11 +12,10 @@ namespace {
 constexpr Reason kPassed = "the surface passed over the tool";
 constexpr Reason kCame = "something came between camera and tool";
 constexpr Reason kFast = "a surface came over the tool faster than the robot may go back";
-constexpr Reason kPath = "the way to the tool is not seen free";
 
 }  // namespace
 
-RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt) {
+RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt, Reason hindrance) {
   ahead_ = 0;
   const Verdict held = robot_.pose ? judge(*robot_.pose, now, robot_.memory) : Verdict{};
   note_held(held, now);
@@ -28,7 +27,7 @@ RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt)
     answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.verdict)];
     answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
   } else {
-    answer.reason = follows_ ? kPath : kNotYet;
+    answer.reason = hindrance;
     answer.why = answer.reason;
   }
   if (answer.reason != kPassed || !(options_.retreat > 0)) return answer;

@@ -23,6 +23,21 @@ TEST_F(ARobotWithATool, TurnsNoWayThatIsNotSeenFree) {
   EXPECT_EQ(round.target->orientation.coeffs(), turned(quarter).coeffs());
 }
 
+// Half a turn and 0.1 m are a way of 0.23 m, on which more places are to be seen than a look has
+// time for.
+TEST_F(ARobotWithATool, GoesNoWayThatIsTooLongToBeLookedAt) {
+  box_at({-0.05, 0, 0.03});
+  ASSERT_TRUE(runs(0.6).target);
+  guide_->pause();
+  box_at({0.05, 0, 0.03}, turned(std::numbers::pi));
+  EXPECT_EQ(runs(1).why, "the tool has to come back to where the robot is");
+  box_at({0.05, 0, 0.03});
+  EXPECT_TRUE(runs(kLook).target) << "half as far";
+  box_at({-0.05, 0, 0.03}, turned(std::numbers::pi));
+  EXPECT_FALSE(runs(kLook).target);
+  EXPECT_TRUE(runs(kLook, true).target) << "the user sees the way";
+}
+
 TEST_F(ARobotWithATool, GoesBackTurnedAsItIsFromWhatComesOverAPartOfIt) {
   box_at({0, 0, 0.03});
   ASSERT_TRUE(runs(0.9).target);
