@@ -105,6 +105,29 @@ TEST(HandsProgram, AnotherProgramsWristFeelsTheTorque) {
   EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
 }
 
+// The force that a hand gets at most is what its profile says, or else what the run is told.
+TEST(HandsProgram, AProfileThatSaysNoForceLeavesItToTheOption) {
+  const struct {
+    const char* profile;
+    double most;
+  } cases[] = {{"[wrist]\nmaximum_torque = 0.02\n", 8},
+               {"[wrist]\nmaximum_torque = 0.02\nmaximum_force = 5\n", 4}};
+  for (const auto& each : cases) {
+    Shell shell;
+    shell.write("plane.xyz", plane_xyz());
+    shell.write("wrist.toml", each.profile);
+    const auto run = shell.start(
+        "touch plane.xyz --device remote:hand,profile=wrist.toml --maximum-force 8 --json "
+        "run.json");
+    ASSERT_TRUE(until([&] { return contains(shell.read("stderr"), "hand 1: listening on hand"); }));
+    test::RemoteClient client(shell.path("hand"), shell.path("client"));
+    EXPECT_TRUE(arrives(client, kAbove));
+    EXPECT_EQ(run->interrupt(), 0) << shell.read("stderr");
+    const Json report = Json::parse(shell.read("run.json"));
+    EXPECT_EQ(report["live"]["guard"]["maximum_force_N"], each.most) << each.profile;
+  }
+}
+
 TEST(HandsProgram, AClosedTerminalEndsARunAsCtrlCDoes) {
   Shell shell;
   shell.write("plane.xyz", plane_xyz());

@@ -40,12 +40,11 @@ std::string socket_path(const DevicePlan& plan) {
 
 void open_socket(Hand& hand, const MotionPlan& motion, const GuardOptions& guard,
                  const Clock& clock) {
-  RemoteDeviceOptions device;
-  if (const std::string& profile = hand.chosen.profile; !profile.empty()) {
-    device = remote_options(device_profile(profile));
-  } else if (std::isfinite(guard.maximum_force)) {
+  DeviceProfile profile;
+  if (!hand.chosen.profile.empty()) profile = device_profile(hand.chosen.profile);
+  RemoteDeviceOptions device = remote_options(profile);
+  if (!profile.maximum_force && std::isfinite(guard.maximum_force))
     device.maximum_force = guard.maximum_force / Servo::kForceShare;
-  }
   device.path = socket_path(hand.chosen);
   device.rate = motion.rate.value_or(device.rate);
   auto opened = std::make_unique<RemoteDevice>(clock, device);
