@@ -58,6 +58,28 @@ TEST(Compare, OfAToolsOwnLogIsZero) {
   EXPECT_EQ(compared(shell, torus + "--trajectory log.csv")["rms_N"].get<double>(), 0);
 }
 
+// A gripper that closes on the plane, held by a device whose metre is two of the world.
+TEST(Compare, OfAGrippersOwnLogIsZeroWhateverItsDevicesScale) {
+  Shell shell;
+  shell.write("plane.xyz", plane_xyz());
+  std::string way = "t,hip_x,hip_y,hip_z,gripper\n";
+  for (int k = 0; k < 600; ++k) {
+    way += fmt::format("{},0,0,{},{}\n", 1e-3 * k, 0.04 - 4e-5 * k, 0.02 + 1e-5 * k);
+  }
+  shell.write("way.csv", way);
+  const std::string feel = "plane.xyz --tool gripper:6x12x30 --stiffness 300 ";
+  ASSERT_EQ(
+      shell.run("touch " + feel + "--trajectory way.csv --device simulated,scale=2 --log log.csv")
+          .code,
+      0);
+  auto log = columns(shell.read("log.csv"));
+  EXPECT_NEAR(number(log["gripper"].front()), 0.02, 1e-9);
+  EXPECT_NEAR(number(log["tool_opening"].front()), 0.02, 1e-9);
+  const auto same = compared(shell, feel + "--trajectory log.csv");
+  EXPECT_GT(same["steps"].get<int>(), 100);
+  EXPECT_EQ(same["rms_N"].get<double>(), 0);
+}
+
 TEST(Compare, OfAnExplorationsLogIsZero) {
   Shell shell;
   ASSERT_EQ(shell.run("touch synthetic:bumps --duration 1 --stiffness 500 --log log.csv").code, 0);

@@ -8,10 +8,10 @@ namespace palpate::app {
 namespace {
 
 std::string logged(const std::vector<ServoState>& steps, const DeviceInfo& device = {},
-                   bool turns = false) {
+                   bool turns = false, double scale = 1) {
   const Shell shell;
   TouchLog log(shell.path("log.csv"), turns);
-  for (const ServoState& step : steps) log.add(step, device);
+  for (const ServoState& step : steps) log.add(step, device, scale);
   log.close();
   return shell.read("log.csv");
 }
@@ -40,6 +40,7 @@ TEST(TouchLog, TellsOrientationAndGripperAtTheEndWhereTheyAreKnown) {
   const std::string text = logged({step}, device);
   EXPECT_TRUE(text.ends_with(",0,-0.8,0,0.6,0.0125\n")) << text;
   EXPECT_EQ(columns(text).at("gripper").front(), "0.0125");
+  EXPECT_EQ(columns(logged({step}, device, false, 2)).at("gripper").front(), "0.025");
 }
 
 TEST(TouchLog, OfAToolThatTurnsHasItsPoseAndTheWrenchAtTheEnd) {

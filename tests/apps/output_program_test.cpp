@@ -139,7 +139,7 @@ TEST(Output, TheLogOfARunThatFailsStaysBesideItsPlace) {
   const Shell shell;
   {
     TouchLog log(shell.path("log.csv"));
-    log.add({}, {});
+    log.add({}, {}, 1);
   }
   EXPECT_EQ(columns(shell.read("log.csv.part"))["t"].size(), 1u);
   EXPECT_FALSE(fs::exists(shell.path("log.csv")));

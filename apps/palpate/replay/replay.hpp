@@ -40,6 +40,10 @@ class Replay {
   [[nodiscard]] bool turns(std::size_t hand) const {
     return recording_.hands().at(hand).options.tool != nullptr;
   }
+  /// Metres of the world for one of that hand's device.
+  [[nodiscard]] double scale(std::size_t hand) const {
+    return recording_.hands().at(hand).options.workspace.scale;
+  }
 
   /// Called with every step, with times from 0.
   using EachStep = std::function<void(const ServoState&, const DeviceInfo&)>;

@@ -55,7 +55,7 @@ ForceDifference replay_hand(const Replay& run, std::size_t hand, const std::stri
   if (!log.empty()) steps.emplace(numbered_path(log, hand), run.turns(hand));
   const Waiting waiting(fmt::format("replaying hand {}", hand + 1));
   const auto add = [&](const ServoState& step, const DeviceInfo& device) {
-    if (steps) steps->add(step, device);
+    if (steps) steps->add(step, device, run.scale(hand));
   };
   ForceDifference found = run.run(hand, add);
   if (found.steps == 0 && steps) run.show(hand, add);  // then as they were

@@ -51,7 +51,7 @@ void TouchLog::begin(bool orientation, bool gripper) {
   begun_ = true;
 }
 
-void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
+void TouchLog::add(const ServoState& step, const DeviceInfo& device, double scale) {
   if (!problem_.empty()) return;
   const bool orientation = device.has_orientation || turns_;
   const bool gripper = device.has_gripper || turns_;
@@ -71,7 +71,7 @@ void TouchLog::add(const ServoState& step, const DeviceInfo& device) {
     const Eigen::Quaterniond& q = step.orientation;
     fmt::format_to(std::back_inserter(buffer_), ",{},{},{},{}", q.x(), q.y(), q.z(), q.w());
   }
-  if (gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", step.gripper);
+  if (gripper) fmt::format_to(std::back_inserter(buffer_), ",{}", scale * step.gripper);
   if (turns_) {
     const Eigen::Quaterniond& q = step.tool.orientation;
     const Eigen::Vector3d& torque = step.wrench.torque;

@@ -21,8 +21,9 @@ class TouchLog {
   explicit TouchLog(const std::string& path, bool turns = false);
   /// Writes the rest, unless close() was called.
   ~TouchLog();
+  /// `scale`: metres of the world for one of the device (Workspace).
   /// @throws Error when the file cannot be written, and takes nothing from then on.
-  void add(const ServoState& step, const DeviceInfo& device);
+  void add(const ServoState& step, const DeviceInfo& device, double scale);
   /// @throws Error when it cannot, or could not be written.
   void close();
 

@@ -160,10 +160,10 @@ HandOutputs::HandOutputs(const OutputPlan& outputs, std::size_t hand, bool turns
   if (!outputs.picture.empty()) picture_.emplace(numbered_path(outputs.picture, hand));
 }
 
-void HandOutputs::add(const ServoState& step, const DeviceInfo& device) {
+void HandOutputs::add(const ServoState& step, const Hand& hand) {
   statistics_.add(step);
   if (picture_) picture_->add(step);
-  if (log_) log_->add(step, device);
+  if (log_) log_->add(step, hand.device->info(), hand.workspace.scale);
 }
 
 std::string HandOutputs::close_log() {

@@ -43,7 +43,7 @@ class HandOutputs {
   HandOutputs(const OutputPlan& outputs, std::size_t hand, bool turns);
 
   /// @throws Error once, when the log cannot be written; the rest goes on.
-  void add(const ServoState& step, const DeviceInfo& device);
+  void add(const ServoState& step, const Hand& hand);
   /// Why the log is not whole; empty: it is, or there is none.
   [[nodiscard]] std::string close_log();
 

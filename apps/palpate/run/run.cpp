@@ -112,11 +112,12 @@ void follow(Hand& hand, const HandTask& task, Trajectory trajectory) {
   if (hand.chosen.kind == DeviceKind::scripted) return play_back(hand, std::move(trajectory));
   hand.workspace.scale = hand.chosen.placement.scale.value_or(1);
   const double start = trajectory.front().time;
-  for (TrajectoryRow& row : trajectory) row.time -= start;
   // Encoders count from where the hand begins, so that far from the origin nothing is lost.
   hand.workspace.T_world_device.translation() = trajectory.front().position;
   for (TrajectoryRow& row : trajectory) {
+    row.time -= start;
     row.position = hand.workspace.position_to_device(row.position);
+    if (row.opening) *row.opening /= hand.workspace.scale;
   }
   simulate(hand, task, std::move(trajectory));
 }

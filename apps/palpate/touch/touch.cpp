@@ -61,7 +61,7 @@ bool play_simulated(Run& run, TouchOutputs& outputs) {
   Progress progress("touching");
   const auto whole = static_cast<double>(hand.steps);
   return run_simulated(run, [&](std::size_t, const ServoState& step) {
-    kept.add(step, hand.device->info());
+    kept.add(step, hand);
     unguarded.add(step);
     if (outputs.measured) outputs.measured->add(step);
     const std::size_t steps = kept.statistics().steps();
@@ -78,7 +78,7 @@ LiveOutcome play(Run& run, WaitingClock* clock, const Interruption* interruption
     outcome.interrupted = !play_simulated(run, outputs);
   } else {
     outcome = run_live(run, *clock, *interruption, [&](std::size_t hand, const ServoState& step) {
-      outputs.hands[hand].add(step, run.hands[hand].device->info());
+      outputs.hands[hand].add(step, run.hands[hand]);
     });
   }
   for (HandOutputs& hand : outputs.hands) outputs.unlogged.push_back(hand.close_log());
