@@ -65,7 +65,8 @@ std::vector<std::string> list_of(const std::string& text) {
 void add_trajectory_options(OptionTable& table, MotionPlan& motion) {
   table
       .add("--trajectory", motion.trajectory, "FILE",
-           "CSV with columns t,hip_x,hip_y,hip_z (s, m), one servo step per row; a log works too")
+           "CSV with columns t,hip_x,hip_y,hip_z (s, m), perhaps qx,qy,qz,qw (how a tool is "
+           "turned) and gripper (m open), one servo step per row; a log works too")
       .only_for({&RunFacts::follows,
                  "applies only to scripted and simulated devices; remote and hardware devices "
                  "supply their own motion"});
@@ -74,7 +75,7 @@ void add_trajectory_options(OptionTable& table, MotionPlan& motion) {
           "--columns", KeyKind::text, "NAMES",
           [&motion](const std::string& text) { motion.reading.columns = list_of(text); },
           "names of the trajectory's columns in their order, for text without a header line: "
-          "t,hip_x,hip_y,hip_z, perhaps fx,fy,fz, and - for one to pass over")
+          "t,hip_x,hip_y,hip_z, perhaps fx,fy,fz, qx,qy,qz,qw, gripper, and - for one to pass over")
       .only_for({&RunFacts::trajectory, "needs --trajectory"});
   table
       .add_flag("--compare", motion.reading.forces,
