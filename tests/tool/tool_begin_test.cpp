@@ -34,7 +34,7 @@ TEST(ToolBegins, AcrossABallItIsNotHeld) {
       largest = std::max(largest, contact.wrench.force.norm());
       inside += has(contact.notes, ContactNote::inside) ? 1 : 0;
     }
-    EXPECT_LT(largest, 0.2) << k;  // held, a hand lifted so far would feel 17 N
+    EXPECT_LT(largest, 0.2) << k;      // held, a hand lifted so far would feel 17 N
     const int least = k > 4 ? 40 : 0;  // less deep, one step may lead it out
     EXPECT_GE(inside, least) << k;
     EXPECT_EQ((held.pose().position - start).x(), 0) << k;

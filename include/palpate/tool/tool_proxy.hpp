@@ -77,8 +77,9 @@ class ToolProxy {
   /// Moves the tool towards the hand (world). `dt` is the time since the last step, s, at least 0.
   /// The first step after construction or reset() puts the tool where the hand is; what is solid
   /// there pushes it out, softly: stiffness comes with the hand's motion. Where one step does not
-  /// bring it out it touches nothing until it has been outside (ContactNote::inside). Spends at most max_evaluations(). An
-  /// opening below 0 is taken for 0: a gripper that is closed on nothing gives no grip.
+  /// bring it out it touches nothing until it has been outside (ContactNote::inside). Spends at
+  /// most max_evaluations(). An opening below 0 is taken for 0: a gripper that is closed on nothing
+  /// gives no grip.
   ///
   /// A surface that knows the samples of another tool is a fault, too.
   ///
