@@ -22,13 +22,7 @@ DeviceInfo info_of(const DeviceProfile& profile, const std::string& name) {
   DeviceInfo info;
   info.name = name;
   info.maximum_force = profile.maximum_force.value_or(*device_profile("unknown").maximum_force);
-  info.maximum_stiffness = profile.maximum_stiffness.value_or(info.maximum_stiffness);
-  info.damping = profile.damping.value_or(info.damping);
-  info.angular_damping = profile.angular_damping.value_or(info.angular_damping);
-  info.mass = profile.mass.value_or(info.mass);
-  info.rate = profile.rate.value_or(info.rate);
-  info.delay = profile.delay;
-  info.workspace_radius = profile.workspace_radius.value_or(info.workspace_radius);
+  take_motion(profile, info);
   return info;
 }
 

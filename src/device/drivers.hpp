@@ -29,6 +29,19 @@ struct DeviceName {
 /// @throws Error when `name` has options other than `valid`, which the message lists.
 void check_options(const DeviceName& name, std::initializer_list<std::string_view> valid);
 
+/// How a device moves by its profile, as far as that says it: in a DeviceInfo, or in the options of
+/// a device that have the same members.
+template <class Limits>
+void take_motion(const DeviceProfile& profile, Limits& limits) {
+  limits.maximum_stiffness = profile.maximum_stiffness.value_or(limits.maximum_stiffness);
+  limits.damping = profile.damping.value_or(limits.damping);
+  limits.angular_damping = profile.angular_damping.value_or(limits.angular_damping);
+  limits.mass = profile.mass.value_or(limits.mass);
+  limits.rate = profile.rate.value_or(limits.rate);
+  limits.delay = profile.delay;
+  limits.workspace_radius = profile.workspace_radius.value_or(limits.workspace_radius);
+}
+
 /// The numbers of a profile for a device that is called `name`. Where the profile does not contain
 /// the force, that of an unknown device is taken.
 [[nodiscard]] DeviceInfo info_of(const DeviceProfile& profile, const std::string& name);

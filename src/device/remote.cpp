@@ -10,6 +10,7 @@
 #include "base/latest.hpp"
 #include "base/requirement.hpp"
 #include "device/datagram_socket.hpp"
+#include "device/drivers.hpp"
 #include "device/remote_protocol.hpp"
 #include "geometry/wrench.hpp"
 #include "palpate/base/error.hpp"
@@ -61,15 +62,9 @@ DeviceInfo info_of(const RemoteDeviceOptions& options) {
 RemoteDeviceOptions remote_options(const DeviceProfile& profile) {
   RemoteDeviceOptions options;
   options.maximum_force = profile.maximum_force.value_or(options.maximum_force);
-  options.maximum_stiffness = profile.maximum_stiffness.value_or(options.maximum_stiffness);
   options.maximum_torque = profile.maximum_torque.value_or(options.maximum_torque);
   options.maximum_grip = profile.maximum_grip.value_or(options.maximum_grip);
-  options.angular_damping = profile.angular_damping.value_or(options.angular_damping);
-  options.damping = profile.damping.value_or(options.damping);
-  options.mass = profile.mass.value_or(options.mass);
-  options.workspace_radius = profile.workspace_radius.value_or(options.workspace_radius);
-  options.rate = profile.rate.value_or(options.rate);
-  options.delay = profile.delay;
+  device::take_motion(profile, options);
   return options;
 }
 
