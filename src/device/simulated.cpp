@@ -157,8 +157,8 @@ void SimulatedDevice::write_wrench(const Wrench& wrench) noexcept {
 }
 
 const Eigen::Quaterniond& SimulatedDevice::true_orientation() const noexcept {
-  static const Eigen::Quaterniond straight = Eigen::Quaterniond::Identity();
-  return inside_->wrist ? inside_->wrist->orientation() : straight;
+  static const Eigen::Quaterniond kStraight = Eigen::Quaterniond::Identity();
+  return inside_->wrist ? inside_->wrist->orientation() : kStraight;
 }
 
 std::string SimulatedDevice::reason() const {
