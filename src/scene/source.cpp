@@ -29,6 +29,22 @@ void check(const std::string& name, const Snapshot& snapshot) {
         fmt::format("source '{}': a snapshot from {} s to {} s; give finite times, in order", name,
                     snapshot.start, snapshot.end));
   }
+  const auto check_duration = [&](const char* what, double value) {
+    if (std::isfinite(value) && value >= 0) return;
+    throw Error(
+        fmt::format("source '{}': a snapshot's {} is {} s; it must be finite and not "
+                    "below 0",
+                    name, what, value));
+  };
+  check_duration("fade", snapshot.fade);
+  check_duration("interval", snapshot.interval);
+  check_duration("spare", snapshot.spare);
+  if (std::isnan(snapshot.silent_from) || !std::isfinite(snapshot.stamp)) {
+    throw Error(
+        fmt::format("source '{}': a snapshot's stamp is {} s and it is silent from {} s; "
+                    "give times",
+                    name, snapshot.stamp, snapshot.silent_from));
+  }
   check_factor(name, "presence_start", snapshot.presence_start);
   check_factor(name, "presence_end", snapshot.presence_end);
   for (const Snapshot::Layer& layer : snapshot.layers) {

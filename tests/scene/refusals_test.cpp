@@ -58,6 +58,12 @@ TEST(Source, RefusesSnapshotsThatMakeNoSense) {
   auto uncertain = still(plane(0));
   uncertain->presence_end = NAN;
   EXPECT_THROW(source.publish(std::move(uncertain)), Error);
+  for (double Snapshot::*time : {&Snapshot::fade, &Snapshot::interval, &Snapshot::spare,
+                                 &Snapshot::stamp, &Snapshot::silent_from}) {
+    auto timeless = still(plane(0));
+    (*timeless).*time = NAN;
+    EXPECT_THROW(source.publish(std::move(timeless)), Error);
+  }
 }
 
 TEST(Scene, RefusesANameTwiceAndTooManySources) {
