@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -17,23 +18,49 @@ constexpr double kFaintSource = 0.1;
 // Cosine between directions to one eye. An error of 18 degrees is far below what kFaces leaves
 // between the sides of a surface (derived).
 constexpr double kSameEye = 0.95;
+// What that cosine falls by where there are more directions than room: from 18 to 26, 32, ...
+// degrees. The smaller the steps, the less are merged; judgement.
+constexpr double kMerge = 0.05;
 
 }  // namespace
 
 void Eyes::begin(const Vector3d& center) noexcept {
   center_ = center;
   count_ = 0;
+  direction_count_ = 0;
+  same_ = kSameEye;
   unseen_ = 0;
 }
 
 void Eyes::add(const Eye& eye) noexcept {
   const auto same = [&](const Eye& other) {
-    return other.source == eye.source && other.remembered == eye.remembered &&
-           (eye.remembered ? other.position.dot(eye.position) > kSameEye
-                           : other.position == eye.position);
+    return other.source == eye.source && other.position == eye.position;
   };
-  const auto end = eyes_.begin() + static_cast<std::ptrdiff_t>(count_);
-  if (count_ < kMost && std::none_of(eyes_.begin(), end, same)) eyes_[count_++] = eye;
+  const auto known = std::span(eyes_).first(count_);
+  if (count_ < kMost && std::ranges::none_of(known, same)) eyes_[count_++] = eye;
+}
+
+bool Eyes::has_direction(const Eye& eye) const noexcept {
+  return std::ranges::any_of(std::span(directions_).first(direction_count_), [&](const Eye& other) {
+    return other.source == eye.source && other.position.dot(eye.position) > same_;
+  });
+}
+
+/// Directions are merged, and none is dropped: what speaks for one is within same_ of it.
+void Eyes::add_direction(const Eye& eye) noexcept {
+  while (!has_direction(eye)) {
+    if (direction_count_ < kMostDirections) return void(directions_[direction_count_++] = eye);
+    merge_directions();
+  }
+}
+
+/// Makes room, if it can: at a cosine of -1 one direction a source is left.
+void Eyes::merge_directions() noexcept {
+  same_ -= kMerge;
+  const std::size_t count = std::exchange(direction_count_, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!has_direction(directions_[k])) directions_[direction_count_++] = directions_[k];
+  }
 }
 
 void Eyes::add(const ActiveLayer& layer, std::span<const std::uint32_t> indices) noexcept {
@@ -46,9 +73,9 @@ void Eyes::add(const ActiveLayer& layer, std::span<const std::uint32_t> indices)
   }
   const auto& remembered = points.eye->remembered;
   const auto first = static_cast<std::uint32_t>(points.size() - remembered.size());
-  if (indices.front() < first) add(Eye{source, false, points.eye->position - center_});
+  if (indices.front() < first) add(Eye{source, points.eye->position - center_});
   for (auto at = std::ranges::lower_bound(indices, first); at != indices.end(); ++at) {
-    add(Eye{source, true, remembered[*at - first].cast<double>()});
+    add_direction(Eye{source, remembered[*at - first].cast<double>()});
   }
 }
 
@@ -61,13 +88,13 @@ bool Eyes::hold(const Vector3d& x, const Vector3d& gradient,
     if ((unseen_ >> s & 1u) != 0 && counts(s)) return true;
   }
   const double least = kFaces * gradient.norm();
-  for (std::size_t k = 0; k < count_; ++k) {
-    const Eye& eye = eyes_[k];
-    if (!counts(eye.source)) continue;
-    const Vector3d ray = eye.remembered ? eye.position : eye.position - x;
-    if (gradient.dot(ray) >= least * ray.norm()) return true;
-  }
-  return false;
+  const auto faces = [&](const Eye& eye, const Vector3d& ray) {
+    return counts(eye.source) && gradient.dot(ray) >= least * ray.norm();
+  };
+  return std::ranges::any_of(std::span(eyes_).first(count_),
+                             [&](const Eye& eye) { return faces(eye, eye.position - x); }) ||
+         std::ranges::any_of(std::span(directions_).first(direction_count_),
+                             [&](const Eye& eye) { return faces(eye, eye.position); });
 }
 
 }  // namespace palpate

@@ -26,19 +26,26 @@ class Eyes {
                           std::span<const double> weights) const noexcept;
 
  private:
+  /// An eye by where it is (from the centre, m) or, of remembered points, by its direction.
   struct Eye {
     std::size_t source = 0;
-    bool remembered = false;
-    Eigen::Vector3d position =
-        Eigen::Vector3d::Zero();  // from the centre, m; remembered: direction
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
   };
-  static constexpr std::size_t kMost = 2 * simd::kMaxSources;  // one a source and as many others
+  static constexpr std::size_t kMost = kMostLayers;  // positions: one a layer (derived)
+  /// Directions. A hemisphere of them, each 18 degrees from the others, has room; judgement.
+  static constexpr std::size_t kMostDirections = 64;
 
   void add(const Eye& eye) noexcept;
+  void add_direction(const Eye& eye) noexcept;
+  [[nodiscard]] bool has_direction(const Eye& eye) const noexcept;
+  void merge_directions() noexcept;
 
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
   std::array<Eye, kMost> eyes_;
   std::size_t count_ = 0;
+  std::array<Eye, kMostDirections> directions_;
+  std::size_t direction_count_ = 0;
+  double same_ = 1;           // cosine between directions that count as one
   std::uint32_t unseen_ = 0;  // bits of sources with points that hold from all sides
 };
 

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
+#include "support/effort.hpp"
 #include "support/point_field.hpp"
 #include "support/point_shapes.hpp"
 
@@ -78,6 +80,63 @@ TEST(Eyes, RememberedPointsHoldTowardsWhereTheyWereSeenFrom) {
   EXPECT_FALSE(holds(eyes_of({{.points = &points}}), -kUp)) << "no point was seen from there";
   points.eye->remembered.resize(points.size() / 2);
   EXPECT_TRUE(holds(eyes_of({{.points = &points}}), -kUp));
+}
+
+/// The eyes of points that were each seen from a direction of their own.
+Eyes eyes_that_saw_from(const std::vector<Vector3d>& directions, SurfacePoints& points) {
+  std::vector<TestPoint> all(directions.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = {.position = Vector3d(1e-4 * static_cast<double>(i), 0, 0), .radius = 8e-3};
+  }
+  points = make_points(all);
+  points.eye.emplace();
+  for (const std::uint32_t i : points.grid.order()) {
+    points.eye->remembered.push_back(directions[i].normalized().cast<float>());
+  }
+  return eyes_of({{.points = &points}});
+}
+
+Vector3d random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vector3d(normal(random), normal(random), normal(random)).normalized();
+}
+
+TEST(Eyes, TheOneThatSawTheBackCountsBesideFifteenThatSawTheFront) {
+  std::vector<Vector3d> directions;
+  for (int i = 0; i < 63; ++i) {
+    const double turn = 2.4 * i;  // the golden angle, rad: all around, from the top to the rim
+    directions.emplace_back(0.19 * std::sqrt(i) * std::cos(turn),
+                            0.19 * std::sqrt(i) * std::sin(turn), 1);
+  }
+  directions.push_back(-kUp);
+  SurfacePoints points;
+  const Eyes eyes = eyes_that_saw_from(directions, points);
+  EXPECT_TRUE(holds(eyes, kUp));
+  EXPECT_TRUE(holds(eyes, -kUp));
+}
+
+// From all of space a direction is within 27 degrees of one of 64 (derived: as many caps cover it).
+TEST(Eyes, NoDirectionIsDroppedHoweverManyThereAre) {
+  std::mt19937 random(4);
+  for (int run = 0; run < effort(200); ++run) {
+    const bool all_around = run % 2 == 0;
+    std::vector<Vector3d> directions;
+    const Vector3d towards = random_direction(random);
+    while (directions.size() < 600) {
+      const Vector3d direction = random_direction(random);
+      if (all_around || direction.dot(towards) > 0.3) directions.push_back(direction);
+    }
+    SurfacePoints points;
+    const Eyes eyes = eyes_that_saw_from(directions, points);
+    for (int k = 0; k < 50; ++k) {
+      const Vector3d gradient = random_direction(random);
+      double best = -1;
+      for (const Vector3d& direction : directions) best = std::max(best, gradient.dot(direction));
+      const bool held = holds(eyes, gradient);
+      EXPECT_FALSE(held && best < -0.11) << best;
+      EXPECT_TRUE(held || best < (all_around ? 0.7 : 0.25)) << best;
+    }
+  }
 }
 
 TEST(Eyes, ASheetIsSolidToItsBackForNobodyButItsEye) {
