@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <initializer_list>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,15 +22,13 @@
 #include "prepare/description.hpp"
 #include "scene/description.hpp"
 #include "servo/description.hpp"
+#include "session/json_numbers.hpp"
 #include "session/tool_json.hpp"
 
 /// Options as JSON and back, bit for bit, by what describe() lists of them. members() names those
 /// of structs that are no options; a member that is new there does not compile before it is named
 /// here.
 namespace palpate::session {
-
-/// Objects keep their keys in the order in which they are written.
-using Json = nlohmann::ordered_json;
 
 // `f` is handed the names and then the members, in one order.
 void members(auto f, Pinhole& o) {
@@ -118,7 +115,7 @@ template <class T>
   } else if constexpr (Numbers<T>) {
     for (const double number : value) json.push_back(exact_json(number));
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
-    for (int i = 0; i < 12; ++i) json.push_back(value.matrix()(i / 4, i % 4));
+    for (int i = 0; i < 12; ++i) json.push_back(exact_json(value.matrix()(i / 4, i % 4)));
   } else if constexpr (Described<const T>) {
     describe(value, [&json](const About& about, const auto& member) {
       json[about.name] = exact_json(member);
@@ -137,14 +134,6 @@ template <class T>
   return json;
 }
 
-/// A value in an error's words: what is deep or long comes from a file that nobody trusts.
-[[nodiscard]] inline std::string brief(const Json& json) {
-  if (!json.is_string() && !json.is_number()) return json.type_name();
-  constexpr std::size_t kMost = 80;  // characters, as many as a line of a terminal has
-  const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
-  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
-}
-
 /// A choice by its name, or, as earlier versions wrote it, by its number.
 /// @throws Error when there is none of it.
 template <class Choice>
@@ -156,13 +145,43 @@ template <class Choice>
   throw Error(fmt::format("{} is none of {}", brief(json), fmt::join(names_of(table), ", ")));
 }
 
-/// Reads what exact_json() wrote. @throws Error when a choice is unknown, nlohmann::json::exception
-/// when it is something else.
+template <class T>
+void take_exact(const Json& json, T& value);
+
+/// Reads the members of what has some.
+template <class T>
+void take_members(const Json& json, T& value) {
+  // What older recordings do not contain keeps its default, which is how they were made.
+  const auto& object = json.template get_ref<const Json::object_t&>();
+  const auto take = [&object](const char* name, auto& member) {
+    const auto found = object.find(name);
+    if (found == object.end()) return;
+    try {
+      take_exact(found->second, member);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", name, error.what()));
+    }
+  };
+  if constexpr (Described<T>) {
+    describe(value, [&take](const About& about, auto& member) { take(about.name, member); });
+  } else {
+    members(
+        [&](std::initializer_list<const char*> names, auto&... member) {
+          const char* const* name = names.begin();
+          (take(*name++, member), ...);
+        },
+        value);
+  }
+}
+
+/// Reads what exact_json() wrote. @throws Error when it is another number, or of a choice that is
+/// unknown; nlohmann::json::exception when it is something else.
 template <class T>
 void take_exact(const Json& json, T& value) {
   if constexpr (std::is_same_v<T, double>) {
-    value = json.is_string() ? std::strtod(json.get<std::string>().c_str(), nullptr)
-                             : json.get<double>();
+    value = number_in(json);
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    value = whole_in<T>(json);
   } else if constexpr (std::is_enum_v<T>) {
     value = choice_in<T>(json);
   } else if constexpr (IsOptional<T>::value) {
@@ -171,29 +190,15 @@ void take_exact(const Json& json, T& value) {
   } else if constexpr (std::is_same_v<T, std::shared_ptr<const Tool>>) {
     value = tool_in(json);
   } else if constexpr (Numbers<T>) {
-    for (std::size_t i = 0; i < 3; ++i) take_exact(json.at(i), value.data()[i]);
+    require_size(json, 3);
+    for (std::size_t i = 0; i < 3; ++i) take_exact(json[i], value.data()[i]);
   } else if constexpr (std::is_same_v<T, Eigen::Isometry3d>) {
+    require_size(json, 12);
     value.setIdentity();
     for (int i = 0; i < 12; ++i)
-      take_exact(json.at(static_cast<std::size_t>(i)), value.matrix()(i / 4, i % 4));
+      take_exact(json[static_cast<std::size_t>(i)], value.matrix()(i / 4, i % 4));
   } else if constexpr (Described<T> || Listed<T>) {
-    // What older recordings do not contain keeps its default, which is how they were made.
-    const auto& object = json.template get_ref<const Json::object_t&>();
-    const auto take = [&object](const char* name, auto& member) {
-      if (const auto found = object.find(name); found != object.end()) {
-        take_exact(found->second, member);
-      }
-    };
-    if constexpr (Described<T>) {
-      describe(value, [&take](const About& about, auto& member) { take(about.name, member); });
-    } else {
-      members(
-          [&](std::initializer_list<const char*> names, auto&... member) {
-            const char* const* name = names.begin();
-            (take(*name++, member), ...);
-          },
-          value);
-    }
+    take_members(json, value);
   } else {
     value = json.get<T>();
   }

@@ -114,7 +114,7 @@ Recording::Recording(bag::RandomFile file) : file_(std::move(file)), reader_(fil
     const Json& kind = setup.at("kind");
     if (kind != kSetupKind && kind != kToolSetupKind)
       throw Error("another version of palpate recorded it");
-    epoch_ = setup.at("epoch_ns").get<std::int64_t>();
+    epoch_ = whole_in<std::int64_t>(setup.at("epoch_ns"));
     in_picture_axes_ = setup.value("picture_axes", false);
     for (const Json& json : setup.at("hands")) hands_.push_back(hand_of(json));
     for (const Json& json : setup.at("sources")) sources_.push_back(origin_of(json));

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "session/json_numbers.hpp"
+
 namespace palpate::session {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kNoSide = 2;  // no tool has a sample of it
 
@@ -17,7 +17,7 @@ int side_in(double number) {
 }
 
 Eigen::Vector3d vector_in(const Json& row) {
-  return {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()};
+  return {number_in(row.at(0)), number_in(row.at(1)), number_in(row.at(2))};
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ std::shared_ptr<const Tool> tool_in(const Json& json) {
   if (json.is_null()) return nullptr;
   std::vector<Tool::Point> samples;
   for (const Json& row : json.at("samples")) {
-    samples.push_back({vector_in(row), row.at(3).get<double>(), side_in(row.at(4).get<double>())});
+    samples.push_back({vector_in(row), number_in(row.at(3)), side_in(number_in(row.at(4)))});
   }
   return std::make_shared<const Tool>(std::move(samples), vector_in(json.at("axis")));
 }

@@ -72,7 +72,9 @@ TEST(OptionsJson, WhatIsNoToolIsRefused) {
        {R"({"axis": [1, 0, 0], "samples": []})", R"({"axis": [0, 0, 0], "samples": [[0,0,0,0,0]]})",
         R"({"axis": [1, 0, 0], "samples": [[0,0,0,0,0.5]]})",
         R"({"axis": [1, 0, 0], "samples": [[0,0,0,-1,0]]})",
-        R"({"axis": [1, 0, 0], "samples": [[1e9,0,0,0,0]]})"}) {
+        R"({"axis": [1, 0, 0], "samples": [[1e9,0,0,0,0]]})",
+        R"({"axis": [1, 0, "x"], "samples": [[0,0,0,0,0]]})",
+        R"({"axis": [1, 0, 0], "samples": [[true,0,0,0,0]]})"}) {
     ServoOptions servo;
     EXPECT_THROW(take_exact(Json{{"tool", Json::parse(tool)}}, servo), Error) << tool;
   }
@@ -116,6 +118,49 @@ TEST(OptionsJson, WhatIsRefusedIsNamedInShortHoweverDeepItIs) {
   EXPECT_EQ(words(true), "boolean");
   EXPECT_EQ(words(std::string(1000, 'x')), "\"" + std::string(79, 'x') + "...");
   EXPECT_EQ(words("\xff"), "\"\\ufffd\"") << "no UTF-8";
+}
+
+/// What the error says of options that are not taken; empty: they are.
+template <class Options>
+std::string refusal_of(const char* json) {
+  Options options;
+  try {
+    take_exact(Json::parse(json), options);
+  } catch (const Error& error) {
+    return error.what();
+  } catch (const Json::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(OptionsJson, WhatIsNoNumberIsRefusedAndNamed) {
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": "abc"})"), "fade: \"abc\" is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": "1 s"})"), "fade: \"1 s\" is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": ""})"), "fade: \"\" is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": true})"), "fade: boolean is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": null})"), "fade: null is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": [1]})"), "fade: array is no number");
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"fade": "inf"})"), "");
+  EXPECT_EQ(refusal_of<ServoOptions>(R"({"proxy": {"rise_time": "x"}})"),
+            "proxy: rise_time: \"x\" is no number");
+}
+
+TEST(OptionsJson, WhatIsNoWholeNumberIsRefused) {
+  for (const char* number : {"1.5", "-1e9", "4294967296", "\"3\"", "true", "1e300"}) {
+    const std::string json = fmt::format(R"({{"history": {}}})", number);
+    EXPECT_EQ(refusal_of<PolicyOptions>(json.c_str()).substr(0, 9), "history: ") << json;
+  }
+  EXPECT_EQ(refusal_of<PolicyOptions>(R"({"history": 3})"), "");
+}
+
+TEST(OptionsJson, ListsOfAnotherLengthAreRefused) {
+  for (const char* place : {"[0, 1]", "[0, 1, 2, 3]", "{}", "7"}) {
+    Eigen::Vector3d taken;
+    EXPECT_THROW(take_exact(Json::parse(place), taken), Error) << place;
+    Eigen::Isometry3d pose;
+    EXPECT_THROW(take_exact(Json::parse(place), pose), Error) << place;
+  }
 }
 
 TEST(OptionsJson, WhatARecordingDoesNotHaveKeepsItsDefault) {
