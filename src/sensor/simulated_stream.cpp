@@ -151,7 +151,7 @@ void SimulatedStream::Player::take() {
   waits = false;
   const auto objection = check.examine(polled.frame, kEver);
   log.frame_received(next, objection, check.size_changes());
-  if (!objection) prepare();
+  if (!objection || shows_nothing(polled.frame, *objection)) prepare();
 }
 
 void SimulatedStream::Player::prepare() {
@@ -162,7 +162,7 @@ void SimulatedStream::Player::prepare() {
       shown = true;
       return start;
     });
-    if (shown) log.touchable(options.latency);
+    if (shown) log.touchable(polled.frame.stamp, options.latency);
   } catch (const std::exception& error) {
     log.refused(next, error.what());
   }

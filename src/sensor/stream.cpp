@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "palpate/base/error.hpp"
+#include "sensor/camera_clock.hpp"
 #include "sensor/frame_exchange.hpp"
 #include "sensor/stream_statistics.hpp"
 
@@ -48,8 +49,6 @@ namespace {
 
 using namespace sensor;
 
-// A camera's clock may run ahead of the host's by so much before a stamp is thought senseless.
-constexpr double kAhead = 1;  // s (judgement)
 // No frame takes so long to arrive: a first one that seems to have done so has another
 // clock's stamp.
 constexpr double kOtherClock = 30;  // s (judgement)
@@ -114,16 +113,17 @@ struct Stream::Threads {
   [[nodiscard]] bool take(DepthFrame& frame);
   void leave_out(DepthCamera::Status status);
   void compare_clocks(double stamp, double now);
+  void bring_to_clock(DepthFrame& frame, double now);
   [[nodiscard]] bool wait_to_retry();
 
   const StreamOptions options;
   DepthCamera& camera;  // the reading thread's
   const Clock& clock;
   StreamStatistics log;
-  FrameCheck check;  // the reading thread's
-  Retry retry;       // the reading thread's
+  FrameCheck check;    // the reading thread's
+  CameraClock stamps;  // the reading thread's
+  Retry retry;         // the reading thread's
   FrameExchange exchange;
-  bool compared = false;    // the first frame's stamp with the clock; the reading thread's
   std::string reason;       // why the last answer was no frame; the reading thread's
   Preparation preparation;  // the preparing thread's
   std::thread preparing;
@@ -166,11 +166,11 @@ bool Stream::Threads::take(DepthFrame& frame) {
   retry.succeeded();
   const double now = clock.now();
   const bool paces = camera.info().paces;
+  if (paces) bring_to_clock(frame, now);
   const double latest = paces ? now + kAhead : std::numeric_limits<double>::infinity();
   const auto objection = check.examine(frame, latest);
   log.frame_received(now, objection, check.size_changes());
-  if (paces && !std::exchange(compared, true)) compare_clocks(frame.stamp, now);
-  if (objection) return true;
+  if (objection && !sensor::shows_nothing(frame, *objection)) return true;
   const auto outcome = exchange.offer(frame);
   if (outcome == FrameExchange::Offer::overtook) log.overtaken();
   return outcome != FrameExchange::Offer::stopped;
@@ -187,6 +187,17 @@ void Stream::Threads::compare_clocks(double stamp, double now) {
   log.warning(now, fmt::format("the camera uses another clock: its first frame was taken at {:.6g} "
                                "s, but it is {:.6g} s now. Open it with the stream's clock",
                                stamp, now));
+}
+
+void Stream::Threads::bring_to_clock(DepthFrame& frame, double now) {
+  if (stamps.is_new()) compare_clocks(frame.stamp, now);
+  frame.stamp = stamps.on_stream(frame.stamp, now);
+  const double back = stamps.set_back();
+  if (back == 0) return;
+  log.warning(now,
+              fmt::format("its clock was set {} by {:.3f} s: frames count from when they come, "
+                          "less what the quickest one took",
+                          back > 0 ? "back" : "forward", std::abs(back)));
 }
 
 bool Stream::Threads::wait_to_retry() {
@@ -226,7 +237,7 @@ void Preparation::prepare(const DepthFrame& frame) {
     sink(frame, request_start);
     if (!requested) return;
     const double now = clock.now();
-    log.touchable(std::max(*requested + ahead, now) - frame.stamp);
+    log.touchable(frame.stamp, std::max(*requested + ahead, now) - frame.stamp);
     tail = std::min(std::max(kForget * tail, now - *requested), kLongestTail);
   } catch (const std::exception& error) {
     log.refused(clock.now(), error.what());

@@ -11,8 +11,6 @@
 #include <span>
 #include <utility>
 
-#include "palpate/sensor/stream.hpp"
-
 namespace palpate::sensor {
 namespace {
 
@@ -88,8 +86,8 @@ std::optional<Objection> FrameCheck::examine(const DepthFrame& frame, double lat
   if (auto objection = check_form(frame); objection && !frame.cloud) return objection;
   if (auto objection = check_stamp(frame.stamp, latest)) return objection;
   if (auto objection = frame.cloud ? std::nullopt : check_size(frame)) return objection;
-  if (auto objection = check_picture(frame)) return objection;
   stamp_ = frame.stamp;
+  if (auto objection = check_picture(frame)) return objection;
   return {};
 }
 
@@ -229,8 +227,9 @@ void StreamStatistics::refused(double now, const std::string& why) {
   note(now, "a frame could not be prepared: " + why);
 }
 
-void StreamStatistics::touchable(double latency) {
+void StreamStatistics::touchable(double stamp, double latency) {
   const std::lock_guard lock(mutex_);
+  stamp_ = stamp;
   ++state_.touchable;
   ++latencies_;
   latency_sum_ += latency;
@@ -289,9 +288,10 @@ StreamState StreamStatistics::state(double now) {
   const std::lock_guard lock(mutex_);
   look(now);
   StreamState state = state_;
-  const bool over = state_.phase == StreamState::Phase::ended;
+  if (state.touchable > 0) state.age = now - stamp_;
   const double intervals = static_cast<double>(arrivals_.size()) - 1;
   const double mean = intervals > 0 ? (arrivals_.back() - arrivals_.front()) / intervals : 0;
+  const bool over = state.phase == StreamState::Phase::ended;
   const double interval = over ? mean : std::max(mean, now - state_.last_frame);
   state.rate = state_.frames > 1 && interval > 0 ? 1 / interval : 0;
   return state;

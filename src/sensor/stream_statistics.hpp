@@ -28,6 +28,13 @@ struct Objection {
 /// The objection to such a frame, for the camera's reason.
 [[nodiscard]] Objection objection_to(DepthCamera::Status status, const std::string& reason);
 
+/// Is it an image that measures nothing, and has no other fault? It makes no surface, but its
+/// source is told that nothing is seen.
+[[nodiscard]] inline bool shows_nothing(const DepthFrame& frame,
+                                        const Objection& objection) noexcept {
+  return objection.cause == &StreamState::Drops::empty && !frame.cloud;
+}
+
 /// Looks at the frames of one camera, in the order in which they come.
 class FrameCheck {
  public:
@@ -85,7 +92,8 @@ class StreamStatistics {
   void overtaken();
   /// Preparation of a frame threw.
   void refused(double now, const std::string& why);
-  void touchable(double latency);
+  /// `stamp`: of the frame, s.
+  void touchable(double stamp, double latency);
   void failed(double now, const std::string& why, bool repeatedly);
   /// The camera is well and has no frame yet; `reason` states why, or is empty.
   void waiting(double now, const std::string& reason);
@@ -108,6 +116,7 @@ class StreamStatistics {
   bool failing_ = false;         // the camera's last answer was that it cannot
   bool counted_ = false;         // the stall since the last frame of use is counted
   std::deque<double> arrivals_;  // of the last frames, s
+  double stamp_ = 0;             // of the last frame that became touchable, s
   double latency_sum_ = 0;
   std::uint64_t latencies_ = 0;
   std::string objection_;  // to the last frame; empty: none

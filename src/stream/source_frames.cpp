@@ -1,6 +1,7 @@
 // Takes frames and clouds that come one after another, has snapshots made of them, and hands these
 // over to readers.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,10 @@ bool is_mostly_felt(const DepthFrame& frame, const DepthFilterOptions& options) 
   };
   const auto felt = std::ranges::count_if(frame.depth, within);
   return 2 * felt > std::ranges::count_if(frame.depth, [](float z) { return z > 0; });
+}
+
+bool measures_nothing(const DepthFrame& frame) {
+  return std::ranges::none_of(frame.depth, [](float z) { return std::isfinite(z) && z > 0; });
 }
 
 void note_noise(const SnapshotBuilder& made, Source::State& state) {
@@ -122,6 +127,7 @@ bool Source::push(const DepthFrame& frame, const Source::StartTime& start) {
     if (frame.T_world_sensor) check_pose(pose_now);
     if (streaming.watched) streaming.show(frame, pose_now);
   });
+  if (measures_nothing(frame)) return true;
   if (!streaming.room_for(false, *inside_)) return false;
   inside_->reaches.read(streaming.found);
   named(inside_->name, [&] {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -51,6 +52,7 @@ class Touchable {
     ++entered_;
     changed_.wait(lock, [this] { return open_; });
     if (!failure_.empty()) throw Error(std::exchange(failure_, ""));
+    if (std::ranges::none_of(frame.depth, [](float z) { return z > 0; })) return;
     stamps_.push_back(frame.stamp);
     starts_.push_back(start());
   }

@@ -127,6 +127,8 @@ struct Seen {
   double measured = 0;  ///< m; of `lift`, what the frame shows without what is foreseen
   bool came = false;    ///< a solid one was free some frames before
   double age = 0;       ///< of the frame, s
+  double late = 0;      ///< s of it that are more than the quickest frame took to be looked at and
+                        ///< the longest gap between two; 0 while that is unknown
   Eigen::Vector3d towards = Eigen::Vector3d::Zero();  ///< unit, from its middle to the camera
 };
 
@@ -200,7 +202,8 @@ class Source {
   /// Takes the next frame of a depth camera: filters it, brings it into the surface as the policy
   /// requires, publishes. `frame.T_world_sensor`, where set, stands above pose(). Once frames of
   /// one size have come for a while, nothing is allocated, but where sources are compared, once in
-  /// 32 frames. Not real-time; one thread pushes.
+  /// 32 frames. Not real-time; one thread pushes. A frame that measures nothing at all makes no
+  /// surface: seen() tells so, and what is felt fades as in silence.
   ///
   /// False when the frame was dropped, because fields that stand still (their threads call no
   /// update()) hold all snapshots that there may be; state() names one of them.

@@ -55,6 +55,7 @@ struct StreamState {
   double last_frame = 0;           ///< when the last frame came, s on the stream's clock
   double latency_mean = 0;         ///< from stamp to touchable, s
   double latency_worst = 0;        ///< s
+  double age = 0;                  ///< of the newest frame that is touchable, s; 0: none is yet
   std::string problem;             ///< the last one, in words, naming the source; empty: none yet
   double problem_at = 0;           ///< s on the stream's clock
 };
@@ -87,7 +88,8 @@ struct StreamOptions {
 /// last frames of a recording showed stays (Source::keep).
 class Stream {
  public:
-  /// Takes a frame and makes it touchable; its second argument returns the time from which on.
+  /// Takes a frame and makes it touchable; its second argument returns the time from which on. An
+  /// image that measures nothing comes, too, and makes no surface: the time is not asked for.
   /// Called on a thread of the stream.
   using Sink = std::function<void(const DepthFrame&, const Source::StartTime&)>;
 
