@@ -148,6 +148,7 @@ DiagnosticStatus stream_status(const StreamState& state) {
   status.values = {fact("rate", state.rate, "Hz"),
                    fact("age when touchable, mean", 1e3 * state.latency_mean, "ms"),
                    fact("age when touchable, worst", 1e3 * state.latency_worst, "ms"),
+                   fact("age of what is felt", 1e3 * state.age, "ms"),
                    {"frames", std::to_string(state.frames)},
                    {"dropped", std::to_string(state.drops.total())},
                    {"problem", state.problem}};
@@ -164,7 +165,8 @@ DiagnosticStatus robot_status(const RosBridge::RobotState& state) {
   status.hardware_id = state.topic;
   status.values = {{"subscribers", std::to_string(state.readers)},
                    {"targets", std::to_string(state.told)},
-                   {"held back", std::to_string(state.held)}};
+                   {"held back", std::to_string(state.held)},
+                   fact("age of what it follows", 1e3 * state.age, "ms")};
   for (const auto& [reason, seconds] : state.waits) {
     status.values.push_back(fact("waited: " + reason, seconds, "s"));
   }

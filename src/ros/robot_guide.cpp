@@ -117,6 +117,12 @@ double RobotGuide::allowed_ahead(const ServoState& state, const Verdict& proxy, 
   return kJump + std::min(lag, ahead_ + speed_ * interval);
 }
 
+// Is it seen so late that tool or surface have gone on by more than a surface may come in a frame?
+// That a camera's own frames are older is allowed for; a busy machine's are not.
+bool RobotGuide::is_outrun(const Seen& seen, const ServoState& state) const {
+  return seen.late * std::max(state.velocity.norm(), speed_) > kJump;
+}
+
 // Why the robot may not go straight to the target; empty: that path is seen to be free. A surface
 // may have come over the robot in one frame, as far as it does slowly: as near to it the path may
 // be so deep in it.
@@ -158,7 +164,7 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
     pause();
     return {.reason = kLarge, .why = std::string(kLarge)};
   }
-  const Verdict proxy = judge(state.tool, now, tool_);
+  Verdict proxy = judge(state.tool, now, tool_);
   if (proxy.source == nullptr) return without_view(state, dt, pressed);
   // What a cloud has there may hold the tool later, whatever a camera sees.
   if (has(state.field_notes, FieldNote::not_loaded)) {
@@ -169,7 +175,11 @@ RobotGuide::Answer RobotGuide::look(const ServoState& state, double now, bool pr
   // Only a surface that the robot has followed may lag behind the seen one.
   const bool lags = robot_.pose && (follows_ || now - followed_ <= kFreeFor);
   const double allowed = allowed_ahead(state, proxy, dt);
-  const bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
+  bool free = proxy.free() || (proxy.solid() && lags && ahead <= allowed);
+  if (free && is_outrun(proxy.seen, state)) {
+    proxy.seen.verdict = Seen::Verdict::old;
+    free = false;
+  }
   if (proxy.solid() && !free) followed_ = -kNever;
   Memory memory = tool_;
   note(free ? judge({state.hip, state.orientation}, now, memory) : proxy, free, dt, pressed);
@@ -210,7 +220,7 @@ RobotGuide::Answer RobotGuide::follow(const Pose& target, double stamp, double a
   robot_ = {.pose = target, .memory = tool_, .clear = stamp, .seen = looked_};
   ahead_ = ahead;
   followed_ = looked_;
-  return {.target = target};
+  return {.target = target, .age = looked_ - stamp};
 }
 
 void RobotGuide::pause() {

@@ -29,6 +29,7 @@ class RobotGuide {
     bool retreats = false;            ///< the target leads back
     std::string_view reason = {};     ///< why it does not follow; empty: it does
     std::string why = {};             ///< the same with its numbers
+    double age = 0;                   ///< of the frame that shows a target that it follows, s
   };
 
   /// Called some hundred times a second. `now`: s, on the clock of the sources' stamps. `pressed`:
@@ -64,6 +65,7 @@ class RobotGuide {
   };
 
   [[nodiscard]] Verdict judge(const Pose& pose, double now, Memory& memory) const;
+  [[nodiscard]] bool is_outrun(const Seen& seen, const ServoState& state) const;
   [[nodiscard]] double allowed_ahead(const ServoState& state, const Verdict& proxy, double dt);
   [[nodiscard]] std::string_view hindrance(const Pose& target, double now) const;
   [[nodiscard]] bool comes_out(Pose& target, double now) const;

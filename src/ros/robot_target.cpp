@@ -118,6 +118,7 @@ void RobotTarget::count(const RobotGuide::Answer& answer, double now) {
   state_.why = answer.why;
   state_.reason = answer.reason;
   state_.retreats = answer.retreats;
+  state_.age = answer.age;
   ++(answer.target ? state_.told : state_.held);
   if (!answer.reason.empty()) state_.waits[std::string(answer.reason)] += span;
 }

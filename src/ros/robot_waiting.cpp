@@ -25,7 +25,9 @@ RobotGuide::Answer RobotGuide::wait(const Verdict& proxy, double now, double dt,
     answer.why = fmt::format("{} {:.1f} s ago", robot_.over.what, now - robot_.over.since);
   } else if (!proxy.free()) {
     answer.reason = kReasons[static_cast<std::size_t>(proxy.seen.verdict)];
-    answer.why = fmt::format("{} ({})", answer.reason, proxy.source->name());
+    const bool dated = proxy.seen.verdict == Seen::Verdict::old && proxy.seen.age > 0;
+    const std::string age = dated ? fmt::format(", {:.2f} s ago", proxy.seen.age) : "";
+    answer.why = fmt::format("{} ({}{})", answer.reason, proxy.source->name(), age);
   } else {
     answer.reason = hindrance;
     answer.why = answer.reason;

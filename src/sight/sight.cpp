@@ -226,7 +226,10 @@ void Sight::see(const DepthFrame& frame, const Eigen::Isometry3d& T_world_sensor
   spare_.T_world_sensor = T_world_sensor;
   spare_.noise = noise;
   const std::lock_guard lock(mutex_);
-  if (back) frames_ = 0;
+  if (back) {
+    frames_ = 0;
+    lifetime_ = {};
+  }
   if (frames_ < 3 || newest_.frame.stamp - base_.frame.stamp >= kSpan) std::swap(base_, before_);
   std::swap(before_, newest_);
   std::swap(newest_, spare_);
@@ -276,6 +279,8 @@ std::optional<Seen> Sight::at(std::span<const Ball> balls, double now, const Fra
   if (frames_ > 1 && is_base(before_, newest_)) base = &before_;
   if (frames_ > 2 && base == nullptr && is_base(base_, newest_)) base = &base_;
   Seen seen = judge(newest_, base, balls, now, kHalfWindow);
+  const double late = std::max(seen.age - lifetime_.usual().value_or(seen.age), 0.0);
+  if (!std::isinf(lasts)) seen.late = late;
   if (seen.verdict == Seen::Verdict::outside) return seen;
   if (seen.age > lasts) {
     seen.verdict = Seen::Verdict::old;
@@ -285,7 +290,9 @@ std::optional<Seen> Sight::at(std::span<const Ball> balls, double now, const Fra
   // Around the point the newest frame shows what came since the one before.
   if (judge(newest_, base, balls, now, kWideWindow).verdict != Seen::Verdict::free) return seen;
   const PosedFrame* earlier = frames_ > 2 && is_base(base_, before_) ? &base_ : nullptr;
-  return judge(before_, earlier, balls, now, kHalfWindow);
+  Seen earlier_seen = judge(before_, earlier, balls, now, kHalfWindow);
+  earlier_seen.late = seen.late;
+  return earlier_seen;
 }
 
 }  // namespace palpate

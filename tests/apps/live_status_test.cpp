@@ -76,6 +76,17 @@ TEST(LiveStatus, TellsWhatIsWrong) {
   EXPECT_TRUE(contains(words, "side ended"));
 }
 
+TEST(LiveStatus, TellsHowOldWhatIsFeltIs) {
+  LiveMoment moment = second();
+  moment.streams[0].phase = StreamState::Phase::running;
+  moment.streams[0].age = 0.16;
+  EXPECT_FALSE(contains(in_words(moment), "OLD")) << "two frames of 30 Hz after 0.1 s";
+  moment.streams[0].age = 4.9;
+  EXPECT_TRUE(contains(in_words(moment), "what is felt is 4.90 s OLD")) << in_words(moment);
+  moment.streams[0].phase = StreamState::Phase::ended;
+  EXPECT_FALSE(contains(in_words(moment), "OLD")) << "a recording's last surface stays";
+}
+
 TEST(LiveStatus, TellsOfEachHandByName) {
   LiveMoment moment = second();
   moment.hands.push_back(moment.hands[0]);
@@ -101,6 +112,8 @@ TEST(LiveStatus, TellsWhatARobotIsToldAndWhyNot) {
   EXPECT_TRUE(in_words(moment).ends_with(" | robot: no subscriber to /target_pose"));
   robot.readers = 1;
   EXPECT_TRUE(in_words(moment).ends_with(" | robot: 250 targets"));
+  robot.age = 0.043;
+  EXPECT_TRUE(in_words(moment).ends_with(" | robot: 250 targets, seen 43 ms ago"));
   robot.why = "no source has a surface";
   EXPECT_TRUE(in_words(moment).ends_with(" | robot WAITS: no source has a surface"));
   robot.retreats = true;

@@ -35,7 +35,7 @@ TEST_F(ARobot, WaitsWhereACameraThatLooksThereIsSilent) {
   cameras_.back().on = false;
   const RobotGuide::Answer answer = runs(0.5);
   EXPECT_FALSE(answer.target);
-  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two)"));
+  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (two, "));
 }
 
 // What begins to move where a frame is lost is told by the next one that comes.
@@ -50,7 +50,7 @@ TEST_F(ARobot, WaitsForALostFrame) {
   cameras_.back().on = true;
   ASSERT_TRUE(runs(2 * kFrame).target);
   cameras_.back().on = false;
-  EXPECT_THAT(runs(1.9 * kFrame).why, HasSubstr("shows nothing new (camera)"));
+  EXPECT_THAT(runs(1.9 * kFrame).why, HasSubstr("shows nothing new (camera, "));
   cameras_.back().on = true;
   EXPECT_TRUE(runs(kFrame).target) << "at once";
 }
@@ -90,7 +90,7 @@ TEST_F(ARobot, WaitsWhereACameraHasEnded) {
   source.keep();
   const RobotGuide::Answer answer = runs(0.5);
   EXPECT_FALSE(answer.target);
-  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (camera)"));
+  EXPECT_THAT(answer.why, HasSubstr("shows nothing new (camera, "));
 }
 
 TEST_F(ARobot, AsksOnlyTheCamerasThatItIsToldToAsk) {

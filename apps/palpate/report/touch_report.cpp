@@ -211,7 +211,8 @@ std::string in_words(const RosBridge::RobotState& robot) {
   if (robot.readers == 0) return "robot: no subscriber to " + robot.topic;
   if (robot.retreats) return "robot GOES BACK: " + robot.why;
   if (!robot.why.empty()) return "robot WAITS: " + robot.why;
-  return fmt::format("robot: {} targets", robot.told);
+  const std::string age = robot.age > 0 ? fmt::format(", seen {:.0f} ms ago", 1e3 * robot.age) : "";
+  return fmt::format("robot: {} targets{}", robot.told, age);
 }
 
 Json report_on(const TouchReport& report, std::FILE* stream) {

@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "apps/palpate/report/touch_report.hpp"
+#include "palpate/scene/source.hpp"
 
 namespace palpate::app {
 
@@ -51,6 +52,12 @@ std::string hand_words(const HandMoment& moment) {
   return words;
 }
 
+// How old what is felt becomes before the next frame replaces it, s: as long after its stamp as
+// people do not notice, and two frames, one of which may be lost.
+double due_in(const StreamState& stream) {
+  return kLateCloud + (stream.rate > 0 ? 2 / stream.rate : 0);
+}
+
 std::string stream_words(const StreamState& stream) {
   std::string words = stream.source;
   switch (stream.phase) {
@@ -68,6 +75,8 @@ std::string stream_words(const StreamState& stream) {
       break;
   }
   words += fmt::format(" {:.1f} Hz, {:.0f} ms", stream.rate, 1e3 * stream.latency_mean);
+  if (stream.phase == StreamState::Phase::running && stream.age > due_in(stream))
+    words += fmt::format(", what is felt is {:.2f} s OLD", stream.age);
   if (stream.drops.total() > 0) words += fmt::format(", {} dropped", stream.drops.total());
   return words;
 }

@@ -80,6 +80,7 @@ class RosBridge {
     std::string why = {};     ///< why the last that was due was held back; empty: it was sent
     std::string reason = {};  ///< the same without numbers
     bool retreats = false;    ///< targets lead back from a surface that came over it
+    double age = 0;           ///< of the frame that shows the last target that it follows, s
     std::map<std::string, double> waits = {};  ///< s of it by reason
     std::size_t readers = 0;                   ///< controllers that read the topic
   };
