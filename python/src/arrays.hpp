@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "gil.hpp"
+
 namespace palpate::python {
 
 namespace py = pybind11;
@@ -80,7 +82,7 @@ class Away {
   explicit Away(Mutexes&... mutexes) : locks_(mutexes...) {}
 
  private:
-  py::gil_scoped_release release_;
+  Released release_;
   std::scoped_lock<Mutexes...> locks_;
 };
 

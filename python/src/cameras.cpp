@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "gil.hpp"
 #include "module.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/hardware.hpp"
@@ -111,7 +112,7 @@ py::list drivers(const std::vector<DriverInfo>& found) {
 py::list look_for(std::vector<DriverInfo> (*list)()) {
   std::vector<DriverInfo> found;
   {
-    const py::gil_scoped_release release;
+    const Released release;
     found = list();
   }
   return drivers(found);
@@ -151,7 +152,7 @@ void define_cameras(py::module_& module) {
       .def_property_readonly("rate", &rate, "frames a second");
   module.def(
       "open_camera", &open_one, arg("name"), py::kw_only(), arg("loop") = false,
-      py::call_guard<py::gil_scoped_release>(),
+      py::call_guard<Released>(),
       "simulated[:SCENE], sequence:FOLDER, bag:FILE, openni2, freenect, FILE.oni, ros:TOPIC, "
       "remote[:PATH]");
   module.def(

@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "clouds.hpp"
+#include "gil.hpp"
 #include "module.hpp"
 #include "palpate/io/synthetic.hpp"
 
@@ -54,7 +55,7 @@ PointCloud synthetic(const std::string& name, double spacing, double noise, std:
 
 void define_files(py::module_& module) {
   using py::arg;
-  using Free = py::call_guard<py::gil_scoped_release>;
+  using Free = py::call_guard<Released>;
   module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(), arg("scale") = 1.0,
              arg("length") = py::none(), arg("K") = py::none(), arg("unit") = 1e-3,
              arg("mesh_spacing") = 0.0, kRead);

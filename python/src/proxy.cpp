@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "gil.hpp"
 #include "module.hpp"
 #include "options.hpp"
 #include "rollout.hpp"
@@ -130,7 +131,7 @@ std::string words(const TimedProxy& proxy) {
 void define_proxy(py::module_& module) {
   using py::arg;
   using Bound = TimedProxy;
-  using Free = py::call_guard<py::gil_scoped_release>;
+  using Free = py::call_guard<Released>;
   define_results(module);
   py::class_<Bound>(module, "Proxy",
                     fmt::format(kProxy, listed(keywords_of<ProxyOptions>())).c_str())

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "gil.hpp"
 #include "module.hpp"
 #include "options.hpp"
 #include "palpate/base/error.hpp"
@@ -21,11 +22,11 @@ class ServoHandle {
  public:
   ServoHandle(const std::shared_ptr<SharedScene>& scene, const ServoPlan& plan) {
     {
-      const py::gil_scoped_release release;
+      const Released release;
       running_ = std::make_shared<RunningServo>(scene, plan);
     }
     at_exit_ = py::cpp_function([weak = std::weak_ptr(running_)] {
-      const py::gil_scoped_release release;
+      const Released release;
       if (const auto running = weak.lock()) running->stop();
     });
     py::module_::import("atexit").attr("register")(at_exit_);
@@ -36,7 +37,7 @@ class ServoHandle {
     } catch (const py::error_already_set&) {
       // The interpreter is ending, and atexit has gone: it has stopped the servo.
     }
-    const py::gil_scoped_release release;
+    const Released release;
     running_.reset();
   }
   ServoHandle(const ServoHandle&) = delete;
@@ -44,7 +45,7 @@ class ServoHandle {
 
   void stop() {
     {
-      const py::gil_scoped_release release;
+      const Released release;
       running_->stop();
     }
     if (!at_exit_) return;
@@ -93,7 +94,7 @@ std::unique_ptr<ServoHandle> new_servo(const std::shared_ptr<SharedScene>& scene
 py::object ticks(const ServoHandle& handle) {
   std::vector<Tick> found;
   {
-    const py::gil_scoped_release release;
+    const Released release;
     found = handle.running().ticks();
   }
   return record_array(found);
@@ -151,7 +152,7 @@ void move(const ServoHandle& handle, const Eigen::Vector3d& position) {
 }
 
 bool running(const ServoHandle& handle) {
-  const py::gil_scoped_release release;
+  const Released release;
   return handle.running().running();
 }
 

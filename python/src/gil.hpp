@@ -1,0 +1,30 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+#include <thread>
+
+namespace palpate::python {
+
+/// Lets other threads of Python go on until its end, where it waits for the GIL. A thread that
+/// comes back after the interpreter has ended stays here: Python itself keeps such threads from
+/// 3.14 on, and ends them before by an exception that no destructor lets pass.
+class Released {
+ public:
+  Released() : thread_(PyEval_SaveThread()) {}
+  ~Released() {
+    try {
+      PyEval_RestoreThread(thread_);
+    } catch (...) {
+      for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+  }
+  Released(const Released&) = delete;
+  Released& operator=(const Released&) = delete;
+
+ private:
+  PyThreadState* thread_;
+};
+
+}  // namespace palpate::python
