@@ -26,6 +26,7 @@ class ScenesField final : public AnyField {
               const Eigen::Vector3d& proxy) noexcept override {
     field_.update(now, hip, proxy);
   }
+  void stepped(double now) noexcept override { scene_->time.store(now); }
   [[nodiscard]] const SceneField* of_scene() const noexcept override { return &field_; }
 
  private:

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "arrays.hpp"
 #include "palpate/base/error.hpp"
 
@@ -104,7 +106,8 @@ Contact TimedProxy::step(AnyField& field, const Eigen::Vector3d& hip, double now
                          double dt) noexcept {
   field.update(now, hip, started ? proxy.position() : hip);
   started = true;
-  time = now + dt;
+  if (std::isfinite(now + dt) && dt >= 0) time = now + dt;  // else a fault, and time stands still
+  field.stepped(now);
   return proxy.step(field.field(), hip, dt);
 }
 

@@ -10,6 +10,7 @@
 
 #include "arrays.hpp"
 #include "clouds.hpp"
+#include "gil.hpp"
 #include "images.hpp"
 #include "module.hpp"
 #include "options.hpp"
@@ -33,7 +34,7 @@ std::shared_ptr<Made> added(const ScenePointer& scene, const Parts&... parts) {
   made->scene = scene;
   made->source = &scene->scene.add(parts...);
   made->index = scene->scene.size() - 1;
-  scene->problems.resize(scene->scene.size());
+  scene->pushed.resize(scene->scene.size());
   return made;
 }
 
@@ -102,9 +103,13 @@ std::shared_ptr<Camera> add_camera(const ScenePointer& scene, const std::string&
 }
 
 // Starts by simulated time if there is a stamp, else by the servos' clock.
-Source::StartTime start_of(const std::optional<double>& stamp, double latency) {
-  if (!stamp) return [] { return SteadyClock().now() + kLead; };
-  return [start = *stamp + latency] { return start; };
+Source::StartTime start_of(SharedSource& source, const std::optional<double>& stamp,
+                           double latency) {
+  return [&source, stamp, latency] {
+    const double start = stamp ? *stamp + latency : SteadyClock().now() + kLead;
+    source.starts(start);
+    return start;
+  };
 }
 
 bool push_image(Camera& camera, const py::object& depth, const std::optional<double>& stamp,
@@ -121,7 +126,7 @@ bool push_image(Camera& camera, const py::object& depth, const std::optional<dou
   camera.frame.T_world_sensor.reset();
   if (pose) camera.frame.T_world_sensor = pose_of(*pose);
   camera.tell(problem_of(camera, image.itemsize() != kFloat32.bytes));
-  const bool taken = camera.source->push(camera.frame, start_of(stamp, latency));
+  const bool taken = camera.source->push(camera.frame, start_of(camera, stamp, latency));
   camera.newest = camera.frame.stamp;
   return taken;
 }
@@ -134,7 +139,8 @@ bool push_points(CloudStream& stream, const py::object& points, const std::optio
   keywords.finish();
   const Away away(stream.mutex);
   if (pose) stream.source->set_pose(pose_of(*pose));
-  return stream.source->push(*cloud, stamp.value_or(SteadyClock().now()), start_of(stamp, latency));
+  return stream.source->push(*cloud, stamp.value_or(SteadyClock().now()),
+                             start_of(stream, stamp, latency));
 }
 
 std::size_t size_of(SharedScene& scene) {
@@ -145,7 +151,7 @@ std::size_t size_of(SharedScene& scene) {
 SourceState state_of(SharedScene& scene, std::size_t index) {
   if (index >= size_of(scene)) throw py::index_error("there is no such source");
   const Away away(scene.mutex);
-  return {scene.scene.state(index), scene.problems[index]};
+  return {scene.scene.state(index), scene.pushed[index].problem_at(scene.time)};
 }
 
 py::object points_of(const SharedSource& source) {
@@ -185,8 +191,9 @@ void define_state(py::module_& module) {
       .def_readonly("depth", &State::depth, "median of the last frame")
       .def_readonly("disagreement", &State::disagreement,
                     "with other sources; None: nothing shared")
-      .def_readonly("problem", &State::problem,
-                    "why the last image can be no surface, and what to do; empty: none is known")
+      .def_readonly(
+          "problem", &State::problem,
+          "why nothing is felt of what was pushed last, and what to do; empty: none is known")
       .def("__repr__", [](const State& state) {
         return fmt::format("<{} frames at {:.1f} Hz, {} dropped, {} points{}{}>", state.frames,
                            state.rate(), state.dropped, state.points,
@@ -231,8 +238,8 @@ void define_sources(py::module_& module) {
       .def("set_pose", &Shared::set_pose, arg("pose"), "From the next push on: (4, 4)")
       .def("points", &points_of, "SurfacePoints of the newest surface, not copied, or None")
       .def("report", &Shared::report, "PrepareReport of the newest cloud")
-      .def("state", &Shared::state, py::call_guard<py::gil_scoped_release>())
-      .def("keep", &Shared::keep, py::call_guard<py::gil_scoped_release>(),
+      .def("state", &Shared::state, py::call_guard<Released>())
+      .def("keep", &Shared::keep, py::call_guard<Released>(),
            "Keeps the last surface without fading: after the last push");
   py::class_<CloudStream, Shared, std::shared_ptr<CloudStream>>(module, "CloudStream",
                                                                 "A sensor that delivers points")
@@ -251,12 +258,18 @@ void SharedSource::set_pose(const Eigen::MatrixXd& T_world_sensor) {
 
 SourceState SharedSource::state() const {
   const std::lock_guard lock(scene->mutex);
-  return {source->state(), scene->problems[index]};
+  return {source->state(), scene->pushed[index].problem_at(scene->time)};
 }
 
 void SharedSource::tell(std::string problem) {
   const std::lock_guard lock(scene->mutex);
-  scene->problems[index] = std::move(problem);
+  scene->pushed[index].problem = std::move(problem);
+}
+
+void SharedSource::starts(double start) {
+  const PolicyOptions policy = source->options().policy;
+  const std::lock_guard lock(scene->mutex);
+  scene->pushed[index].starts(start, start + policy.silence + policy.fade, scene->time);
 }
 
 void SharedSource::keep() {

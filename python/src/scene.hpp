@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <deque>
 #include <limits>
@@ -11,14 +12,17 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/depth/depth_frame.hpp"
 #include "palpate/scene/scene.hpp"
+#include "pushed.hpp"
 
 namespace palpate::python {
 
 /// A scene that Python, fields and servos share: it stays as long as any of them.
 struct SharedScene {
   Scene scene;
-  std::mutex mutex;                       ///< of those who add sources or fields, and of `problems`
-  std::deque<std::string> problems = {};  ///< of each source, in words; empty: none
+  std::mutex mutex;                ///< of those who add sources or fields, and of `pushed`
+  std::deque<Pushed> pushed = {};  ///< of each source
+  /// When a proxy made its last step in it, s; not a number: none did.
+  std::atomic<double> time = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// State of a source, and why its last frame can be no surface.
@@ -34,6 +38,8 @@ struct SharedSource {
   [[nodiscard]] Prepared::Report report() const { return source->report(); }
   [[nodiscard]] SourceState state() const;
   void tell(std::string problem);
+  /// Notes when the surface of what is pushed now starts, s.
+  void starts(double start);
   void keep();
 
   std::shared_ptr<SharedScene> scene;

@@ -34,12 +34,12 @@ class HeldTool {
            const ToolOptions& options)
       : formula_(std::move(formula)), proxy_(std::move(tool), options) {}
 
-  // An update sees the time that begins, as that of a point; before the first one the tool is where
-  // the hand is.
+  // An update sees the time that begins, as a point's does; the tool begins where the hand is.
   ToolContact step(const Pose& hand, double dt) {
     const Away away(formula_ ? formula_->mutex : free_, mutex_);
     if (surface_)
       surface_->update(time_, hand, std::exchange(started_, true) ? proxy_.pose() : hand);
+    if (scene_) scene_->time.store(time_);
     if (std::isfinite(dt) && dt >= 0) time_ += dt;
     return surface_ ? proxy_.step(*surface_, hand, dt) : proxy_.step(formula_->field(), hand, dt);
   }
