@@ -72,7 +72,7 @@ void touchable(benchmark::State& state, bool everywhere, bool moves = false) {
   int count = 0;
   repeat(state, [&](DepthFrame& frame) {
     if (moves) frame.T_world_sensor->translation().x() += ++count % 2 == 0 ? kTrembles : -kTrembles;
-    field.update(frame.stamp, kHand, kProxy);
+    field.update_from(frame.stamp, kHand, kProxy);
     source.push(frame, [&] { return frame.stamp + 0.01; });
   });
 }

@@ -10,7 +10,7 @@ void stroke(palpate::Scene& scene, const char* name, const palpate::ProxyOptions
   for (int step = 0; step < 1000; ++step) {
     const double t = 1e-3 * step;                                             // s
     const Eigen::Vector3d hand(0.04 * t - 0.02, 0, t < 0.02 ? 0.02 : -2e-3);  // 2 mm deep
-    field.update(t, hand, step == 0 ? hand : proxy.position());
+    field.update(t, hand, proxy);
     const palpate::Contact contact = proxy.step(field, hand, 1e-3);
     if (step % 5 == 0 && contact.touching) {
       const double backward = 0.0 - contact.force.x();

@@ -43,11 +43,10 @@ void grip_a_torus() {
   Pose hand;
   hand.opening = 0.07;
   hand.position = {0.07, 0, 0.07};  // the fingers point down and open along x
-  proxy.reset(hand);
   for (int step = 0; step < 2000; ++step) {
     hand.position.z() = std::max(0.03, 0.07 - 1e-4 * step);
     if (step > 500) hand.opening = std::max(0.02, hand.opening - 5e-5);
-    field.update(1e-3 * step, hand, proxy.pose());  // s
+    field.update(1e-3 * step, hand, proxy);  // s
     const ToolContact contact = proxy.step(field, hand, 1e-3);
     if (step % 200 != 0) continue;
     std::printf("hand %4.1f mm, gripper %4.1f mm open: grip %.2f N, %d touches\n",

@@ -9,9 +9,10 @@ void slide(palpate::Scene& scene, const char* name, double tool_radius) {
   palpate::SceneField field(scene, {.tool_radius = tool_radius});
   palpate::Proxy proxy;
   for (int step = 0; step < 2000; ++step) {
-    const double down = step == 0 ? -0.03 : 2e-3;  // m: begins above, then presses with 1 N
-    const Eigen::Vector3d hand(9e-5 * step - 0.09, 0, proxy.position().z() - down);
-    field.update(1e-3 * step, hand, step == 0 ? hand : proxy.position());
+    // m: begins above, then presses with 1 N
+    const double height = proxy.has_begun() ? proxy.position().z() - 2e-3 : 0.03;
+    const Eigen::Vector3d hand(9e-5 * step - 0.09, 0, height);
+    field.update(1e-3 * step, hand, proxy);
     const palpate::Contact contact = proxy.step(field, hand, 1e-3);
     if (step % 10 != 0 || !contact.touching) continue;
     std::printf("%s %.1f mm: %.2f mm\n", name, 1e3 * contact.proxy.x(), 1e3 * contact.proxy.z());

@@ -50,7 +50,7 @@ void touch(const char* name) {
     std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
     const double done = std::min(1.0, 1e-3 * step);
     const Vector3d hand = way.outside + 1.05 * done * (way.place - way.outside);
-    field.update(clock.now(), hand, step == 0 ? hand : proxy.position());
+    field.update(clock.now(), hand, proxy);
     const double force = proxy.step(field, hand, 1e-3).force.norm();
     largest = std::max(largest, force);
     if (step % 10 == 0) std::printf("%.3f s: %.3f N\n", 1e-3 * step, force);

@@ -39,7 +39,7 @@ void touch(const char* file) {
   double largest = 0;                          // N
   for (int step = 0; step <= 1000; ++step) {
     const Vector3d hand = target.outside + (target.place - target.outside) * (1.1e-3 * step);
-    field.update(step * period, hand, proxy.position());
+    field.update(step * period, hand, proxy);
     const palpate::Contact contact = proxy.step(field, hand, period);
     if (contact.force.norm() > largest) largest = contact.force.norm();
     if (step % 10 == 0) std::printf("%.3f s: %.3f N\n", step * period, contact.force.norm());

@@ -27,7 +27,7 @@ int main() {
     const double distance = t < 0.2 ? 0.08 : 0.057;  // m: first outside, then 3 mm deep
     const Eigen::Vector3d hand =
         ball + distance * Eigen::Vector3d(-std::cos(angle), -std::sin(angle), 0);
-    field.update(t, hand, step == 0 ? hand : proxy.position());
+    field.update(t, hand, proxy);
     const palpate::Contact contact = proxy.step(field, hand, 1e-3);
     if (step % 10 != 0 || !contact.touching) continue;
     const std::string& camera = scene.source(static_cast<std::size_t>(contact.source)).name();

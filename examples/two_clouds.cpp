@@ -35,7 +35,7 @@ int main() {
   for (int step = 0; step < 2000; ++step) {
     const double t = step * 1e-3;                                       // s
     const Vector3d hand(-0.08 + 0.08 * t, 0, t < 0.1 ? 0.05 : -0.003);  // m
-    field.update(t, hand, proxy.position());
+    field.update(t, hand, proxy);
     const palpate::Contact contact = proxy.step(field, hand, 1e-3);
     if (contact.source != touched) {
       touched = contact.source;

@@ -73,7 +73,7 @@ Trace rendered_trace(Scene& scene, const Contender& contender, const Path& path)
   Proxy proxy(contender.proxy);
   proxy.reset(path.hip.front());
   for (std::size_t i = 0; i < path.hip.size(); ++i) {
-    field.update(static_cast<double>(i) * kTick, path.hip[i], proxy.position());
+    field.update(static_cast<double>(i) * kTick, path.hip[i], proxy);
     record(trace, proxy.step(field, path.hip[i], kTick), path.hip[i]);
   }
   return trace;

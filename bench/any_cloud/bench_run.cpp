@@ -44,7 +44,7 @@ Trace follow(const HostileScene& scene, const Field& field, Update update) {
   for (const HandTick& tick : scene.ticks) {
     if (tick.starts) proxy.reset(tick.hand);
     const double before = thread_cpu_seconds();
-    update(now, tick.hand, proxy.position());
+    update(now, tick.hand, proxy);
     const Contact contact = proxy.step(field, tick.hand, kTick);
     trace.microseconds.push_back(1e6 * (thread_cpu_seconds() - before));
     trace.force.push_back(contact.force);
@@ -63,14 +63,14 @@ Rendered touch(const HostileScene& scene, const FieldOptions& options,
   Scene felt;
   const Source& source = felt.add("cloud", scene.cloud, {.prepare = prepare});
   SceneField field(felt, options);
-  const auto update = [&](double now, const Vector3d& hand, const Vector3d& proxy) {
+  const auto update = [&](double now, const Vector3d& hand, const Proxy& proxy) {
     field.update(now, hand, proxy);
   };
   return {follow(scene, field, update), source.report()};
 }
 
 Trace touch_truth(const HostileScene& scene) {
-  return follow(scene, TruthField(scene), [](double, const Vector3d&, const Vector3d&) {});
+  return follow(scene, TruthField(scene), [](double, const Vector3d&, const Proxy&) {});
 }
 
 }  // namespace palpate::any_cloud

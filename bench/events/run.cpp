@@ -36,7 +36,7 @@ Felt play(const Event& event) {
   for (std::size_t i = 0; i < event.hip.size(); ++i) {
     const double now = static_cast<double>(i) * kTick;
     stream.advance(now);
-    field.update(now, event.hip[i], proxy.position());
+    field.update(now, event.hip[i], proxy);
     const Contact contact = proxy.step(field, event.hip[i], kTick);
     felt.force.push_back(contact.force);
     felt.proxy.push_back(contact.proxy);

@@ -38,7 +38,7 @@ struct Reader {
     const long last = static_cast<long>(hand->hip.size()) - 1;
     const Vector3d& hip = hand->hip[static_cast<std::size_t>(std::clamp(tick, 0L, last))];
     const double before = thread_cpu_seconds();
-    field.update(now, hip, proxy.position());
+    field.update(now, hip, proxy);
     const Contact contact = proxy.step(field, hip, kTick);
     spent += thread_cpu_seconds() - before;
     if (tick < 0 || tick > last) return;

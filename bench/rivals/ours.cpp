@@ -38,7 +38,7 @@ class Ours final : public Rival {
   }
 
   Step step(const Vector3d& hip) override {
-    field_->update(now_, hip, proxy_.position());
+    field_->update(now_, hip, proxy_);
     now_ += accuracy::kTick;
     return spring(proxy_.step(*field_, hip, accuracy::kTick).proxy, hip);
   }

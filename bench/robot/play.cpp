@@ -203,7 +203,7 @@ Score play(const Trial& trial, Rule rule) {
   for (std::size_t i = 0; i < trial.hip.size(); ++i) {
     now = static_cast<double>(i) * kTick;
     for (Feed& feed : feeds) feed.stream->advance(now);
-    field.update(now, trial.hip[i], proxy.position());
+    field.update(now, trial.hip[i], proxy);
     state.contact = proxy.step(field, trial.hip[i], kTick);
     state.tool.position = state.contact.proxy;
     state.field_notes = field.notes();

@@ -63,7 +63,7 @@ std::size_t tick_of(double start) {
 }
 
 void step(Hand& hand, double now, const Vector3d& hip, StreamTrace& trace) {
-  hand.field.update(now, hip, hand.proxy.position());
+  hand.field.update(now, hip, hand.proxy);
   const Contact contact = hand.proxy.step(hand.field, hip, kTick);
   trace.felt.proxy.push_back(contact.proxy);
   trace.felt.force.push_back(hand.proxy.options().stiffness * (contact.proxy - hip));

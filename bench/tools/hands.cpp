@@ -83,7 +83,7 @@ Met wander(const Stage& stage, const std::shared_ptr<const Tool>& tool, Wanderin
   for (std::uint64_t i = 0; i < steps; ++i) {
     const Pose now = hand.next();
     const double begin = thread_seconds();
-    stage.update(kTick * static_cast<double>(i), now, proxy.pose());
+    stage.update(kTick * static_cast<double>(i), now, proxy);
     const ToolContact contact = stage.step(proxy, now);
     const auto us = static_cast<float>(1e6 * (thread_seconds() - begin));
     (contact.touching ? met.touch_us : met.free_us).push_back(us);

@@ -57,7 +57,7 @@ struct Met {
 
 /// What the hand moves in: updated, stepped, and asked for its deepest sample.
 struct Stage {
-  std::function<void(double now, const Pose& hand, const Pose& proxy)> update;
+  std::function<void(double now, const Pose& hand, const ToolProxy& proxy)> update;
   std::function<ToolContact(ToolProxy&, const Pose& hand)> step;
   /// Calls `see` with the depth (R) of each sample that is near the surface.
   std::function<void(const ToolProxy&, const std::function<void(double)>& see)> depths;

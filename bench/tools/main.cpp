@@ -66,7 +66,7 @@ struct Formula {
 };
 
 Stage stage_of(const Field& field) {
-  return {.update = [](double, const Pose&, const Pose&) {},
+  return {.update = [](double, const Pose&, const ToolProxy&) {},
           .step = [&](ToolProxy& proxy, const Pose& hand) { return proxy.step(field, hand, 1e-3); },
           .depths =
               [&](const ToolProxy& proxy, const auto& see) {
@@ -79,7 +79,7 @@ Stage stage_of(const Field& field) {
 
 Stage stage_of(ToolField& field) {
   return {.update = [&](double now, const Pose& hand,
-                        const Pose& proxy) { field.update(now, hand, proxy); },
+                        const ToolProxy& proxy) { field.update(now, hand, proxy); },
           .step = [&](ToolProxy& proxy, const Pose& hand) { return proxy.step(field, hand, 1e-3); },
           .depths =
               [&](const ToolProxy& proxy, const auto& see) {
@@ -106,7 +106,7 @@ Met wander_point(WanderingHand hand, std::uint64_t steps, const Update& update,
   for (std::uint64_t i = 0; i < steps; ++i) {
     const Vector3d now = hand.next().position;
     const double begin = thread_seconds();
-    update(1e-3 * static_cast<double>(i), now, proxy.position());
+    update(1e-3 * static_cast<double>(i), now, proxy);
     const Contact contact = proxy.step(field, now, 1e-3);
     const auto us = static_cast<float>(1e6 * (thread_seconds() - begin));
     (contact.touching ? met.touch_us : met.free_us).push_back(us);
@@ -163,7 +163,7 @@ void run_cloud(const std::string& scene_name, const Options& options) {
       ToolField field(scene, tool);
       add(all, wander(stage_of(field), tool, hand, options.steps, kAllowedOnClouds));
       SceneField alone(scene);
-      const auto update = [&](double now, const Vector3d& at, const Vector3d& proxy) {
+      const auto update = [&](double now, const Vector3d& at, const Proxy& proxy) {
         alone.update(now, at, proxy);
       };
       add(point, wander_point(hand, options.steps, update, alone));

@@ -22,12 +22,8 @@ class ScenesField final : public AnyField {
       : scene_(std::move(scene)), field_(scene_->scene, options) {}
 
   [[nodiscard]] const Field& field() const noexcept override { return field_; }
-  void update(double now, const Eigen::Vector3d& hip,
-              const Eigen::Vector3d& proxy) noexcept override {
-    field_.update(now, hip, proxy);
-  }
   void stepped(double now) noexcept override { scene_->time.store(now); }
-  [[nodiscard]] const SceneField* of_scene() const noexcept override { return &field_; }
+  [[nodiscard]] SceneField* of_scene() noexcept override { return &field_; }
 
  private:
   std::shared_ptr<SharedScene> scene_;
@@ -63,9 +59,13 @@ template <class Put>
 void each_sample(AnyField& any, const Vectors& x, const std::optional<Eigen::Vector3d>& viewer,
                  double time, const Put& put) {
   const Away away(any.mutex);
-  if (viewer) any.update(time, *viewer, *viewer);
+  SceneField* const of_scene = any.of_scene();
+  const auto look_from = [=](const Eigen::Vector3d& place) {
+    if (of_scene) of_scene->update_from(time, place, place);
+  };
+  if (viewer) look_from(*viewer);
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!viewer) any.update(time, x[i], x[i]);
+    if (!viewer) look_from(x[i]);
     put(i, any.field().sample(x[i]));
   }
 }
@@ -133,7 +133,7 @@ void define_fields(py::module_& module) {
                   listed(keywords_of<FieldOptions>()))
           .c_str())
       .def(py::init(&scene_field), py::arg("scene"))
-      .def("__repr__", [](const ScenesField& field) {
+      .def("__repr__", [](ScenesField& field) {
         return fmt::format("<palpate.Field: tool radius {} m>",
                            field.of_scene()->options().tool_radius);
       });

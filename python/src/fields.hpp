@@ -17,13 +17,10 @@ class AnyField {
   AnyField& operator=(const AnyField&) = delete;
 
   [[nodiscard]] virtual const Field& field() const noexcept = 0;
-  /// Calls SceneField::update() if there is a scene.
-  virtual void update(double /*now*/, const Eigen::Vector3d& /*hip*/,
-                      const Eigen::Vector3d& /*proxy*/) noexcept {}
   /// A proxy made a step in it at `now`, s: what stamps are compared with.
   virtual void stepped(double /*now*/) noexcept {}
   /// Null: it is a formula.
-  [[nodiscard]] virtual const SceneField* of_scene() const noexcept { return nullptr; }
+  [[nodiscard]] virtual SceneField* of_scene() noexcept { return nullptr; }
 
   std::mutex mutex;
 

@@ -89,7 +89,6 @@ class Times {
 void TimedProxy::reset(const Eigen::Vector3d& position) {
   const std::lock_guard lock(mutex);
   proxy.reset(position);
-  started = true;
 }
 
 Eigen::Vector3d TimedProxy::position() {
@@ -104,8 +103,7 @@ double TimedProxy::next_time() {
 
 Contact TimedProxy::step(AnyField& field, const Eigen::Vector3d& hip, double now,
                          double dt) noexcept {
-  field.update(now, hip, started ? proxy.position() : hip);
-  started = true;
+  if (SceneField* const scene = field.of_scene()) scene->update(now, hip, proxy);
   if (std::isfinite(now + dt) && dt >= 0) time = now + dt;  // else a fault, and time stands still
   field.stepped(now);
   return proxy.step(field.field(), hip, dt);
@@ -139,7 +137,7 @@ std::unique_ptr<Rollout> rollout(AnyField& field, TimedProxy& proxy, const py::o
     const double now = times.at(i);
     const Contact contact = proxy.step(field, hips[i], now, times.step(i));
     rows.put(i, now, hips[i], contact);
-    const SceneField* const scene = field.of_scene();
+    SceneField* const scene = field.of_scene();
     rows.field_notes[i] = scene != nullptr ? static_cast<std::uint32_t>(scene->notes()) : 0;
   }
   return result;

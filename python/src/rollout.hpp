@@ -26,8 +26,7 @@ struct TimedProxy {
   Contact step(AnyField& field, const Eigen::Vector3d& hip, double now, double dt) noexcept;
 
   Proxy proxy;
-  double time = 0;       ///< of the next tick, s
-  bool started = false;  ///< it is somewhere
+  double time = 0;  ///< of the next tick, s
   std::mutex mutex = {};
 };
 

@@ -34,11 +34,10 @@ class HeldTool {
            const ToolOptions& options)
       : formula_(std::move(formula)), proxy_(std::move(tool), options) {}
 
-  // An update sees the time that begins, as a point's does; the tool begins where the hand is.
+  // An update sees the time that begins, as that of a point.
   ToolContact step(const Pose& hand, double dt) {
     const Away away(formula_ ? formula_->mutex : free_, mutex_);
-    if (surface_)
-      surface_->update(time_, hand, std::exchange(started_, true) ? proxy_.pose() : hand);
+    if (surface_) surface_->update(time_, hand, proxy_);
     if (scene_) scene_->time.store(time_);
     if (std::isfinite(dt) && dt >= 0) time_ += dt;
     return surface_ ? proxy_.step(*surface_, hand, dt) : proxy_.step(formula_->field(), hand, dt);
@@ -46,7 +45,6 @@ class HeldTool {
   void reset(const Pose& pose) {
     const Away away(mutex_);
     proxy_.reset(pose);
-    started_ = true;
   }
   [[nodiscard]] const ToolOptions& options() const noexcept { return proxy_.options(); }
   [[nodiscard]] double time() {
@@ -60,7 +58,6 @@ class HeldTool {
   std::shared_ptr<AnyField> formula_;
   ToolProxy proxy_;
   double time_ = 0;  // s, of the next step
-  bool started_ = false;
   std::mutex mutex_;
   std::mutex free_;  // in the place of a formula's
 };

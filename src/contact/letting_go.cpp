@@ -35,7 +35,7 @@ void Proxy::Inside::await(Probe& probe, const Eigen::Vector3d& position,
 void Proxy::Inside::keep(Probe& probe, const Eigen::Vector3d& hip, double dt,
                          Contact& contact) noexcept {
   contact.normal = touch_.normal;
-  if (!search_.cut_short) {
+  if (!search_.is_cut_short) {
     contact.notes |= ContactNote::lost;
     spring_.lose(dt);
   }

@@ -31,6 +31,10 @@ Contact Proxy::step(const Field& field, const Eigen::Vector3d& hip, double dt) n
   return inside_->step(field, hip, dt);
 }
 
+bool Proxy::has_begun() const noexcept {
+  return inside_->has_begun();
+}
+
 const Eigen::Vector3d& Proxy::position() const noexcept {
   return inside_->position();
 }

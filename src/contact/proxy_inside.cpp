@@ -139,9 +139,8 @@ void Proxy::Inside::release(const Eigen::Vector3d& position, Standing standing) 
   touch_.waiting = false;
 }
 
-// The next step has the whole budget for where this one stopped: it does not re-anchor first.
-void Proxy::Inside::cut_short(Contact& contact) noexcept {
-  search_.cut_short = true;
+void Proxy::Inside::Search::cut_short(Contact& contact) noexcept {
+  is_cut_short = true;
   contact.notes |= ContactNote::sweep_truncated;
 }
 
@@ -180,7 +179,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
                                                         Contact& contact) noexcept {
   const Sample here = probe.sample(position_);
   const bool changed = probe.traits().revision != revision_;
-  const bool moved = !search_.cut_short && surface_moved(probe, here, touch_.normal, changed);
+  const bool moved = !search_.is_cut_short && surface_moved(probe, here, touch_.normal, changed);
   const double radius = probe.radius();  // at the proxy: Newton may end where it is another
   std::optional<SurfacePoint> at = project(probe, position_, here);
   const bool turned = changed && at && is_turned(*at, touch_.side);
@@ -200,7 +199,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   } else if (!turned) {
     at = recover(probe, position_, touch_.normal, search_.looked);
   }
-  search_.cut_short = false;
+  search_.is_cut_short = false;
   if (at || !(here.value > 0) || here.averted) return at;
   const Sweep path = first_contact(probe, position_, hip);
   if (path.end == Sweep::End::hit) {
@@ -210,7 +209,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
   if (path.end == Sweep::End::clear) {
     release(hip, path.standing);
   } else {
-    cut_short(contact);
+    search_.cut_short(contact);
     position_ = path.position;
   }
   return std::nullopt;
@@ -219,7 +218,7 @@ std::optional<SurfacePoint> Proxy::Inside::find_surface(Probe& probe, const Eige
 // Takes over where the motion ended. True while the proxy still touches.
 bool Proxy::Inside::settle(const Slide& motion, Contact& contact) noexcept {
   if (motion.end == Slide::End::interrupted || motion.end == Slide::End::postponed) {
-    cut_short(contact);
+    search_.cut_short(contact);
   }
   if (motion.end == Slide::End::released || motion.end == Slide::End::interrupted) {
     release(motion.at.position, motion.standing);

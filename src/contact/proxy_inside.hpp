@@ -21,6 +21,7 @@ class Proxy::Inside {
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
   void reset(const Eigen::Vector3d& position) noexcept;
 
+  [[nodiscard]] bool has_begun() const noexcept { return started_ && !fault_; }
   [[nodiscard]] const Eigen::Vector3d& position() const noexcept { return position_; }
   /// The caller checks what it changes.
   [[nodiscard]] ProxyOptions& options() noexcept { return options_; }
@@ -50,8 +51,11 @@ class Proxy::Inside {
 
   /// What the budget left of the last step's search.
   struct Search {
-    bool cut_short = false;
+    bool is_cut_short = false;
     int looked = 0;  // positions that recover() has looked at
+
+    // The next step has the whole budget for where this one stopped: it does not re-anchor first.
+    void cut_short(Contact& contact) noexcept;
   };
 
   void follow(Probe& probe, const Eigen::Vector3d& hip, Contact& contact) noexcept;
@@ -62,7 +66,6 @@ class Proxy::Inside {
                                                          Contact& contact) noexcept;
   [[nodiscard]] bool settle(const Slide& motion, Contact& contact) noexcept;
   void keep(Probe& probe, const Eigen::Vector3d& hip, double dt, Contact& contact) noexcept;
-  void cut_short(Contact& contact) noexcept;
   void await(Probe& probe, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& pressed, const Eigen::Vector3d& hip) noexcept;
   void let_go(Probe& probe, const Eigen::Vector3d& hip) noexcept;

@@ -83,7 +83,7 @@ SceneField::SceneField(Scene& scene, const FieldOptions& options, const std::str
 
 SceneField::~SceneField() = default;
 
-void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) noexcept {
+void SceneField::update_from(double now, const Vector3d& hip, const Vector3d& place) noexcept {
   State& state = *state_;
   FollowedSources& followed = state.followed;
   if (followed.advance(now, options_)) {
@@ -91,18 +91,18 @@ void SceneField::update(double now, const Vector3d& hip, const Vector3d& proxy) 
     ++state.revision;
   }
   state.patches.begin_update();
-  if (hip.allFinite() && proxy.allFinite()) {
+  if (hip.allFinite() && place.allFinite()) {
     if (options_.nearest_radius)
-      state.patches.take_nearest_radius(proxy, followed.layers().typical_radius());
-    state.patches.set_tool(proxy);
-    state.gather_path(hip, proxy);
+      state.patches.take_nearest_radius(place, followed.layers().typical_radius());
+    state.patches.set_tool(place);
+    state.gather_path(hip, place);
     state.patches.face_near();
-    followed.report(hip, proxy, kFelt * state.radius());
+    followed.report(hip, place, kFelt * state.radius());
     const std::uint32_t stride = state.patches.near().selection().stride();
     if (std::exchange(state.stride, stride) != stride) ++state.revision;  // another surface
   }
   state.notes = state.standing_notes();
-  if (followed.misses({proxy, state.radius()})) state.notes = state.notes | FieldNote::not_loaded;
+  if (followed.misses({place, state.radius()})) state.notes = state.notes | FieldNote::not_loaded;
   if (!std::isfinite(now)) state.notes = state.notes | FieldNote::time_not_finite;
 }
 

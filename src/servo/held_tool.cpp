@@ -33,7 +33,7 @@ void HeldTool::reset(const Pose& hand) noexcept {
 Contact HeldTool::step(double now, const Pose& hand, double dt) noexcept {
   if (!started_) reset(hand);
   started_ = true;
-  field_.update(now, hand, proxy_.pose());
+  field_.update(now, hand, proxy_);
   const ToolContact tool = proxy_.step(field_, hand, dt);
   wrench_ = tool.wrench;
   Contact contact;

@@ -119,7 +119,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
 
 void Servo::Inside::touch_with_point() noexcept {
   SceneField& field = *limited.field;
-  field.update(state.time, state.hip, state.step > 0 ? limited.proxy.position() : state.hip);
+  field.update(state.time, state.hip, limited.proxy);
   state.contact = limited.proxy.step(field, state.hip, state.dt);
   state.tool = pose();
   state.tool.position = state.contact.proxy;

@@ -197,8 +197,8 @@ ToolField::ToolField(Scene& scene, std::shared_ptr<const Tool> tool, const Field
     : inside_(std::make_unique<Inside>(scene, std::move(tool), options, name, scale)) {}
 ToolField::~ToolField() = default;
 
-void ToolField::update(double now, const Pose& hand, const Pose& proxy) noexcept {
-  inside_->update(now, hand, proxy);
+void ToolField::update(double now, const Pose& hand, const ToolProxy& proxy) noexcept {
+  inside_->update(now, hand, proxy.has_begun() ? proxy.pose() : hand);
 }
 void ToolField::change(const FieldOptions& checked) noexcept {
   inside_->take(checked);

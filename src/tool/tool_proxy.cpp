@@ -154,6 +154,10 @@ void ToolProxy::change(double stiffness, const Friction& friction,
   inside_->change(stiffness, friction, texture);
 }
 
+bool ToolProxy::has_begun() const noexcept {
+  return inside_->has_begun();
+}
+
 const Pose& ToolProxy::pose() const noexcept {
   return inside_->pose();
 }

@@ -29,6 +29,9 @@ class ToolProxy::Inside {
     options_.texture = texture;
   }
 
+  [[nodiscard]] bool has_begun() const noexcept {
+    return state_ == State::put || state_ == State::begun;
+  }
   [[nodiscard]] const Pose& pose() const noexcept { return descent_.pose(); }
   [[nodiscard]] const Tool& tool() const noexcept { return *tool_; }
   [[nodiscard]] const ToolOptions& options() const noexcept { return options_; }

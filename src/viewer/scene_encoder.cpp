@@ -50,7 +50,7 @@ class SurfaceEncoder {
     const Eigen::Vector3d& proxy = state.contact.proxy;
     follow_options();
     field_.end_step(proxy, state.contact.normal);  // it is seen from where the servo's proxy is
-    field_.update(state.time, state.hip, proxy);
+    field_.update_from(state.time, state.hip, proxy);
     const double radius = field_.sample(proxy).radius;
     if (!is_new(proxy, radius)) return {radius, newest_};
     const Mesh mesh = local_surface(field_, {proxy, radius, least_support_of(options_)});

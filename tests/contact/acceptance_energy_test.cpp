@@ -70,9 +70,7 @@ Lap second_lap(PointField& points, const Vector3d& start, const Loop& loop, doub
   const double dt = length / speed / ticks;
   Proxy proxy;
   proxy.reset(start);
-  const auto step = [&](const Vector3d& hip) {
-    return proxy.step(points.at(hip, proxy.position()), hip, dt);
-  };
+  const auto step = [&](const Vector3d& hip) { return proxy.step(points.at(hip, proxy), hip, dt); };
   for (int i = 0; i <= 300; ++i) (void)step(start + (loop.at(0) - start) * (i / 300.0));
   for (int i = 0; i <= ticks; ++i) (void)step(loop.at(static_cast<double>(i) / ticks));
   Lap lap;

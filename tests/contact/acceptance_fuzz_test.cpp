@@ -120,7 +120,7 @@ TEST_P(AcceptanceFuzz, NeverNaNNeverInsideNeverOnTheWrongSide) {
   const int ticks = effort(60000);
   for (int i = 0; i < ticks; ++i) {
     const Vector3d hip = hand.next();
-    const Field& field = points.at(hip, proxy.position());
+    const Field& field = points.at(hip, proxy);
     const Contact contact = proxy.step(field, hip, kTick);
     check(field, contact, tally);
     if (sides.wrong(contact)) ++tally.wrong_side;

@@ -40,7 +40,7 @@ Stepped step_surface(FieldOptions::Kind kind, double dz,
   proxy.reset({0.001, 0.0005, 0.04});
   double now = 0;
   const auto tick = [&](const Vector3d& to) {
-    field.update(now, to, proxy.position());
+    field.update(now, to, proxy);
     now += kTick;
     return proxy.step(field, to, kTick);
   };
@@ -81,12 +81,12 @@ TEST(AcceptanceStep, ACloudThatGoesAwayLetsGo) {
   Proxy proxy;
   proxy.reset({0, 0, 0.02});
   const Vector3d hip(0, 0, -0.003);
-  field.update(0, hip, proxy.position());
+  field.update(0, hip, proxy);
   double before = proxy.step(field, hip, kTick).force.z();
   EXPECT_GT(before, 1);
   source.publish(nullptr);
   for (int i = 1; i <= 200; ++i) {
-    field.update(i * kTick, hip, proxy.position());
+    field.update(i * kTick, hip, proxy);
     const Contact c = proxy.step(field, hip, kTick);
     EXPECT_FALSE(c.touching);
     EXPECT_LE(before - c.force.z(), 0.05 * 1.5);
@@ -107,7 +107,7 @@ TEST(AcceptanceStep, ASinglePointThatAppearsAtTheProxyLiftsItToItsBall) {
     const Vector3d hip(0, 0, -0.003);
     double now = 0;
     const auto tick = [&] {
-      field.update(now, hip, proxy.position());
+      field.update(now, hip, proxy);
       now += kTick;
       return proxy.step(field, hip, kTick);
     };

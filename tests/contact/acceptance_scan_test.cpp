@@ -33,7 +33,7 @@ struct Touch {
   }
 
   Contact step(const Vector3d& hip) {
-    field.update(0, hip, proxy.position());
+    field.update(0, hip, proxy);
     return proxy.step(field, hip, kTick);
   }
 

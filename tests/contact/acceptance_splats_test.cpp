@@ -82,7 +82,7 @@ int held_in_the_middle(const SplatShell& shell) {
     Contact contact;
     for (int i = 0; i <= 500; ++i) {
       const Eigen::Vector3d hand(0, 0.015 * k, 0.02 - 5e-5 * i);
-      field.update(0, hand, proxy.position());
+      field.update(0, hand, proxy);
       contact = proxy.step(field, hand, kTick);
     }
     held += contact.force.norm() > 1.25 ? 1 : 0;  // half of what a whole surface gives

@@ -44,7 +44,7 @@ class Rider {
 
  private:
   void step(const Vector3d& hip, Ride& ride) {
-    const Contact c = proxy_.step(points_.at(hip, proxy_.position()), hip, kTick);
+    const Contact c = proxy_.step(points_.at(hip, proxy_), hip, kTick);
     const double jump = (c.force - before_.force).norm();
     ride.jump = std::max(ride.jump, jump);
     if (c.touching) ride.jump_in_contact = std::max(ride.jump_in_contact, jump);

@@ -64,7 +64,7 @@ Pressed press(PointField& points, const Vector3d& start, unsigned seed, int tick
     if ((next - hip).norm() < 1e-9) next = goal(random);
     const Vector3d way = next - hip;
     hip += way * std::min(1.0, 1e-4 / way.norm());
-    const Contact contact = proxy.step(points.at(hip, proxy.position()), hip, kTick);
+    const Contact contact = proxy.step(points.at(hip, proxy), hip, kTick);
     found.deepest = std::max(found.deepest, depth(contact.proxy));
     found.jump = std::max(found.jump, (contact.force - before).norm());
     if (std::min(contact.force.norm(), before.norm()) > 0.5) {

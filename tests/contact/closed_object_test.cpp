@@ -69,7 +69,7 @@ double deepest(Scene& scene, const SurfacePoints& points, const FieldOptions& op
   double most = 0;
   int touching = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    field.update(path[i].time, path[i].position, proxy.position());
+    field.update(path[i].time, path[i].position, proxy);
     if (proxy.step(field, path[i].position, kTick).touching) ++touching;
     most = std::max(most, depth_inside(proxy.position()) / points.radius);
   }

@@ -81,7 +81,7 @@ class CrossedScans {
   }
 
   Contact step(Proxy& proxy, const Vector3d& hand) {
-    field_->update(now_ += kTick, hand, proxy.position());
+    field_->update(now_ += kTick, hand, proxy);
     return proxy.step(*field_, hand, kTick);
   }
 

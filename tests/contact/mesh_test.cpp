@@ -55,7 +55,7 @@ class MeshHand {
     Contact contact;
     for (int i = 1; i <= steps; ++i) {
       hip_ = start + (goal - start) * (static_cast<double>(i) / steps);
-      field_.update(kTick * ++ticks_, hip_, proxy_.position());
+      field_.update(kTick * ++ticks_, hip_, proxy_);
       contact = proxy_.step(field_, hip_, kTick);
       if (visit) visit(hip_, contact);
     }

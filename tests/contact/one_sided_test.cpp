@@ -41,7 +41,7 @@ class BulgeHand {
     Contact contact;
     for (int i = 1; i <= steps; ++i) {
       hip_ = start + (goal - start) * (static_cast<double>(i) / steps);
-      contact = proxy_.step(points_.at(hip_, proxy_.position()), hip_, kTick);
+      contact = proxy_.step(points_.at(hip_, proxy_), hip_, kTick);
       most_ = std::max(most_, contact.force.norm());
     }
     return contact;

@@ -25,7 +25,7 @@ class Hand {
     Contact contact;
     for (int i = 1; i <= steps; ++i) {
       hip_ = start + (goal - start) * (static_cast<double>(i) / steps);
-      contact = proxy_.step(points_.at(hip_, proxy_.position()), hip_, kTick);
+      contact = proxy_.step(points_.at(hip_, proxy_), hip_, kTick);
     }
     return contact;
   }
@@ -91,7 +91,7 @@ TEST(BothSides, SignsOfGivenNormalsAreNotFelt) {
       const double t = 1e-3 * i;
       hip = (0.045 + 0.02 * std::cos(5 * t)) *
             Vector3d(std::sin(2 * t), std::sin(3 * t) * std::cos(2 * t), std::cos(2 * t));
-      field.update(t, hip, proxy.position());
+      field.update(t, hip, proxy);
       forces.back().push_back(proxy.step(field, hip, kTick).force);
     }
     EXPECT_TRUE(forces.front() == forces.back()) << turned << " are turned";

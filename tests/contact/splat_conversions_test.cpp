@@ -36,7 +36,7 @@ Forces presses_on(const SplatShell& shell) {
     proxy.reset(place.position + 0.02 * place.normal);
     for (double height = 0.02; height > -kTrialDepth; height -= kTrialSpeed * kTick) {
       const Eigen::Vector3d hand = place.position + height * place.normal;
-      field.update(0, hand, proxy.position());
+      field.update(0, hand, proxy);
       const Contact contact = proxy.step(field, hand, kTick);
       if (height - kTrialSpeed * kTick <= -kTrialDepth) forces.push_back(contact.force);
     }

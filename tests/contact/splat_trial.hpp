@@ -81,7 +81,7 @@ class SplatTouch {
   }
 
   void tick(const Eigen::Vector3d& hand) {
-    field_->update(0, hand, proxy_.position());
+    field_->update(0, hand, proxy_);
     const Contact contact = proxy_.step(*field_, hand, kTick);
     const double motion = kTrialStiffness * (hand - hand_).norm();
     trial_.step = std::max(trial_.step, (contact.force - force_).norm() - motion);

@@ -45,7 +45,7 @@ void expect_pressed(const std::string& bytes, const std::string& name, std::size
   proxy.reset(middle + 5e-3 * up);
   for (int i = 0; i <= 60; ++i) {
     const Vector3d hip = middle + (5e-3 - 1e-4 * i) * up;
-    field.update(kTick * (i + 1), hip, proxy.position());
+    field.update(kTick * (i + 1), hip, proxy);
     contact = proxy.step(field, hip, kTick);
   }
   ASSERT_TRUE(contact.touching);

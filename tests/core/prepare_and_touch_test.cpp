@@ -46,7 +46,7 @@ class Touched {
     proxy.reset(from);
     for (int k = 1; k <= kSteps; ++k) {
       const Vector3d hand = from + (to - from) * k / kSteps;
-      field_.update(k * kTick, hand, proxy.position());
+      field_.update(k * kTick, hand, proxy);
       force_ = proxy.step(field_, hand, kTick).force;
     }
     return proxy.position();

@@ -53,7 +53,7 @@ struct Result {
 // that comes late catches up from when it was found.
 void check(const StepTrace& trace, SceneField& field, Result& result) {
   const ServoState& step = trace.state;
-  field.update(step.time, step.hip, step.contact.proxy);
+  field.update_from(step.time, step.hip, step.contact.proxy);
   field.begin_step();
   const bool same = field.found().publications == trace.input.found.publications;
   const bool changed = trace.input.found.publications != result.found.publications;

@@ -76,7 +76,7 @@ TEST_P(Reference, SceneFieldSaysTheSame) {
       for (const int side : {1, -1}) {
         const ReferenceField slow(all, options, side);
         SceneField fast(scene, options);
-        fast.update(0, Vector3d::Zero(), Vector3d(0, 0, 8e-3 * side));
+        fast.update_from(0, Vector3d::Zero(), Vector3d(0, 0, 8e-3 * side));
         for (int i = 0; i < 150; ++i) {
           const Vector3d x(0.04 * uniform(random), 0.04 * uniform(random), 0.02 * uniform(random));
           expect_same(fast.sample(x), slow.sample(x), x);

@@ -31,7 +31,7 @@ std::vector<Contact> follow(PointField& points, const std::vector<Vector3d>& pla
     const int ticks = std::max(1, static_cast<int>(way.norm() / 0.1 / kTick));
     for (int k = 1; k <= ticks; ++k) {
       const Vector3d hip = places[i - 1] + way * (static_cast<double>(k) / ticks);
-      contacts.push_back(proxy.step(points.at(hip, proxy.position()), hip, kTick));
+      contacts.push_back(proxy.step(points.at(hip, proxy), hip, kTick));
     }
   }
   return contacts;
@@ -87,13 +87,13 @@ double second_lap(PointField& points, const Vector3d& center, double radius, dou
   Proxy proxy = proxy_at(at(0) + Vector3d(0, 0, 15e-3));
   for (int i = 150; i > 0; --i) {
     const Vector3d hip = at(0) + Vector3d(0, 0, i * 1e-4);
-    (void)proxy.step(points.at(hip, proxy.position()), hip, kTick);
+    (void)proxy.step(points.at(hip, proxy), hip, kTick);
   }
   double given = 0;
   Vector3d before = Vector3d::Zero();
   for (int i = 0; i <= 2 * ticks; ++i) {
     const Vector3d hip = at(i);
-    const Contact contact = proxy.step(points.at(hip, proxy.position()), hip, kTick);
+    const Contact contact = proxy.step(points.at(hip, proxy), hip, kTick);
     if (i > ticks) given += 0.5 * (before + contact.force).dot(hip - at(i - 1));
     before = contact.force;
   }
@@ -143,7 +143,7 @@ TEST(SharpContact, ARandomHandNeverGetsInside) {
       for (int i = 0; i < effort(5000); ++i) {
         if ((goal - hip).norm() < 1e-3) goal = {uniform(random), uniform(random), uniform(random)};
         hip += (goal - hip).normalized() * (0.1e-3 + 0.4e-3 * (seed - 1));
-        const Field& field = points.at(hip, proxy.position());
+        const Field& field = points.at(hip, proxy);
         const Contact contact = proxy.step(field, hip, kTick);
         ASSERT_TRUE(contact.force.allFinite() && contact.proxy.allFinite());
         EXPECT_FALSE(has(contact.notes, ContactNote::lost));

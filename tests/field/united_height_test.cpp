@@ -50,7 +50,7 @@ std::vector<double> crossings_of(const std::vector<std::vector<TestPoint>>& sour
   Scene scene;
   for (const auto& source : sources) add(scene, std::to_string(scene.size()), source);
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), {x, 0, 0.025});
+  field.update_from(0, Vector3d::Zero(), {x, 0, 0.025});
   return crossings(field, x);
 }
 
@@ -103,7 +103,7 @@ TEST(UnitedHeight, StaysFiniteWhereASourceHasNoNormal) {
   add(scene, "whole", sheet(1e-3));
   add(scene, "torn", torn);
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   for (double z = -0.01; z <= 0.01; z += 2.5e-4) {
     for (const double x : {0.0, 0.5 * kSpacing, kSpacing}) {
       const Sample sample = field.sample({x, 0, z});

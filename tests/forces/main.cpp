@@ -138,7 +138,7 @@ class Felt {
 
   void step(double time, const Vector3d& hand) {
     const double before = now_us();
-    field_.update(time, hand, proxy_.position());
+    field_.update(time, hand, proxy_);
     const Contact contact = proxy_.step(field_, hand, 1e-3);
     took_.push_back(now_us() - before);
     fmt::print("{} {} {}\n", bits(contact.force), contact.touching ? 1 : 0, contact.evaluations);

@@ -70,7 +70,7 @@ TEST(ChangeOver, AHandThatPressesFeelsNoStepWhereTheWholeTakesThePlaceOfBlocks) 
   Vector3d last = Vector3d::Zero();
   double most = 0;
   const auto step = [&](const Vector3d& hand) {
-    field.update(time += 1e-3, hand, proxy.position());
+    field.update(time += 1e-3, hand, proxy);
     const Contact contact = proxy.step(field, hand, 1e-3);
     EXPECT_TRUE(contact.touching || hand != hip);
     most = hand == hip ? std::max(most, (contact.force - last).norm()) : 0;

@@ -66,7 +66,7 @@ inline Contact press(SceneField& field, const Eigen::Vector3d& place, double dep
   Contact contact;
   for (int k = 0; k < 20; ++k) {
     const Eigen::Vector3d hip = place + Eigen::Vector3d(0, 0, 0.01 - (0.01 + depth) * k / 19);
-    field.update(time + 1e-3 * k, hip, proxy.position());
+    field.update(time + 1e-3 * k, hip, proxy);
     contact = proxy.step(field, hip, 1e-3);
   }
   return contact;

@@ -70,7 +70,7 @@ TEST(OnDemand, WhatToolsComeNearComesFirstAndPushesNobody) {
   double largest = 0;
   bool came = false;
   for (int k = 0; k < 1000; ++k, time += 1e-3) {
-    field.update(time, hip, proxy.position());
+    field.update(time, hip, proxy);
     largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
     came = came || !has(field.notes(), FieldNote::not_loaded);
     if (k % 20 == 0 && !came) hills.part.demand->advance(*hills.part.source, time);
@@ -92,7 +92,7 @@ TEST(OnDemand, AHandThatPressesFeelsNothingOfWhatArrives) {
   double time = 1;
   for (int k = 0; k < 3000; ++k, time += 1e-3) {
     const double lift = std::max(0., 0.01 - 1e-4 * k);
-    field.update(time, hip + Vector3d(0, 0, lift), proxy.position());
+    field.update(time, hip + Vector3d(0, 0, lift), proxy);
     const Vector3d force = proxy.step(field, hip + Vector3d(0, 0, lift), 1e-3).force;
     if (k == 500) held = force;
     if (k > 500) largest = std::max(largest, (force - held).norm());
@@ -132,7 +132,7 @@ TEST(OnDemand, AHandBeneathTheSurfaceMeetsNoWallWhereBlocksMeet) {
     for (double x = 0.1; x < 0.9; x += 5e-4) {
       const Vector3d hip(x, y, height(x, y) - 1e-3);
       if (x == 0.1) proxy.reset(hip);
-      field.update(time += 1e-3, hip, proxy.position());
+      field.update(time += 1e-3, hip, proxy);
       largest = std::max(largest, proxy.step(field, hip, 1e-3).force.norm());
     }
     EXPECT_LT(largest, 0.5) << y;  // N
@@ -154,7 +154,7 @@ TEST(OnDemand, WhatIsMissingSaysSoHoweverFarAwayItIs) {
   double time = 1;
   for (const double x : {0.02, 0.2, 0.8, 0.98}) {
     const Vector3d place(x, x, height(x, x));
-    field.update(time += 1e-3, place, place);
+    field.update_from(time += 1e-3, place, place);
     EXPECT_TRUE(has(field.notes(), FieldNote::not_loaded)) << x;
   }
 }
@@ -168,7 +168,8 @@ TEST(OnDemand, BlocksForWhichThereIsNoRoomKeepNobodyWaiting) {
   double time = 1;
   const auto stay = [&](double y, double seconds) {
     const Vector3d hip(0.36, y, height(0.36, y) + 2e-3);
-    for (const double end = time + seconds; time < end; time += 1e-3) field.update(time, hip, hip);
+    for (const double end = time + seconds; time < end; time += 1e-3)
+      field.update_from(time, hip, hip);
   };
   stay(0.02, 0.03);
   for (int k = 0; k < 3; ++k) {
@@ -209,7 +210,7 @@ TEST(OnDemand, IsPreparedBesideAHandUntilSomebodyElseSetsTheSource) {
   proxy.reset({0.5, 0.5, 0.1});
   const auto step = [&](double x) {
     const Vector3d hip(x, 0.5, height(x, 0.5) - 2e-3);
-    field.update(time, hip, proxy.position());
+    field.update(time, hip, proxy);
     EXPECT_TRUE(proxy.step(field, hip, 1e-3).force.allFinite());
     time = time + 1e-3;
   };

@@ -64,8 +64,8 @@ struct Paged {
   /// Moves a hand there and waits until nothing is left to do.
   void go(const Vector3d& place) {
     for (int k = 0; k < 200; ++k) {
-      field->update(time += 1e-3, place, place);
-      while (demand->advance(*source, time)) field->update(time += 1e-3, place, place);
+      field->update_from(time += 1e-3, place, place);
+      while (demand->advance(*source, time)) field->update_from(time += 1e-3, place, place);
     }
   }
 
@@ -77,7 +77,7 @@ struct Paged {
     Contact contact;
     for (int k = 0; k < 20; ++k) {
       const Vector3d hip = place + (0.01 - 0.012 * k / 19) * up;
-      at.update(time += 1e-3, hip, proxy.position());
+      at.update(time += 1e-3, hip, proxy);
       contact = proxy.step(at, hip, 1e-3);
     }
     return contact;

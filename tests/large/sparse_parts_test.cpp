@@ -51,7 +51,7 @@ double press(Scene& scene, double x, double y) {
   double force = 0;
   for (int k = 0; k < 40; ++k) {
     const Vector3d hip(x, y, std::max(0.01 - 1e-3 * k, -kDeep));
-    field.update(1 + 1e-3 * k, hip, proxy.position());
+    field.update(1 + 1e-3 * k, hip, proxy);
     force = proxy.step(field, hip, 1e-3).force.norm();
   }
   return force;
@@ -104,7 +104,7 @@ void expect_prepared_at(const Vector3d& place, const std::shared_ptr<const Point
   while (!source.points()) demand.advance(source, time);
   do {
     demand.advance(source, time);
-    for (int k = 0; k < 200; ++k) field.update(time += 1e-3, place, place);
+    for (int k = 0; k < 200; ++k) field.update_from(time += 1e-3, place, place);
   } while (has(field.notes(), FieldNote::not_loaded));
   EXPECT_GT(press(some, place.x(), place.y()), 2);
   while (!demand.done()) demand.advance(source, time);

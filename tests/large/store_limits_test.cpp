@@ -83,13 +83,14 @@ std::vector<std::string> told_at(Paged& paged, const Vector3d& place) {
   std::vector<std::string> told;
   for (bool more = true; more;) {
     try {
-      paged.field->update(paged.time += 1e-3, place, place);
+      paged.field->update_from(paged.time += 1e-3, place, place);
       more = paged.demand->advance(*paged.source, paged.time);
     } catch (const Error& error) {
       told.emplace_back(error.what());
     }
   }
-  for (int k = 0; k < 200; ++k) paged.field->update(paged.time += 1e-3, place, place);  // it rises
+  for (int k = 0; k < 200; ++k)
+    paged.field->update_from(paged.time += 1e-3, place, place);  // it rises
   return told;
 }
 

@@ -92,7 +92,7 @@ TEST(Store, FarFromAllPointsThereIsNothingToFeel) {
 TEST(Store, InTheAirHighAboveASurfaceAllIsKnown) {
   Paged paged(even());
   paged.go({100.3, 200.3, 0.14});
-  paged.field->update(paged.time += 1e-3, {100.3, 200.3, 0.14}, {100.3, 200.3, 0.14});
+  paged.field->update_from(paged.time += 1e-3, {100.3, 200.3, 0.14}, {100.3, 200.3, 0.14});
   EXPECT_FALSE(has(paged.field->notes(), FieldNote::not_loaded));
 }
 
@@ -101,7 +101,7 @@ TEST(Store, ABlockUnderAHandIsKeptHoweverLittleMemoryThereIs) {
   const Vector3d place(100.3, 200.3, 0.14);
   std::size_t steps = 0;
   for (int k = 0; k < 100; ++k) {
-    paged.field->update(paged.time += 1e-3, place, place);
+    paged.field->update_from(paged.time += 1e-3, place, place);
     steps += paged.demand->advance(*paged.source, paged.time, false) ? 1 : 0;
   }
   EXPECT_LT(steps, 20u);
@@ -116,7 +116,7 @@ TEST(Store, ASurfaceThatArrivesUnderAHandPushesNobody) {
   double largest = 0;
   bool came = false;
   for (int k = 0; k < 2000; ++k) {
-    paged.field->update(paged.time += 1e-3, hip, proxy.position());
+    paged.field->update(paged.time += 1e-3, hip, proxy);
     largest = std::max(largest, proxy.step(*paged.field, hip, 1e-3).force.norm());
     came = came || !has(paged.field->notes(), FieldNote::not_loaded);
     if (k % 20 == 0) paged.demand->advance(*paged.source, paged.time);
@@ -132,7 +132,7 @@ TEST(Store, WhatIsFirstShownToAHandRises) {
   Source& source = scene.add("run", paged.options);
   SceneField field(scene);
   const Vector3d hip(100.05, 200.05, hill_height(0.05, 0.05) - 3e-3);
-  field.update(paged.time, hip, hip);
+  field.update_from(paged.time, hip, hip);
   while (!source.points()) paged.demand->advance(source, paged.time);
   const std::vector<float>& presences = source.points()->presences;
   EXPECT_EQ(std::ranges::min(presences), 0) << "what is around the hand";

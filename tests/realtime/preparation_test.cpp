@@ -52,7 +52,7 @@ Findings push(Policy policy, bool moving) {
       frame.T_world_sensor = test::looking_down();
       frame.T_world_sensor->pretranslate(Vector3d(0.02 * std::sin(0.1 * k), 0, 0));
     }
-    field.update(frame.stamp, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(frame.stamp, Vector3d::Zero(), Vector3d::Zero());
     const double start = frame.stamp;
     const Source::StartTime felt = [start] { return start; };
     Watch watch;

@@ -27,7 +27,7 @@ Contact Rig::step(const Eigen::Vector3d& hip) {
   hip_ = hip;
   now_ += kPeriod;
   Watch watch;
-  field_.update(now_, hip, proxy_.position());
+  field_.update(now_, hip, proxy_);
   const Contact contact = proxy_.step(field_, hip, kPeriod);
   add(watch.stop(), run_.offences);
 

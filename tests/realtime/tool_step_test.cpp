@@ -109,7 +109,7 @@ TEST_F(ToolStep, KeepsTheContractOnAStream) {
     }
     const Pose hand = hand_at(i);
     Watch watch;
-    field.update(now, hand, proxy.pose());
+    field.update(now, hand, proxy);
     const ToolContact contact = proxy.step(field, hand, test::kTick);
     const Findings found = watch.stop();
     ASSERT_EQ(found.total(), 0) << found;

@@ -49,7 +49,7 @@ TEST(BoundedWork, AStepThatCannotKnowStaysWhereItIs) {
   for (int k = 0; k < 400; ++k) {
     const Vector3d hip(1e-3 * k, 0, 0.05 - 1e-3 * k);
     const std::uint64_t before = field.visits();
-    field.update(1e-3 * k, hip, proxy.position());
+    field.update(1e-3 * k, hip, proxy);
     const Contact contact = proxy.step(field, hip, 1e-3);
     EXPECT_LE(field.visits() - before, kMostVisits);
     EXPECT_GT(contact.proxy.z(), -5e-4);
@@ -64,7 +64,7 @@ TEST(BoundedWork, OutsideOfAStepSamplesAreBoundedOneByOne) {
   Scene scene;
   scene.add("plane").publish(test::still(test::plane(0)));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   for (int k = 0; k < 2000; ++k) {  // more than a step could gather
     const double x = k % 2 == 0 ? 50e-3 : -50e-3;
     const double y = k % 3 == 0 ? 50e-3 : -50e-3;  // in turns, so that few are kept
@@ -79,7 +79,7 @@ TEST(BoundedWork, TwoPlacesAwayFromTheToolAreGatheredOnceEach) {
   Scene scene;
   scene.add("plane").publish(test::still(test::plane(0)));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   const std::uint64_t before = field.gathers();
   for (int step = 0; step < 3; ++step) {
     field.begin_step();
@@ -118,7 +118,7 @@ TEST(BoundedWork, AMovingSurfaceIsGatheredOnceASnapshot) {
     const int frame = k / kTicks;
     if (k % kTicks == 0) source.publish(rising(1e-3 * frame, 1e-3, now, 0.033));
     const Vector3d hip(2e-3, 1e-3, now / 0.033 * 1e-3 - 2e-3);
-    field.update(now, hip, k > 0 ? proxy.position() : hip);
+    field.update(now, hip, proxy);
     const Contact contact = proxy.step(field, hip, 1e-3);
     if (k == kTicks) gathers = field.gathers();
     if (k > kTicks && contact.touching) {

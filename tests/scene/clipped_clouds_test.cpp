@@ -39,7 +39,7 @@ TEST(Scene, CloudsAreClippedToWhereTheHandCanBe) {
   for (int tick = 0; tick < 1200; ++tick) {
     const double now = 1e-3 * tick;
     const Vector3d hand(0.5 * now, 0, 0);
-    field.update(now, hand, hand);
+    field.update_from(now, hand, hand);
     if (tick % 200 == 0) source.push(cloud, now, [=] { return now + 0.01; });
     if (tick <= 250) continue;
     EXPECT_GT(field.sample(hand).support, 0.9) << now;
@@ -53,7 +53,7 @@ TEST(Scene, CloudsAreClippedOnceASurfaceCameLate) {
   SceneField field(scene);
   const PointCloud cloud = strip();
   const auto push = [&](double now, double delay) {
-    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(now, Vector3d::Zero(), Vector3d::Zero());
     source.push(cloud, now, [=] { return now + delay; });
     return source.state();
   };
@@ -85,7 +85,7 @@ int ticks_without_surface(double interval, double speed) {
   for (int tick = 0; tick < static_cast<int>(1e3 * (begin + 2)); ++tick) {
     const double now = 1e-3 * tick;
     const Vector3d hand(-0.5 + speed * std::max(0.0, now - begin), 0, 0);
-    field.update(now, hand, hand);
+    field.update_from(now, hand, hand);
     if (now >= next) source.push(cloud, now, [=] { return now + 0.12; });
     if (now >= next) next += interval;
     if (now > begin && !(field.sample(hand).support > 0.1)) ++lost;
@@ -109,7 +109,7 @@ TEST(Scene, ClippedCloudsOfAQuickSensorAreQuickAtOnce) {
   double now = 0;
   double delay = 0.6;
   for (int k = 0; k < 12; ++k) {
-    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(now, Vector3d::Zero(), Vector3d::Zero());
     source.push(cloud, now, [&] { return now + delay; });
     EXPECT_LT(delay, k > 3 ? 0.15 : 0.61) << k;
     now = std::ceil(30 * (now + delay)) / 30;
@@ -128,7 +128,7 @@ TEST(Scene, WhatIsLeftOutOfClippedCloudsIsWhatPreparationWouldTake) {
   PointCloud cloud = strip();
   const auto in_box = std::ranges::count_if(cloud.positions, [](auto& p) { return p.x() >= 0.6f; });
   cloud.positions.emplace_back(std::nanf(""), 0, 0);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   source.push(cloud, 0, [] { return 0.01; });
   EXPECT_EQ(source.state().points, 0u);
   EXPECT_EQ(source.state().overview->size(), static_cast<std::size_t>(in_box));
@@ -143,10 +143,10 @@ TEST(Scene, LastCloudOfAClippedStreamStaysWhole) {
   const PointCloud cloud = strip();
   const Vector3d away(0.9, 0, 0);
   for (const double now : {0.0, 0.1, 0.2, 0.3}) {
-    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(now, Vector3d::Zero(), Vector3d::Zero());
     source.push(cloud, now, [=] { return now + 0.01; });
   }
-  field.update(0.4, away, away);
+  field.update_from(0.4, away, away);
   EXPECT_EQ(field.sample(away).support, 0);
   const double near = field.sample({0.01, 0, 0}).value;
   source.keep();
@@ -155,10 +155,10 @@ TEST(Scene, LastCloudOfAClippedStreamStaysWhole) {
   EXPECT_EQ(source.state().overview, nullptr);
   EXPECT_TRUE(source.state().clipped) << "clouds were, until then";
   for (const double later : {0.55, 0.6, 2.0}) {
-    field.update(later, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(later, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_NEAR(field.sample({0.01, 0, 0}).value, near, 1e-5) << "what was there stays";
   }
-  field.update(10, away, away);
+  field.update_from(10, away, away);
   EXPECT_GT(field.sample(away).support, 0.9);
 }
 
@@ -171,7 +171,7 @@ TEST(Scene, ClippedCloudsWithoutAPointInReachAreEmptySurfaces) {
   SceneField field(scene);
   const PointCloud cloud = strip();
   for (const double now : {0.0, 0.1, 0.2, 0.3}) {
-    field.update(now, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(now, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_TRUE(source.push(cloud, now, [=] { return now + 0.01; }));
   }
   const Source::State state = source.state();
@@ -179,7 +179,7 @@ TEST(Scene, ClippedCloudsWithoutAPointInReachAreEmptySurfaces) {
   EXPECT_EQ(state.points, 0u);
   ASSERT_EQ(state.overview->size(), cloud.size());
   EXPECT_EQ((state.overview->origin + state.overview->positions[0].cast<double>()).z(), 5);
-  field.update(0.35, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.35, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
 }
 

@@ -44,7 +44,7 @@ Felt slide_over(SceneField& field, double height, double direction) {
   for (int tick = 0; tick < 1400; ++tick) {
     const double z = height + 30e-3 * std::max(0.0, 1 - tick / 300.0);
     const Vector3d hip(direction * (1e-4 * std::max(0, tick - 300) - 55e-3), 0.3e-3, z);
-    field.update(1e-3 * tick, hip, tick == 0 ? hip : proxy.position());
+    field.update(1e-3 * tick, hip, proxy);
     const Vector3d now = proxy.step(field, hip, 1e-3).force;
     const double way = tick == 0 ? 0 : (hip - hand).norm();
     felt.step = std::max(felt.step, (now - force).norm() - proxy.options().stiffness * way);
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Radii, DisagreeingSources,
                          testing::Values(0.3, 0.5, 0.7, 0.9, 1.0, 1.2, 1.5));
 
 double radius_of(SceneField& field) {
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   return field.sample({0, 0, 1e-3}).radius;
 }
 

@@ -42,7 +42,7 @@ double farthest_off(double rise) {
     test::publish_fade(source, k, old, next);
     const double height = rise * std::clamp(10 * now - 2, 0.0, 1.0);
     const Vector3d hip(0.3e-3, 0.4e-3, std::max(height - 2e-3, 10e-3 - 0.2e-3 * k));
-    field.update(now, hip, k > 0 ? proxy.position() : hip);
+    field.update(now, hip, proxy);
     (void)proxy.step(field, hip, 1e-3);
     if (k >= 100) farthest = std::max(farthest, std::abs(proxy.position().z() - height));
   }

@@ -45,7 +45,7 @@ std::vector<Vector3d> forces_of(SceneField& field, double now) {
   std::vector<Vector3d> forces;
   for (int i = 0; i < 12; ++i) {
     const Vector3d hip = kHand + i * Vector3d(0.1e-3, 0, -0.5e-3);
-    field.update(now, hip, i == 0 ? hip : proxy.position());
+    field.update(now, hip, proxy);
     forces.push_back(proxy.step(field, hip, 1e-3).force);
   }
   return forces;
@@ -68,8 +68,8 @@ TEST_P(HandUnknown, ForSomeFramesFeelsWhatAHandFeelsThatWasThere) {
       ASSERT_TRUE(push_number(k, GetParam().second, source));
       for (int tick = 0; tick < 8; ++tick) {
         now = kFrame * k + 0.011 + kFrame / 9 * tick;
-        there.update(now, kHand, kHand);
-        unknown.update(now, k < kFirst ? kHand : kNowhere, kHand);
+        there.update_from(now, kHand, kHand);
+        unknown.update_from(now, k < kFirst ? kHand : kNowhere, kHand);
       }
     }
     const std::vector<Vector3d> expected = forces_of(there, now);

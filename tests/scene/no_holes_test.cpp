@@ -51,7 +51,7 @@ bool stops(SceneField& field, const Vector3d& from, const Vector3d& to) {
   Contact contact;
   for (int k = 0; k <= kSteps; ++k) {
     const Vector3d hand = from + (to - from) * k / kSteps;
-    field.update(k * 1e-3, hand, k == 0 ? hand : proxy.position());
+    field.update(k * 1e-3, hand, proxy);
     contact = proxy.step(field, hand, 1e-3);
   }
   return contact.touching;
@@ -154,7 +154,7 @@ TEST(NoHoles, InAShellOfTwoThinnedLayersAndItLetsGo) {
       for (int k = 0; k <= 200; ++k) {  // from 80 mm to 50 mm and out to 100 mm
         const Vector3d hand = (k < 60 ? 0.08 - 0.5e-3 * k : 0.05 + (k - 60) * 0.357e-3) * ray;
         if (k == 0) proxy.reset(hand);
-        field.update(1e-3 * k, hand, proxy.position());
+        field.update(1e-3 * k, hand, proxy);
         const Contact contact = proxy.step(field, hand, 1e-3);
         const bool inside = k == 60;
         if (!inside && k < 200) continue;
@@ -188,7 +188,7 @@ TEST(NoHoles, UnderAHandThatJumpedToJustOffTheSurface) {
     proxy.reset(place + 5 * radius * out);
     for (const double height : {5.0, 0.003, -5.0, -5.0}) {  // R
       const Vector3d hand = place + height * radius * out;
-      field.update(0, hand, proxy.position());
+      field.update(0, hand, proxy);
       contact = proxy.step(field, hand, 1e-3);
     }
     passed += contact.touching ? 0 : 1;

@@ -39,7 +39,7 @@ std::vector<Vector3d> felt(Scene& scene, const DepthFrame& frame, const Eigen::I
       const double deep = std::min(kPress, -20e-3 + 1e-4 * tick);
       const double aside = 5e-5 * std::max(0, tick - 240);
       const Vector3d hand = T * (at + Vector3d(aside, 0, deep));
-      field.update(1 + 1e-3 * tick, hand, tick == 0 ? hand : proxy.position());
+      field.update(1 + 1e-3 * tick, hand, proxy);
       forces.emplace_back(T.linear().transpose() * proxy.step(field, hand, 1e-3).force);
     }
   }

@@ -39,7 +39,7 @@ void push(Source& source, double stamp, double height) {
 
 // Seen from the sensor's side.
 double height_at(SceneField& field, double now) {
-  field.update(now, Vector3d::Zero(), Vector3d(0, 0, 8e-3));
+  field.update_from(now, Vector3d::Zero(), Vector3d(0, 0, 8e-3));
   return height_of(field);
 }
 

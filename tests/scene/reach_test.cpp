@@ -107,7 +107,7 @@ TEST(Scene, FieldsTellSourcesWhereTheyFeel) {
   options.depth.memory = 1;
   Source& source = scene.add("camera", options);
   SceneField field(scene);
-  field.update(0, {0.03, 0, 0}, {0.03, 0, 0});
+  field.update_from(0, {0.03, 0, 0}, {0.03, 0, 0});
   const DepthFrame frame = test::frame_of(test::small_camera(), 0, test::wall(0.5), 1e-4);
   source.push(frame, [] { return 0.0; });
   EXPECT_EQ(source.state().points, source.points()->size());

@@ -27,12 +27,12 @@ TEST(SceneField, NonFiniteArgumentsAreHarmless) {
   SceneField field(scene);
   const Vector3d nan = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   const Vector3d huge = Vector3d::Constant(1e300);
-  field.update(0, nan, Vector3d::Zero());
-  field.update(0, huge, huge);
+  field.update_from(0, nan, Vector3d::Zero());
+  field.update_from(0, huge, huge);
   EXPECT_TRUE(field.sample(huge).gradient.allFinite());
   EXPECT_EQ(field.sample(nan).support, 0);
   EXPECT_FALSE(field.is_free({nan, 1}));
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
 }
 
@@ -47,7 +47,7 @@ TEST(SceneField, AnOverfullPatchIsThinnedAndSaysSo) {
   Scene scene;
   add_dense_plane(scene);
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::thinned));
   EXPECT_LE(field.patch_points(), SceneField::kPatchPoints);
   EXPECT_NEAR(field.sample({0, 0, 1e-3}).value, 1e-3, 1e-9);
@@ -58,13 +58,13 @@ TEST(SceneField, APatchThatIsNoLongerThinnedIsAChange) {
   Scene scene;
   add_dense_plane(scene);
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   ASSERT_TRUE(has(field.notes(), FieldNote::thinned));
   const std::uint64_t before = field.traits().revision;
-  field.update(1e-3, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(1e-3, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_EQ(field.traits().revision, before);
   const Vector3d aside(0.045, 0, 0);
-  field.update(2e-3, aside, aside);
+  field.update_from(2e-3, aside, aside);
   ASSERT_FALSE(has(field.notes(), FieldNote::thinned)) << field.patch_points();
   EXPECT_GT(field.traits().revision, before);
 }
@@ -78,7 +78,7 @@ TEST(SceneField, ALayerWithoutPointsChangesNothing) {
   for (const double tool : {0.0, 1e-3}) {
     SceneField field(scene, {.tool_radius = tool});
     const Vector3d high(0, 0, 0.5);
-    field.update(0, high, high);
+    field.update_from(0, high, high);
     EXPECT_GT(field.sample(high).value, 0);
     EXPECT_TRUE(field.is_free({high, 0.4}));
     EXPECT_GT(field.traits().resolution, 0);
@@ -90,7 +90,7 @@ TEST(SceneField, ALayerWithoutPointsChangesNothing) {
     return nothing;
   }());
   SceneField field(scene, {.tool_radius = 1e-3});
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   EXPECT_TRUE(field.is_free({Vector3d::Zero(), 1}));
 }
@@ -100,11 +100,11 @@ TEST(SceneField, ATimeThatIsNotFiniteLeavesTheSurfaceWhereItWas) {
   scene.add("plane").publish(still(plane(0)));
   SceneField field(scene);
   const Vector3d x(0, 0, 1e-3);
-  field.update(0.5, x, x);
-  field.update(std::numeric_limits<double>::quiet_NaN(), x, x);
+  field.update_from(0.5, x, x);
+  field.update_from(std::numeric_limits<double>::quiet_NaN(), x, x);
   EXPECT_TRUE(has(field.notes(), FieldNote::time_not_finite));
   EXPECT_NEAR(field.sample(x).value, 1e-3, 1e-9);
-  field.update(0.501, x, x);
+  field.update_from(0.501, x, x);
   EXPECT_FALSE(has(field.notes(), FieldNote::time_not_finite));
 }
 
@@ -113,11 +113,11 @@ TEST(SceneField, ASnapshotOfAWrongClockDoesNotBlockLaterOnes) {
   Source& source = scene.add("plane");
   source.publish(still(plane(0)));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   source.publish(still(plane(4e-3), 1e9));
-  field.update(0.01, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.01, Vector3d::Zero(), Vector3d::Zero());
   source.publish(still(plane(2e-3), 0.02));
-  field.update(0.02, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.02, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_NEAR(height_of(field), 2e-3, 1e-6);
 }
 
@@ -130,7 +130,7 @@ TEST(SceneField, PresenceGoesFromItsStartToItsEnd) {
   scene.add("plane").publish(std::move(snapshot));
   SceneField field(scene);
   for (const double t : {0.0, 0.5, 1.0, 2.0}) {
-    field.update(t, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(t, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_NEAR(field.surface(Vector3d::Zero()).presence, 1 - 0.5 * std::min(t, 1.0), 1e-12);
   }
 }
@@ -147,7 +147,7 @@ TEST(SceneField, PointsAndSourcesArePresentTogether) {
   scene.add("plane").publish(std::move(snapshot));
   SceneField field(scene);
   for (const double t : {0.0, 0.5, 1.0, 2.0}) {
-    field.update(t, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(t, Vector3d::Zero(), Vector3d::Zero());
     const double of_points = 1 - 0.5 * std::min(t, 1.0);
     EXPECT_NEAR(field.surface(Vector3d::Zero()).presence, 0.5 * of_points, 1e-12);
   }
@@ -162,7 +162,7 @@ TEST(SceneField, OneRadiusForAllIsOneEverywhere) {
   FieldOptions options = paper_field(FieldOptions::Kind::metaball);
   SceneField field(scene, options);
   const Vector3d left(-20e-3, 0, 5e-3);
-  field.update(0, left, left);
+  field.update_from(0, left, left);
   EXPECT_NEAR(field.sample(left).radius, 8e-3, 1e-9);
   const Vector3d right(20e-3, 1e-3, 3e-3);
   EXPECT_NEAR(field.sample(right).radius, 8e-3, 1e-9);  // another patch, the same radius
@@ -171,7 +171,7 @@ TEST(SceneField, OneRadiusForAllIsOneEverywhere) {
     if (!field.is_free(ball)) continue;
     EXPECT_GT(field.sample(ball.center - Vector3d(0, 0, 3e-3)).value, 0);
   }
-  field.update(0, right, right);
+  field.update_from(0, right, right);
   EXPECT_NEAR(field.sample(left).radius, 16e-3, 1e-9);
 }
 
@@ -179,13 +179,13 @@ TEST(SceneField, SaysWhenKernelOrToolDoNotFitThePoints) {
   Scene scene;
   scene.add("plane").publish(still(plane(0)));
   SceneField other(scene, {.kernel = Kernel::wendland});
-  other.update(0, Vector3d::Zero(), Vector3d::Zero());
+  other.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(other.notes(), FieldNote::other_kernel));
   SceneField large(scene, {.tool_radius = 5e-3});
-  large.update(0, Vector3d::Zero(), Vector3d::Zero());
+  large.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(large.notes(), FieldNote::tool_too_large));
   SceneField fitting(scene, {.tool_radius = 3e-3});
-  fitting.update(0, Vector3d::Zero(), Vector3d::Zero());
+  fitting.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_EQ(fitting.notes(), FieldNote::none);
 }
 
@@ -208,7 +208,7 @@ TEST(SceneField, AToolOfAnySizeIsPushedOutAndCountsForWhatTheSupportCarries) {
         Proxy proxy;
         for (double z = 15e-3; z > 2e-3; z -= 0.1e-3) {
           const Vector3d hip(0.3e-3, 0.4e-3, z);
-          field.update(0, hip, z == 15e-3 ? hip : proxy.position());
+          field.update(0, hip, proxy);
           const Vector3d force = proxy.step(field, hip, 1e-3).force;
           const Vector3d expected(0, 0, proxy.options().stiffness * std::max(0.0, surface - z));
           EXPECT_LT((force - expected).norm(), 0.1) << threshold << ' ' << tool << " R, " << z;
@@ -232,7 +232,7 @@ TEST(SceneField, PointsOfNoWeightAreNotThere) {
   FieldOptions raw = paper_field(FieldOptions::Kind::metaball);
   for (const FieldOptions& options : {FieldOptions{}, raw}) {
     SceneField field(scene, options);
-    field.update(0, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
     EXPECT_TRUE(field.is_free({{40e-3, 0, 0}, 5e-3}));
     EXPECT_EQ(field.sample({40e-3, 0, 0}).support, 0);
   }

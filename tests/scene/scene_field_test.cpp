@@ -22,7 +22,7 @@ TEST(SceneField, WithoutASurfaceEverythingIsFree) {
   Scene scene;
   scene.add("empty");
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   EXPECT_TRUE(field.is_free({Vector3d::Zero(), 1}));
   EXPECT_EQ(field.sample(Vector3d::Zero()).support, 0);
@@ -36,7 +36,7 @@ TEST(SceneField, SamplesAwayFromThePathAreAsGoodAsThoseOnIt) {
   source.publish(still(plane(0)));
   SceneField field(scene);
   const Vector3d here(1e-3, 2e-3, 3e-3);
-  field.update(0, here, here);
+  field.update_from(0, here, here);
   for (double x = -40e-3; x <= 40e-3; x += 3e-3) {
     const Sample sample = field.sample({x, 1e-3, 2e-3});
     EXPECT_NEAR(sample.value, 2e-3, 1e-9);
@@ -53,7 +53,7 @@ TEST(SceneField, KeepsItsPatchWhileTheToolStaysNear) {
   Vector3d x(0, 0, 2e-3);
   for (int k = 0; k < 100; ++k) {
     x.x() += 0.1e-3;
-    field.update(1e-3 * k, x, x);
+    field.update_from(1e-3 * k, x, x);
     EXPECT_NEAR(field.sample(x).value, 2e-3, 1e-9);
   }
   EXPECT_LE(field.gathers(), 5u);
@@ -64,13 +64,13 @@ TEST(SceneField, ChangesOverAtTheNextSnapshotsStart) {
   Source& source = scene.add("plane");
   source.publish(still(plane(0)));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   const auto revision = field.traits().revision;
   source.publish(still(plane(4e-3), 0.010));
-  field.update(0.009, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.009, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_NEAR(height_of(field), 0, 1e-6);
   EXPECT_EQ(field.traits().revision, revision);
-  field.update(0.010, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.010, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_NEAR(height_of(field), 4e-3, 1e-6);
   EXPECT_GT(field.traits().revision, revision);
 }
@@ -82,18 +82,18 @@ TEST(SceneField, ChangesToWhatAFieldOfThoseOptionsIs) {
   SceneField changed(scene);
   SceneField made(scene, metaball);
   const Vector3d x(1e-3, 2e-3, 6e-3);
-  changed.update(0, x, x);
+  changed.update_from(0, x, x);
   const auto revision = changed.traits().revision;
   changed.change(metaball);
-  changed.update(1e-3, x, x);
-  made.update(1e-3, x, x);
+  changed.update_from(1e-3, x, x);
+  made.update_from(1e-3, x, x);
   EXPECT_GT(changed.traits().revision, revision);
   EXPECT_EQ(changed.sample(x).value, made.sample(x).value);
   EXPECT_EQ(changed.sample(x).gradient, made.sample(x).gradient);
   changed.change(paper_field());  // one R for all, and back
-  changed.update(2e-3, x, x);
+  changed.update_from(2e-3, x, x);
   changed.change(metaball);
-  changed.update(3e-3, x, x);
+  changed.update_from(3e-3, x, x);
   EXPECT_EQ(changed.sample(x).value, made.sample(x).value);
 }
 
@@ -102,9 +102,9 @@ TEST(SceneField, ASurfaceThatIsTakenAwayIsGone) {
   Source& source = scene.add("plane");
   source.publish(still(plane(0)));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   source.publish(nullptr);
-  field.update(0.001, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0.001, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(field.is_free({Vector3d::Zero(), 0.1}));
 }
 
@@ -123,7 +123,7 @@ TEST(SceneField, MovingPointsCarryTheSurfaceInAStraightLine) {
   source.publish(std::move(snapshot));
   SceneField field(scene);
   for (const double u : {-0.1, 0.0, 0.25, 0.5, 1.0, 2.0}) {
-    field.update(1 + 0.03 * u, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(1 + 0.03 * u, Vector3d::Zero(), Vector3d::Zero());
     const double expected = 6e-3 * std::clamp(u, 0.0, 1.0);
     EXPECT_NEAR(height_of(field), expected, 1e-6) << "u = " << u;
     const double speed = u > 0 && u < 1 ? 0.2 : 0;
@@ -142,7 +142,7 @@ TEST(SceneField, LayersFadeIntoOneAnother) {
   SceneField field(scene);
   double before = -1e-9;
   for (double t = 0; t <= 1.0001; t += 0.1) {
-    field.update(t, Vector3d::Zero(), Vector3d::Zero());
+    field.update_from(t, Vector3d::Zero(), Vector3d::Zero());
     const double height = height_of(field);
     EXPECT_GT(height, before);
     EXPECT_NEAR(height, 1e-3 * t, 0.05e-3);
@@ -161,7 +161,7 @@ TEST(SceneField, TwoSourcesMakeOneSurface) {
   SceneField field(scene);
   for (double x = -30e-3; x <= 30e-3; x += 2e-3) {
     const Vector3d place(x, 0, 1e-3);
-    field.update(0, place, place);
+    field.update_from(0, place, place);
     EXPECT_NEAR(field.sample(place).value, 1e-3, 1e-6) << x;
     EXPECT_EQ(field.surface(place).source, x < 0 ? 0 : 1);
   }
@@ -177,7 +177,7 @@ TEST(SceneField, MaterialsGoFromSoftToFull) {
   snapshot->layers.push_back({share(std::move(points)), 1, 1});
   source.publish(std::move(snapshot));
   SceneField field(scene);
-  field.update(0, Vector3d::Zero(), Vector3d::Zero());
+  field.update_from(0, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_NEAR(field.surface({-30e-3, 0, 0}).stiffness_factor, 0.2, 1e-9);
   EXPECT_NEAR(field.surface({-30e-3, 0, 0}).friction_factor, 0.5, 1e-9);
   EXPECT_NEAR(field.surface({30e-3, 0, 0}).stiffness_factor, 1, 1e-9);

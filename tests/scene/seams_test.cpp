@@ -53,7 +53,7 @@ TEST_P(SeamsTest, APlaneIsOnePlane) {
   const double half = 0.06 + 0.07 * (GetParam() - 1);
   for (double x = -half; x <= half; x += 2e-3) {
     const Vector3d place(x, 3e-3, 2e-3);
-    field.update(0.06, place, place);
+    field.update_from(0.06, place, place);
     const Sample sample = field.sample(place);
     EXPECT_NEAR(sample.value, 2e-3, 3e-5) << x;
     EXPECT_NEAR(sample.gradient.normalized().z(), 1, 1e-4) << x;
@@ -70,7 +70,7 @@ TEST_P(SeamsTest, AMetaballRisesLittleWhereTheyAgree) {
   double highest = 0;
   const double half = 0.05 + 0.07 * (GetParam() - 1);
   for (double x = -half; x <= half; x += 5e-3) {
-    field.update(0.06, {x, 0, 5e-3}, {x, 0, 5e-3});
+    field.update_from(0.06, {x, 0, 5e-3}, {x, 0, 5e-3});
     double low = 0;
     double high = 15e-3;
     for (int i = 0; i < 40; ++i) {

@@ -58,7 +58,7 @@ double largest_step_while_fading() {
     const double now = 1e-3 * k;
     test::publish_fade(source, k, low, high);
     const Vector3d hip(0, 0, std::max(-3e-3, 10e-3 - 0.2e-3 * k));
-    field.update(now, hip, k > 0 ? proxy.position() : hip);
+    field.update(now, hip, proxy);
     const Vector3d force = proxy.step(field, hip, 1e-3).force;
     if (k > 0) largest = std::max(largest, (force - last).norm());
     last = force;
@@ -109,7 +109,7 @@ TEST(TimeStepped, DenseSheetThatStepsUpTakesTheProxyAlong) {
     for (int k = 0; k < 500; ++k) {
       if (k < 220) hip.z() -= 1e-4;  // 2 mm below the sheet in the end
       if (k == 220) source.publish(dense_sheet(rise, 0.22));
-      field.update(1e-3 * k, hip, proxy.position());
+      field.update(1e-3 * k, hip, proxy);
       (void)proxy.step(field, hip, 1e-3);
     }
     EXPECT_NEAR(proxy.position().z(), rise, 1e-4);

@@ -53,7 +53,7 @@ class SwapStressTest : public testing::Test {
     for (int k = 0; !done_; ++k) {
       const double now = now_;
       const Vector3d hip(4e-3 * std::sin(0.01 * k), 0, k < 5 ? 20e-3 : -4e-3);
-      field.update(now, hip, proxy.position());
+      field.update(now, hip, proxy);
       const Contact contact = proxy.step(field, hip, 1e-3);
       const bool finite = contact.force.allFinite() && contact.proxy.allFinite();
       touched.infinite += finite ? 0 : 1;
@@ -87,7 +87,7 @@ TEST_F(SwapStressTest, AThousandSwapsASecondWithAStuckReader) {
       frame.stamp = 1e-3 * k;
       now_ = frame.stamp;
       pushed += source_.push(frame, [&] { return frame.stamp + 5e-4; }) ? 1 : 0;
-      if (k == 3) stuck.update(frame.stamp, Vector3d::Zero(), Vector3d::Zero());
+      if (k == 3) stuck.update_from(frame.stamp, Vector3d::Zero(), Vector3d::Zero());
       static_cast<void>(scene_.state(0));
       std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
     }
@@ -143,17 +143,17 @@ TEST_F(SwapStressTest, NamesTheReaderThatHoldsEverything) {
   // Each takes one to show and one that waits, all of them different.
   for (SceneField* field : {&stuck, &other}) {
     push();
-    field->update(now + 0.021, Vector3d::Zero(), Vector3d::Zero());
+    field->update_from(now + 0.021, Vector3d::Zero(), Vector3d::Zero());
     push();
-    field->update(now - 0.001, Vector3d::Zero(), Vector3d::Zero());
+    field->update_from(now - 0.001, Vector3d::Zero(), Vector3d::Zero());
   }
   EXPECT_TRUE(push());
   // Two each and the newest: with N = 1 and two fields there are no more than five.
   for (int k = 0; k < 5; ++k) EXPECT_FALSE(push());
   EXPECT_EQ(source_.state().dropped, 5u);
   EXPECT_EQ(source_.state().slowest, "stuck viewer");
-  stuck.update(now + 1, Vector3d::Zero(), Vector3d::Zero());
-  stuck.update(now + 1, Vector3d::Zero(), Vector3d::Zero());
+  stuck.update_from(now + 1, Vector3d::Zero(), Vector3d::Zero());
+  stuck.update_from(now + 1, Vector3d::Zero(), Vector3d::Zero());
   EXPECT_TRUE(push());
 }
 

@@ -94,7 +94,7 @@ void touches(Scene& scene, double start, unsigned seed) {
   proxy.reset({0, 0, 0.02});
   for (int k = 0; k < 40; ++k) {
     const Vector3d hand(1e-4 * (seed % 7), 0, 0.02 - 6e-4 * k);
-    field.update(start + 1e-3 * k, hand, proxy.position());
+    field.update(start + 1e-3 * k, hand, proxy);
     const Contact contact = proxy.step(field, hand, 1e-3);
     ASSERT_TRUE(contact.force.allFinite() && contact.proxy.allFinite()) << seed;
     ASSERT_LE(contact.force.norm(), 1.001 * 500 * (contact.proxy - hand).norm() + 1e-6) << seed;

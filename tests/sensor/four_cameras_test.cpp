@@ -73,7 +73,7 @@ class FourCameras : public testing::Test {
       const double now = tick * kTick;
       for (SimulatedStream& stream : streams_) stream.advance(now);
       const Eigen::Vector3d hip(-0.04, 0, std::max(-3e-3, 0.05 - 0.5 * now));
-      field.update(now, hip, tick == 0 ? hip : proxy.position());
+      field.update(now, hip, proxy);
       const Contact contact = proxy.step(field, hip, kTick);
       if (now > 0.3) look(now, contact);
     }

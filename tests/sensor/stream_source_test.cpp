@@ -33,7 +33,7 @@ TEST(StreamSource, MakesFramesASurface) {
   Source& source = scene.add("camera");
   SceneField field(scene);
   const Eigen::Vector3d hand(0, 0, 0.98);
-  field.update(0, hand, hand);
+  field.update_from(0, hand, hand);
   EXPECT_TRUE(has(field.notes(), FieldNote::no_surface));
   const auto camera = open_camera("sequence:" + folder.path().string());
   const Stream stream(*camera, source, clock);
@@ -43,7 +43,7 @@ TEST(StreamSource, MakesFramesASurface) {
   EXPECT_EQ(state.touchable, 6u);
   EXPECT_EQ(state.drops.total(), 0u) << state.problem;
   EXPECT_TRUE(state.problem.empty()) << state.problem;
-  field.update(1, hand, hand);
+  field.update_from(1, hand, hand);
   EXPECT_FALSE(has(field.notes(), FieldNote::no_surface));
   EXPECT_GT(field.patch_points(), 0u);
   EXPECT_EQ(field.surface({0, 0, 1.0}).source, 0);
@@ -61,7 +61,7 @@ TEST(StreamSource, MakesFramesTheSameSurfaceInSimulatedTime) {
   for (int i = 0; i < 300; ++i) {
     const double now = 1e-3 * i;
     stream.advance(now);
-    field.update(now, hand, hand);
+    field.update_from(now, hand, hand);
     EXPECT_EQ(has(field.notes(), FieldNote::no_surface), now < 0.01) << now;
   }
   EXPECT_EQ(stream.state().phase, StreamState::Phase::ended);

@@ -269,7 +269,7 @@ TEST_F(HandWithAWrist, DoesItsStepsAgainFromTheirTraces) {
   options.traces = nullptr;
   Servo again(device_, scene_, options);
   SceneField of_a_point(scene_);
-  of_a_point.update(now_, Vector3d::Zero(), Vector3d::Zero());
+  of_a_point.update_from(now_, Vector3d::Zero(), Vector3d::Zero());
   double torque = 0;
   int steps = 0;
   for (; const StepTrace* const trace = traces.front(); traces.drop(), ++steps) {

@@ -40,7 +40,7 @@ std::vector<Vector3d> by_hand(Device& device, Scene& scene, const ServoOptions& 
     if (state.status != DeviceState::Status::ok) return forces;
     const bool first = forces.empty();
     const Vector3d hip = options.workspace.position_to_world(state.position);
-    field.update(state.time, hip, first ? hip : proxy.position());
+    field.update(state.time, hip, proxy);
     const double dt = first ? 1 / device.info().rate : state.time - before;
     forces.push_back(proxy.step(field, hip, dt).force);
     device.write(options.workspace.force_to_device(forces.back()));

@@ -114,7 +114,7 @@ bool is_held(SceneField& field, const Rim& rim, double beyond) {
   Contact contact;
   for (int tick = 0; tick <= 170; ++tick) {
     const Vector3d hand = place + (0.012 - 1e-4 * tick) * rim.normal;
-    field.update(10 + 1e-3 * tick, hand, proxy.position());
+    field.update(10 + 1e-3 * tick, hand, proxy);
     contact = proxy.step(field, hand, 1e-3);
   }
   return contact.force.norm() > 0.5;  // N, of 2.5

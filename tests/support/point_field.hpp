@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "palpate/contact/proxy.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "support/known_edges.hpp"
 #include "support/make_points.hpp"
@@ -25,9 +26,14 @@ class PointField {
     field_ = std::make_unique<SceneField>(scene_, options);
   }
 
-  /// The field, ready for a step from `proxy` towards `hip`.
-  [[nodiscard]] const Field& at(const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) {
+  /// The field, ready for a step of `proxy` towards `hip`.
+  [[nodiscard]] const Field& at(const Eigen::Vector3d& hip, const Proxy& proxy) {
     field_->update(0, hip, proxy);
+    return *field_;
+  }
+  /// The field as it is seen from `place`.
+  [[nodiscard]] const Field& at(const Eigen::Vector3d& hip, const Eigen::Vector3d& place) {
+    field_->update_from(0, hip, place);
     return *field_;
   }
   [[nodiscard]] const SurfacePoints& points() const { return *points_; }

@@ -43,7 +43,7 @@ class StreamRun {
         arriving_.pop_front();
       }
       const Eigen::Vector3d hip = hand(now_);
-      field_.update(now_, hip, proxy_.position());
+      field_.update(now_, hip, proxy_);
       const Contact contact = proxy_.step(field_, hip, 1e-3);
       if (see) see(now_, contact);
     }

@@ -29,7 +29,7 @@ class HeldTool {
         proxy_(tool_, options) {}
 
   ToolContact step(const Pose& hand) {
-    field_.update(1e-3 * ticks_++, hand, proxy_.pose());
+    field_.update(1e-3 * ticks_++, hand, proxy_);
     return proxy_.step(field_, hand, kTick);
   }
 

@@ -152,7 +152,7 @@ TEST(ToolField, APointIsTheProxyOfAPoint) {
   std::vector<double> differences;
   int touching = 0;
   for (int i = 0; i < 4000; ++i) {
-    field.update(1e-3 * i, hand_at(i), proxy.position());
+    field.update(1e-3 * i, hand_at(i), proxy);
     const Contact contact = proxy.step(field, hand_at(i), kTick);
     const ToolContact tool = held.step(pose_at(hand_at(i)));
     differences.push_back((contact.force - tool.wrench.force).norm());

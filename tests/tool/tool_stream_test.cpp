@@ -43,7 +43,7 @@ class ToolOnAStream : public testing::Test {
         ++frames_;
       }
       const Pose pose = hand(now);
-      field_.update(now, pose, proxy_.pose());
+      field_.update(now, pose, proxy_);
       const ToolContact contact = proxy_.step(field_, pose, kTick);
       ASSERT_TRUE(contact.wrench.force.allFinite() && contact.wrench.torque.allFinite());
       see(now, contact);

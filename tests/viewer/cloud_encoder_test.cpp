@@ -144,7 +144,7 @@ TEST(CloudEncoder, DrawsWhatIsOnlySeenByItsOwnSpacing) {
     for (int j = 0; j < 10; ++j) cloud.positions.emplace_back(8e-3F * i, 8e-3F * j, 0);
   }
   for (const double now : {0.0, 0.1}) {
-    field.update(now, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+    field.update_from(now, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
     ASSERT_TRUE(source.push(cloud, now, [=] { return now + 0.01; }));
   }
   ASSERT_NE(source.state().overview, nullptr);

@@ -67,7 +67,7 @@ TEST(LocalSurface, OfASheetShowsTheSideThatIsLookedAtAndNoBack) {
   for (const double side : {1.0, -1.0}) {
     SceneField field(scene);
     const Vector3d center(0, 0, 3e-3 * side);
-    field.update(1, center, center);
+    field.update_from(1, center, center);
     const Mesh mesh = local_surface(field, {center, 10e-3, 0.35});
     ASSERT_GT(mesh.triangles.size(), 500u);
     for (const Vector3f& v : mesh.vertices) EXPECT_NEAR(v.z() + center.z(), 0, 3e-4);

@@ -169,8 +169,7 @@ class Feelers {
   }
 
   void step(Feeler& feeler, double time, const Vector3d& hip, bool sampled) const {
-    const Vector3d proxy_before = time > 0 ? feeler.proxy.position() : hip;
-    feeler.field.update(time, hip, proxy_before);
+    feeler.field.update(time, hip, feeler.proxy);
     const Contact contact = feeler.proxy.step(feeler.field, hip, kPeriod);
     Press& press = feeler.press;
     if (sampled) {

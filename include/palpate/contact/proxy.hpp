@@ -118,7 +118,10 @@ class Proxy {
   /// hand begins. Spends at most max_evaluations() evaluations of the field.
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
 
-  /// Where the proxy is, m, world. The origin until the first step or reset().
+  /// Is the proxy somewhere? It is nowhere until the first step or reset(), and while a fault
+  /// lasts.
+  [[nodiscard]] bool has_begun() const noexcept;
+  /// Where the proxy is, m, world. Before it has begun it is the origin, which says nothing.
   [[nodiscard]] const Eigen::Vector3d& position() const noexcept;
   [[nodiscard]] const ProxyOptions& options() const noexcept;
 

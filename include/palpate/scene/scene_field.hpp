@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -37,6 +38,13 @@ enum class FieldNote : std::uint32_t {
   return (static_cast<std::uint32_t>(notes) & static_cast<std::uint32_t>(bit)) != 0;
 }
 
+/// What follows a hand and is nowhere until it has begun: Proxy.
+template <class T>
+concept FollowsHand = requires(const T& follower) {
+  { follower.has_begun() } -> std::same_as<bool>;
+  { follower.position() } -> std::same_as<const Eigen::Vector3d&>;
+};
+
 /// The scene as one servo sees it: points near the tool, gathered into a contiguous patch, made
 /// into an implicit surface. One thread uses it; up to 16 fields may look at one
 /// scene.
@@ -62,9 +70,14 @@ class SceneField final : public Field {
   SceneField& operator=(const SceneField&) = delete;
 
   /// Picks up new snapshots, brings the surface to time `now` (s) and gathers the points around
-  /// the proxy and its path to the hand (m, world). Reports to the sources where the tool can be
-  /// next. Wait-free, allocation-free.
-  void update(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& proxy) noexcept;
+  /// the proxy and its path to the hand (m, world). A proxy that has not begun is where the hand
+  /// is. Reports to the sources where the tool can be next. Wait-free, allocation-free.
+  template <FollowsHand Follower>
+  void update(double now, const Eigen::Vector3d& hip, const Follower& proxy) noexcept {
+    update_from(now, hip, proxy.has_begun() ? proxy.position() : hip);
+  }
+  /// The same where a surface is looked at without a proxy: from `place`, m, world.
+  void update_from(double now, const Eigen::Vector3d& hip, const Eigen::Vector3d& place) noexcept;
 
   [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const noexcept override;
   [[nodiscard]] bool is_free(const Ball& ball) const noexcept override;

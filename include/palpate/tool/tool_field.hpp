@@ -9,6 +9,7 @@
 #include "palpate/field/field_options.hpp"
 #include "palpate/scene/scene_field.hpp"
 #include "palpate/tool/tool.hpp"
+#include "palpate/tool/tool_proxy.hpp"
 #include "palpate/tool/tool_surface.hpp"
 
 namespace palpate {
@@ -38,9 +39,9 @@ class ToolField final : public ToolSurface {
   ToolField& operator=(const ToolField&) = delete;
 
   /// Before each step: picks up new snapshots and brings the surface to time `now` (s). `proxy` is
-  /// where the proxy is, `hand` where the hand wants it. Reports to the sources where the tool can
-  /// be next. Wait-free, allocation-free.
-  void update(double now, const Pose& hand, const Pose& proxy) noexcept;
+  /// where the tool is, `hand` where the hand wants it; a proxy that has not begun is where the
+  /// hand is. Reports to the sources where the tool can be next. Wait-free, allocation-free.
+  void update(double now, const Pose& hand, const ToolProxy& proxy) noexcept;
 
   /// Makes another surface of the same points from the next update() on. Real-time. `checked`:
   /// check() has passed it.

@@ -95,7 +95,9 @@ class ToolProxy {
   /// changes as the energy tank allows (docs/method.md 3.5).
   void change(double stiffness, const Friction& friction, const Texture& texture) noexcept;
 
-  /// Where the tool is. At the origin until the first step or reset().
+  /// Is the tool somewhere? It is nowhere until the first step or reset(), and while a fault lasts.
+  [[nodiscard]] bool has_begun() const noexcept;
+  /// Where the tool is. Before it has begun it is the origin, which says nothing.
   [[nodiscard]] const Pose& pose() const noexcept;
   /// The gyration is the one in use.
   [[nodiscard]] const ToolOptions& options() const noexcept;

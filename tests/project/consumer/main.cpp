@@ -19,7 +19,7 @@ int main() {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const palpate::DeviceState hand = device.read();
-    field.update(hand.time, hand.position, proxy.position());
+    field.update(hand.time, hand.position, proxy);
     force = proxy.step(field, hand.position, 1e-3).force;
     device.write(force);
   }
