@@ -11,7 +11,7 @@ namespace palpate::fuzz {
 void check_pieces(std::span<const std::byte> bytes) {
   const MemoryFile file(bytes);
   try {
-    const io::tile::TileInput input = io::tile::open_las(file.path(), 1);
+    const io::tile::TileInput input = io::tile::open_las(file.path(), {});
     std::size_t points = 0;
     for (std::size_t i = 0; i < input.pieces; ++i) points += input.read(i).size();
     if (points > input.points) throw std::logic_error("pieces that are more than all");

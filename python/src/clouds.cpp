@@ -226,7 +226,28 @@ std::shared_ptr<const PointCloud> cloud_of(const py::object& given, Keywords& ke
   if (!is_path) return cloud_of_arrays(given, keywords);
   const auto path = given.cast<std::filesystem::path>();
   const Away away;
-  return std::make_shared<PointCloud>(read_cloud(path));
+  return std::make_shared<PointCloud>(read_with_warning(path, {}));
+}
+
+PointCloud read_with_warning(const std::filesystem::path& path, const ReadOptions& options) {
+  CloudFile file = read_cloud_file(path, options);
+  const FileUnit& unit = file.unit;
+  const bool likely = unit.source == FileUnit::Source::likely;
+  const bool half_stated =
+      unit.source == FileUnit::Source::stated && !unit.height_stated && unit.plan != 1;
+  if (!likely && !half_stated) return std::move(file.cloud);
+  const std::string text =
+      likely ? fmt::format("{}: taken as {}: {}; give scale={} if that is wrong", path.string(),
+                           unit.plan == 1 ? "metres" : "millimetres", unit.words,
+                           unit.plan == 1 ? "0.001" : "1")
+             : fmt::format(
+                   "{}: the file says by {} that x and y are in units of {:.12g} m, and "
+                   "nothing of heights, which are taken to be, too; give scale=({:.12g}, 1) "
+                   "if they are in metres",
+                   path.string(), unit.words, unit.plan, unit.plan);
+  const py::gil_scoped_acquire held;
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  return std::move(file.cloud);
 }
 
 py::object shared(const std::shared_ptr<const SurfacePoints>& points) {

@@ -4,6 +4,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
+#include <optional>
+#include <variant>
+
 #include "arrays.hpp"
 #include "clouds.hpp"
 #include "gil.hpp"
@@ -18,7 +22,7 @@ constexpr const char* kRead =
 
 The scans of an E57 file are joined; "a.e57#2" is the second one.
 
-scale: metres for one of the file's units; or length: m, of the cloud's longest side. mesh_spacing: m between the points that faces are sampled into; 0: chosen. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
+scale: metres for one of the file's units, or two numbers where heights have another; None: what the file states, else what touch takes (a warning says so). Or length: m, of the cloud's longest side. mesh_spacing: m between the points that faces are sampled into; 0: chosen. Of a depth image: K = (fx, fy, cx, cy), pixels; unit: metres a step.)";
 
 constexpr const char* kWrite = R"(Writes PLY or PCD, by the path's ending.
 
@@ -29,13 +33,19 @@ constexpr const char* kSynthetic =
 
 spacing: m between points; noise: its standard deviation along the normal, m.)";
 
-PointCloud read_file(const std::filesystem::path& path, double scale, std::optional<double> length,
-                     const std::optional<std::array<double, 4>>& K, double unit,
-                     double mesh_spacing) {
-  ReadOptions options{
-      .scale = scale, .length = length, .depth_unit = unit, .mesh_spacing = mesh_spacing};
+PointCloud read_file(const std::filesystem::path& path,
+                     const std::optional<std::variant<double, std::array<double, 2>>>& scale,
+                     std::optional<double> length, const std::optional<std::array<double, 4>>& K,
+                     double unit, double mesh_spacing) {
+  ReadOptions options{.length = length, .depth_unit = unit, .mesh_spacing = mesh_spacing};
+  if (scale && std::holds_alternative<double>(*scale)) options.scale = std::get<double>(*scale);
+  if (scale && !options.scale) {
+    const auto& [plan, height] = std::get<std::array<double, 2>>(*scale);
+    options.scale = plan;
+    options.height_scale = height;
+  }
   if (K) options.intrinsics = {(*K)[0], (*K)[1], (*K)[2], (*K)[3]};
-  return read_cloud(path, options);
+  return read_with_warning(path, options);
 }
 
 void write_file(const std::filesystem::path& path, const py::object& cloud, bool ascii,
@@ -56,9 +66,9 @@ PointCloud synthetic(const std::string& name, double spacing, double noise, std:
 void define_files(py::module_& module) {
   using py::arg;
   using Free = py::call_guard<Released>;
-  module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(), arg("scale") = 1.0,
-             arg("length") = py::none(), arg("K") = py::none(), arg("unit") = 1e-3,
-             arg("mesh_spacing") = 0.0, kRead);
+  module.def("read_cloud", &read_file, Free(), arg("path"), py::kw_only(),
+             arg("scale") = py::none(), arg("length") = py::none(), arg("K") = py::none(),
+             arg("unit") = 1e-3, arg("mesh_spacing") = 0.0, kRead);
   module.def("write_cloud", &write_file, arg("path"), arg("cloud"), py::kw_only(),
              arg("ascii") = false, kWrite);
   module.def("synthetic_cloud", &synthetic, Free(), arg("name"), py::kw_only(),

@@ -13,9 +13,14 @@ namespace palpate {
 
 Box PointStore::Layout::box(std::size_t node) const {
   const std::array<std::int32_t, 3>& cell = nodes[node].cell;
-  const double size = std::ldexp(edge, -nodes[node].level);
-  const Eigen::Vector3d at = lower + size * Eigen::Vector3d(cell[0], cell[1], cell[2]);
-  return {at, at + Eigen::Vector3d::Constant(size)};
+  const double length = std::ldexp(edge, -nodes[node].level);
+  const Eigen::Vector3d size(length, length, flatness * length);
+  const Eigen::Vector3d at = lower + size.cwiseProduct(Eigen::Vector3d(cell[0], cell[1], cell[2]));
+  return {at, at + size};
+}
+
+Box PointStore::Layout::box() const {
+  return {lower, lower + Eigen::Vector3d(edge, edge, flatness * edge)};
 }
 
 namespace detail {

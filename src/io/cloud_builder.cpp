@@ -167,12 +167,18 @@ std::vector<std::array<std::uint8_t, 3>> byte_colors(
 }
 
 void check_options(const Input& input) {
-  const double scale = input.options.scale;
+  const double scale = input.options.scale.value_or(1);
+  const double height = input.options.height_scale.value_or(1);
   const double length = input.options.length.value_or(1);
   const double spacing = input.options.mesh_spacing;
   if (!(std::isfinite(scale) && scale > 0)) {
     fail(input, fmt::format("cannot multiply coordinates by a scale of {}", scale),
          "Give a scale above zero, e.g. 0.001 for millimetres or 0.3048 for feet");
+  }
+  if (!(std::isfinite(height) && height > 0) ||
+      (input.options.height_scale && !input.options.scale)) {
+    fail(input, fmt::format("cannot multiply heights alone by a scale of {}", height),
+         "Give a scale of x and y above zero, and one of z");
   }
   if (!(std::isfinite(length) && length > 0)) {
     fail(input, fmt::format("no cloud can be {} m long", length), "Give a length above zero");
@@ -214,14 +220,14 @@ void CloudBuilder::organise(std::size_t width, std::size_t height) {
 
 void CloudBuilder::add(const Row& row) {
   const auto pixel = static_cast<std::uint32_t>(points_.size() + dropped_);
-  const Eigen::Vector3d point = input_.options.scale * three(row, Role::x);
+  const Eigen::Vector3d point = input_.scale().cwiseProduct(three(row, Role::x));
   if (!is_usable(point)) {
     ++dropped_;
     return;
   }
   points_.push_back(point);
   if (cloud_.width > 0) cloud_.pixels.push_back(pixel);
-  if (columns_.normals) cloud_.normals.push_back(unit_normal(three(row, Role::normal_x)));
+  if (columns_.normals) cloud_.normals.push_back(normal_of(row));
   if (columns_.colors) {
     const Eigen::Vector3d c = three(row, Role::red);
     colors_.push_back({finite_float(c[0]), finite_float(c[1]), finite_float(c[2])});
@@ -231,10 +237,18 @@ void CloudBuilder::add(const Row& row) {
   }
 }
 
+// A normal of a surface whose heights have another unit than x and y turns as they are stretched.
+Eigen::Vector3f CloudBuilder::normal_of(const Row& row) const {
+  const Eigen::Vector3d normal = three(row, Role::normal_x);
+  if (input_.unit.plan == input_.unit.height) return unit_normal(normal);
+  return unit_normal(normal.cwiseQuotient(input_.scale() / input_.unit.plan));
+}
+
 CloudFile CloudBuilder::finish(std::string format) {
   check_not_empty(input_, points_.size(), dropped_);
   CloudFile file;
   file.format = std::move(format);
+  file.unit = input_.unit;
   file.declared = points_.size() + dropped_;
   file.dropped = dropped_;
   split_positions(cloud_);
@@ -264,6 +278,8 @@ void rescale(PointCloud& cloud, double factor) {
 
 void rescale(CloudFile& file, double factor) {
   rescale(file.cloud, factor);
+  file.unit.plan *= factor;
+  file.unit.height *= factor;
   if (file.splats) file.splats->spacing *= factor;
   if (file.mesh) file.mesh->spacing *= factor;
 }

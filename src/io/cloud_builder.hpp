@@ -104,6 +104,7 @@ class CloudBuilder {
   [[nodiscard]] CloudFile finish(std::string format);
 
  private:
+  [[nodiscard]] Eigen::Vector3f normal_of(const Row& row) const;
   void split_positions(PointCloud& cloud);
   void convert_colors(PointCloud& cloud) const;
 
@@ -134,7 +135,7 @@ void check_not_empty(const Input& input, std::size_t kept, std::size_t dropped);
 /// Multiplies all lengths of a cloud.
 void rescale(PointCloud& cloud, double factor);
 
-/// The same of a file, with the spacings that are reported of it.
+/// The same of a file, with its unit and the spacings that are reported of it.
 void rescale(CloudFile& file, double factor);
 
 }  // namespace palpate::io

@@ -39,9 +39,9 @@ struct Copc {
                                                 std::span<const std::byte> bytes,
                                                 const StoredNode& node);
 
-/// A COPC file as a store; null: it is none. Coordinates times `scale` are metres. @throws Error as
-/// read_copc() does.
+/// A COPC file as a store; null: it is none. `options`: the scale. @throws Error as read_copc() and
+/// in_las_unit() do.
 [[nodiscard]] std::shared_ptr<const PointStore> open_copc(const std::filesystem::path& path,
-                                                          double scale);
+                                                          const ReadOptions& options);
 
 }  // namespace palpate::io

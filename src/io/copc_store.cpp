@@ -8,29 +8,32 @@
 #include "io/cloud_builder.hpp"
 #include "io/copc.hpp"
 #include "io/las_coordinates.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
 
 class CopcStore final : public PointStore {
  public:
-  CopcStore(const std::filesystem::path& path, double scale)
-      : file_(path),
+  CopcStore(const std::filesystem::path& path, const ReadOptions& options)
+      : options_(options),
+        file_(path),
         bytes_(read_las_head(file_)),
-        head_{bytes_.span(), path.string(), options_},
-        header_(read_las_header(head_)),
-        scale_(scale * header_.scale),
-        offset_(scale * header_.offset) {
+        header_(read_las_header({bytes_.span(), path.string(), options_})),
+        head_(in_las_unit({bytes_.span(), path.string(), options_}, header_)),
+        scale_(head_.scale().cwiseProduct(header_.scale)),
+        offset_(head_.scale().cwiseProduct(header_.offset)) {
     std::optional<Copc> copc = read_copc(head_, header_, parts_of(file_));
     if (!copc) return;
-    check_no_degrees(head_, header_);
     nodes_ = std::move(copc->nodes);
     std::ranges::sort(nodes_, {}, &StoredNode::offset);
     for (const StoredNode& each : nodes_) layout_.nodes.push_back(each.node);
-    layout_.format = "COPC, " + header_.name() + std::string(stated_unit(head_, header_));
-    layout_.lower = scale * (copc->center.array() - copc->half_size);
-    layout_.edge = scale * 2 * copc->half_size;
-    layout_.spacing = scale * copc->spacing;
+    layout_.unit = head_.unit;
+    layout_.format = "COPC, " + header_.name() + words_of(head_.unit);
+    layout_.lower = head_.scale().array() * (copc->center.array() - copc->half_size);
+    layout_.edge = head_.unit.plan * 2 * copc->half_size;
+    layout_.flatness = head_.unit.height / head_.unit.plan;
+    layout_.spacing = head_.unit.plan * copc->spacing;
     layout_.points = header_.points;
     learn_from_sample();
   }
@@ -77,11 +80,11 @@ class CopcStore final : public PointStore {
     }
   }
 
-  OpenFile file_;
   ReadOptions options_;
+  OpenFile file_;
   Bytes bytes_;
-  Input head_;
   LasHeader header_;
+  Input head_;
   Eigen::Vector3d scale_;          // m
   Eigen::Vector3d offset_;         // m
   std::vector<StoredNode> nodes_;  // by their offsets
@@ -92,8 +95,9 @@ class CopcStore final : public PointStore {
 
 }  // namespace
 
-std::shared_ptr<const PointStore> open_copc(const std::filesystem::path& path, double scale) {
-  auto store = std::make_shared<const CopcStore>(path, scale);
+std::shared_ptr<const PointStore> open_copc(const std::filesystem::path& path,
+                                            const ReadOptions& options) {
+  auto store = std::make_shared<const CopcStore>(path, options);
   return store->layout().nodes.empty() ? nullptr : store;
 }
 

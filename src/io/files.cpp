@@ -15,6 +15,7 @@
 #include "io/mesh/triangles.hpp"
 #include "io/potree/potree.hpp"
 #include "io/splats/splats.hpp"
+#include "io/units/file_unit.hpp"
 #include "io/whole_store.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/depth/depth_frame.hpp"
@@ -81,6 +82,7 @@ void fit_length(const Input& input, CloudFile& file) {
   const PointCloud& cloud = file.cloud;
   const Box inner = detail::inner_box(cloud.positions, cloud.size() / kOutermost);
   const double length = inner.size().maxCoeff();
+  file.unit.source = FileUnit::Source::given;
   if (!(length > 0)) {
     fail(input, "all points are at one place, so no length fits",
          "Give no length, or another file");
@@ -114,6 +116,7 @@ CloudFile read_input(const Input& given) {
   try {
     const FileKind kind = kind_of(input);
     CloudFile file = kind == FileKind::gz ? read_packed(input) : read_kind(input, kind);
+    file.format += words_of(file.unit);
     fit_length(input, file);
     if (input.options.progress) input.options.progress(1.0);
     return file;
@@ -125,7 +128,7 @@ CloudFile read_input(const Input& given) {
 
 CloudFile read_potree(const Input& input) {
   check_options(input);
-  CloudFile file = read_whole(*open_potree(input.name, input.options.scale), input);
+  CloudFile file = read_whole(*open_potree(input.name, input.options), input);
   fit_length(input, file);
   if (input.options.progress) input.options.progress(1.0);
   return file;
@@ -165,10 +168,12 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& opt
   try {
     Mesh faces;
     const Bytes bytes = read_bytes(path);
-    const Input input{bytes.span(), piped ? "standard input" : path.string(), options,
-                      path.parent_path() / ".", &faces};
+    Input input{bytes.span(), piped ? "standard input" : path.string(), options,
+                path.parent_path() / ".", &faces};
     CloudFile file = read_input(input);
+    input.unit = file.unit;
     TriangleMesh mesh = triangles_of(input, faces, std::move(file.format));
+    mesh.unit = file.unit;
     mesh.facts = file.mesh.value_or(MeshFacts());
     return mesh;
   } catch (const std::bad_alloc&) {

@@ -12,6 +12,15 @@
 
 namespace palpate::io {
 
+FileUnit given_unit(const ReadOptions& options) {
+  FileUnit unit;
+  if (!options.scale) return unit;
+  unit.plan = *options.scale;
+  unit.height = options.height_scale.value_or(*options.scale);
+  unit.source = FileUnit::Source::given;
+  return unit;
+}
+
 void fail(const Input& input, std::string_view what, std::string_view remedy) {
   throw Error(fmt::format("{}: {}. {}.", input.name, what, remedy));
 }

@@ -14,6 +14,9 @@ namespace palpate::io {
 
 struct Mesh;
 
+/// The unit that the caller gives; metres, which are assumed, where he does not.
+[[nodiscard]] FileUnit given_unit(const ReadOptions& options);
+
 /// Input of every reader: bytes, their name for messages, and the caller's options.
 struct Input {
   std::span<const std::byte> bytes;
@@ -21,6 +24,10 @@ struct Input {
   const ReadOptions& options;
   std::filesystem::path folder{};  ///< of the file, where others may lie beside it; empty: none
   Mesh* faces = nullptr;  ///< takes the file's faces, which then become no points; null: they do
+  FileUnit unit = given_unit(options);
+
+  /// m a unit along x, y and z.
+  [[nodiscard]] Eigen::Vector3d scale() const { return {unit.plan, unit.plan, unit.height}; }
 
   [[nodiscard]] std::string_view text() const {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};

@@ -64,13 +64,13 @@ class LasReader {
         header_(header),
         point_at_(point_at),
         before_(before),
-        scale_(input.options.scale * header.scale),
-        offset_(input.options.scale * header.offset) {}
+        scale_(input.scale().cwiseProduct(header.scale)),
+        offset_(input.scale().cwiseProduct(header.offset)) {}
 
   CloudFile run() {
     CloudFile file;
-    file.format = fmt::format("{}{}{}", header_.name(), stated_unit(input_, header_),
-                              unused(points_behind(input_, header_)));
+    file.format = header_.name() + unused(points_behind(input_, header_));
+    file.unit = input_.unit;
     file.declared = header_.points;
     file.cloud.origin =
         choose_origin(header_.points, [&](std::size_t i) { return position(point_at_(i)); });
@@ -136,9 +136,9 @@ void check_size(const Input& input, const LasHeader& header) {
 
 }  // namespace
 
-CloudFile read_las(const Input& input) {
-  const LasHeader header = read_las_header(input);
-  check_no_degrees(input, header);
+CloudFile read_las(const Input& given) {
+  const LasHeader header = read_las_header(given);
+  const Input input = in_las_unit(given, header);
   if (header.compressed) {
     const std::unique_ptr<LasPoint[]> points = laz::read_points(input, header);
     return LasReader(

@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "io/text_scanner.hpp"
+#include "io/units/epsg.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
@@ -13,72 +16,97 @@ constexpr std::string_view kProjection = "LASF_Projection";
 
 // Records, keys and values of the ASPRS and GeoTIFF specifications.
 constexpr int kGeoKeys = 34735;
+constexpr int kGeoDoubles = 34736;
 constexpr int kWkt = 2112;
 constexpr unsigned kModelType = 1024;
 constexpr unsigned kGeographic = 2;
-constexpr unsigned kLinearUnits = 3076;
-constexpr unsigned kMetre = 9001;
-constexpr unsigned kFoot = 9002;
-constexpr unsigned kSurveyFoot = 9003;
+constexpr unsigned kGeocentric = 3;
+constexpr unsigned kGeographicUnit = 2052;  // of length
+constexpr unsigned kProjectedSystem = 3072;
+constexpr unsigned kProjectedUnit = 3076;
+constexpr unsigned kProjectedUnitSize = 3077;  // m, where the unit is a user's own
+constexpr unsigned kVerticalSystem = 4096;
+constexpr unsigned kVerticalUnit = 4099;
 
-constexpr double kFootLength = 0.3048;  // m (definition)
-constexpr double kSameUnit = 1e-5;      // share; the US survey foot is 2e-6 longer (definition)
+struct GeoKey {
+  unsigned place = 0;  // 0: the value is here; else the record that holds it
+  unsigned value = 0;  // or its index there
+};
 
-// The value of a GeoTIFF key that is a whole number.
-std::optional<unsigned> geo_key(const Input& input, const LasHeader& header, unsigned wanted) {
+std::optional<GeoKey> geo_key(const Input& input, const LasHeader& header, unsigned wanted) {
   constexpr std::size_t kEntry = 8;  // bytes of the head and of each key: four numbers (format)
   const auto record = find_record(input, header, kProjection, kGeoKeys);
   if (!record) return {};
   const std::byte* data = input.bytes.data() + record->offset;
   for (std::size_t at = kEntry; at + kEntry <= record->size; at += kEntry) {
-    const bool is_value = load_as<std::uint16_t>(data + at + 2) == 0;  // not an offset
-    if (is_value && load_as<std::uint16_t>(data + at) == wanted) {
-      return load_as<std::uint16_t>(data + at + 6);
-    }
+    if (load_as<std::uint16_t>(data + at) != wanted) continue;
+    return GeoKey{load_as<std::uint16_t>(data + at + 2), load_as<std::uint16_t>(data + at + 6)};
   }
   return {};
 }
 
-std::string_view wkt_of(const Input& input, const LasHeader& header) {
+// The value of a key that is a whole number; 0: there is none.
+unsigned whole_key(const Input& input, const LasHeader& header, unsigned wanted) {
+  const GeoKey key = geo_key(input, header, wanted).value_or(GeoKey());
+  return key.place == 0 ? key.value : 0;
+}
+
+std::optional<double> real_key(const Input& input, const LasHeader& header, unsigned wanted) {
+  const auto key = geo_key(input, header, wanted);
+  const auto record = find_record(input, header, kProjection, kGeoDoubles);
+  if (!key || key->place != kGeoDoubles || !record) return {};
+  const std::size_t at = key->value * sizeof(double);
+  if (at + sizeof(double) > record->size) return {};
+  const double value = load_as<double>(input.bytes.data() + record->offset + at);
+  if (!std::isfinite(value) || !(value > 0)) return {};
+  return value;
+}
+
+StatedUnits units_in_keys(const Input& input, const LasHeader& header) {
+  const auto key = [&](unsigned wanted) { return whole_key(input, header, wanted); };
+  if (key(kModelType) == kGeographic) return {.degrees = true};
+  StatedUnits found;
+  found.plan = metres_of_epsg_unit(key(kProjectedUnit));
+  if (!found.plan) found.plan = real_key(input, header, kProjectedUnitSize);
+  if (key(kModelType) == kGeocentric) found.plan = metres_of_epsg_unit(key(kGeographicUnit));
+  if (!found.plan) found.plan = metres_of_epsg_system(key(kProjectedSystem));
+  found.height = metres_of_epsg_unit(key(kVerticalUnit));
+  if (!found.height) found.height = metres_of_epsg_system(key(kVerticalSystem));
+  return found;
+}
+
+StatedUnits units_in_text(const Input& input, const LasHeader& header) {
   const auto record = find_record(input, header, kProjection, kWkt);
-  return record ? input.text().substr(record->offset, record->size) : std::string_view();
+  if (!record) return {};
+  return units_in_projection(input.text().substr(record->offset, record->size));
 }
 
-bool has(std::string_view text, std::string_view word) {
-  return text.find(word) != std::string_view::npos;
-}
-
-// m, of the last unit before the heights' system, which is that of x and y: UNIT["foot",0.3048].
-std::optional<double> unit_in_wkt(std::string_view wkt) {
-  wkt = wkt.substr(0, wkt.find("VERT"));
-  const std::size_t unit = wkt.rfind("UNIT[");
-  if (unit == std::string_view::npos) return {};
-  const std::size_t begin = wkt.find(',', unit);
-  if (begin == std::string_view::npos) return {};
-  return parse_number(trim(wkt.substr(begin + 1, wkt.find_first_of(",]", begin + 1) - begin - 1)));
+// Does the header say that its well-known text holds, and not its keys?
+bool prefers_text(const Input& input) {
+  constexpr std::size_t kEncoding = 6;  // bytes into the header (format)
+  constexpr unsigned kText = 16;
+  return (load_as<std::uint16_t>(input.bytes.data() + kEncoding) & kText) != 0;
 }
 
 }  // namespace
 
-void check_no_degrees(const Input& input, const LasHeader& header) {
-  // Text of a projected system names the geographic one that it is made of, too.
-  const std::string_view wkt = wkt_of(input, header);
-  const bool geographic = geo_key(input, header, kModelType) == kGeographic ||
-                          (has(wkt, "GEOGC") && !has(wkt, "PROJC"));
-  if (!geographic) return;
+void fail_as_degrees(const Input& input) {
   fail(
       input, "its coordinates are degrees of longitude and latitude, as it says",
       "Project it to metres, for example with \"pdal translate IN.las OUT.las reprojection "
       "--filters.reprojection.out_srs=EPSG:326NN\", where NN is its UTM zone (327NN in the south)");
 }
 
-std::string_view stated_unit(const Input& input, const LasHeader& header) {
-  const unsigned key = geo_key(input, header, kLinearUnits).value_or(0);
-  const double length = unit_in_wkt(wkt_of(input, header)).value_or(0);
-  if (key == kMetre || (key == 0 && length == 1)) return ", in metres";
-  const bool feet = std::abs(length / kFootLength - 1) < kSameUnit;
-  if (key == kFoot || key == kSurveyFoot || (key == 0 && feet)) return ", in feet";
-  return {};
+Input in_las_unit(const Input& input, const LasHeader& header) {
+  const StatedUnits keys = units_in_keys(input, header);
+  const StatedUnits text = units_in_text(input, header);
+  StatedUnits found = prefers_text(input) ? text : keys;
+  const StatedUnits& other = prefers_text(input) ? keys : text;
+  if (found.degrees || (other.degrees && !found.plan)) fail_as_degrees(input);
+  const bool by_text = found.plan ? prefers_text(input) : !prefers_text(input);
+  if (!found.plan) found.plan = other.plan;
+  if (!found.height) found.height = other.height;
+  return in_stated_unit(input, found, by_text ? "its well-known text (WKT)" : "its GeoTIFF keys");
 }
 
 }  // namespace palpate::io

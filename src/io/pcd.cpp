@@ -183,7 +183,7 @@ class PcdReader {
     CloudFile file = result.finish(std::move(format) + unused(unused_));
     const bool is_set = header_.viewpoint != PcdHeader{}.viewpoint;
     const Eigen::Vector3d stand =
-        input_.options.scale * Eigen::Map<const Eigen::Vector3d>(header_.viewpoint.data());
+        input_.scale().cwiseProduct(Eigen::Map<const Eigen::Vector3d>(header_.viewpoint.data()));
     if ((is_set || header_.organised()) && is_usable(stand)) file.cloud.viewpoint = stand;
     return file;
   }

@@ -12,6 +12,7 @@
 #include "io/ply_points.hpp"
 #include "io/ply_rows.hpp"
 #include "io/splats/splats.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
@@ -107,8 +108,10 @@ CloudFile read_points(const Input& input, const PlyHeader& header, const PlyElem
 
 }  // namespace
 
-CloudFile read_ply(const Input& input) {
-  const PlyHeader header = read_ply_header(input);
+CloudFile read_ply(const Input& given) {
+  const PlyHeader header = read_ply_header(given);
+  const std::string_view lines = given.text().substr(0, header.size);
+  const Input input = in_unit_of_comments(given, lines, "comment");
   if (holds_splats(header)) return shell_file(input, read_splat_ply);
   const PlyElement& points = points_of(input, header);
   const auto faces = std::ranges::find_if(header.elements, has_faces);

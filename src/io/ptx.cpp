@@ -37,7 +37,7 @@ class PtxReader {
     for (; rows_.next(); ++scans) read_scan();
     if (!builder_) fail(input_, "this PTX file holds no points", "Export it again");
     CloudFile file = builder_->finish("PTX");
-    const Eigen::Vector3d stand = input_.options.scale * matrix_.row(3).head<3>().transpose();
+    const Eigen::Vector3d stand = input_.scale().cwiseProduct(matrix_.row(3).head<3>().transpose());
     if (scans == 1 && is_usable(stand)) file.cloud.viewpoint = stand;
     return file;
   }

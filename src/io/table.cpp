@@ -8,6 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "io/units/length_names.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -123,7 +125,30 @@ std::string bare_name(std::string_view name) {
   return lower_case(trim(name.substr(0, name.find_first_of("[(\"',;"))));
 }
 
+// "x_mm" is x where a column of that name is nothing else.
+std::optional<Role> role_without_unit(std::string_view cell,
+                                      std::optional<Role> (*role_of)(std::string_view name)) {
+  const std::string name = bare_name(cell);
+  if (const auto role = role_of(name)) return role;
+  const std::size_t mark = name.find_last_of("_/ ");
+  if (mark == std::string::npos || !unit_behind_name(name)) return {};
+  return role_of(trim(std::string_view(name).substr(0, mark)));
+}
+
 }  // namespace
+
+void ColumnNames::add(std::string_view cell,
+                      std::optional<Role> (*role_of)(std::string_view name)) {
+  roles.add(role_without_unit(cell, role_of));
+  const auto role = roles[roles.size() - 1];
+  degrees = degrees || (role == Role::y && bare_name(cell).starts_with("lat"));
+  if (const auto unit = unit_behind_name(cell)) add_unit(*unit);
+}
+
+void ColumnNames::add_unit(double metres) {
+  const auto role = roles.size() > 0 ? roles[roles.size() - 1] : std::nullopt;
+  if (role && index_of(*role) < units.size()) units[index_of(*role)] = metres;
+}
 
 namespace {
 
@@ -149,12 +174,14 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
     while (plain.roles.size() <= kMostTextColumns) {
       const auto cell = take_cell(rest, separator);
       if (!cell) break;
-      if (separator == " " && (cell->starts_with('[') || cell->starts_with('('))) continue;  // unit
-      const std::string name = bare_name(*cell);
-      plain.roles.add(role_of(name));
-      fallback.roles.add(fallback_role_of(name));
-      const auto role = fallback.roles[fallback.roles.size() - 1];
-      fallback.degrees = fallback.degrees || (name.starts_with("lat") && role == Role::y);
+      const bool is_unit = separator == " " && (cell->starts_with('[') || cell->starts_with('('));
+      for (ColumnNames* names : {&plain, &fallback}) {
+        if (!is_unit) {
+          names->add(*cell, names == &plain ? role_of : fallback_role_of);
+        } else if (const auto unit = unit_behind_name(*cell)) {
+          names->add_unit(*unit);
+        }
+      }
     }
     const ColumnNames& names = plain.roles.has_point() ? plain : fallback;
     if (!names.roles.has_point() || (begin > 0 && is_prose(names.roles))) continue;

@@ -72,6 +72,13 @@ inline constexpr std::string_view kSeparators[] = {";", "\t", ", ", ",", " "};
 struct ColumnNames {
   Roles roles{};
   bool degrees = false;  ///< x and y are longitude and latitude
+  /// m a unit of x, y and z, where their names tell: "X [mm]".
+  std::array<std::optional<double>, 3> units{};
+
+  /// Adds the next column by its name; `role_of`: what the name stands for.
+  void add(std::string_view cell, std::optional<Role> (*role_of)(std::string_view name));
+  /// The last column that is x, y or z has this unit.
+  void add_unit(double metres);
 };
 
 /// The names in a line that names a point, divided by any separator: x, y and z or, without them,

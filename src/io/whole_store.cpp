@@ -51,6 +51,7 @@ CloudFile read_whole(const PointStore& store, const Input& input) {
   check_memory(input, layout.points);
   CloudFile file;
   file.format = layout.format;
+  file.unit = layout.unit;
   file.declared = layout.points;
   file.cloud.origin = layout.origin;
   Progress progress(input.options, layout.nodes.size());

@@ -13,6 +13,8 @@
 
 #include "io/formats.hpp"
 #include "io/table.hpp"
+#include "io/units/file_unit.hpp"
+#include "io/units/length_names.hpp"
 
 namespace palpate::io {
 namespace {
@@ -23,7 +25,8 @@ struct TextTable {
   std::vector<std::optional<std::size_t>> slots{};  // of each column's value in a Row
   bool named = false;
   bool degrees = false;
-  bool counted = false;  // the first column counts the rows
+  std::array<std::optional<double>, 3> units{};  // m, of x, y and z, as their names tell
+  bool counted = false;                          // the first column counts the rows
 };
 
 bool begins_with_number(std::string_view line) {
@@ -47,6 +50,7 @@ class XyzReader {
       for (const char decimal : {'.', ','}) try_dialect(separator, decimal);
     }
     if (fitting_ == 0) refuse();
+    take_units();
     TableRows rows(input_, begin_, table_.dialect);
     // A row is about as long as the first one; a column takes two characters at least.
     const std::size_t least = std::max(2 * table_.slots.size(), sample_[0].size() / 2);
@@ -76,6 +80,7 @@ class XyzReader {
       const std::string_view line = scanner.next_line();
       if (is_blank_or_comment(line)) {
         if (find_names(line, 0)) comment_ = line;  // CloudCompare: "//X Y Z"
+        input_.unit = in_unit_of_comments(input_, line, "").unit;
       } else if (!header_.empty() || begins_with_number(line)) {
         return;
       } else if (find_names(line, 0)) {
@@ -114,6 +119,7 @@ class XyzReader {
       table.named = true;
       table.dialect.declarer = "the header names";
       table.degrees = names->degrees;
+      table.units = names->units;
       table.roles = names->roles;
     } else if (header_.empty()) {
       guess(table, columns);
@@ -132,6 +138,19 @@ class XyzReader {
     if (fitting < fitting_ || (fitting == fitting_ && !padded)) return;
     fitting_ = fitting;
     table_ = std::move(table);
+  }
+
+  // The unit that names of columns tell; one of x, y or z alone is that of all three.
+  void take_units() {
+    const auto& [x, y, z] = table_.units;
+    const std::string names(trim(header_.empty() ? comment_ : header_));
+    if (x && y && !is_same_unit(*x, *y)) {
+      fail(input_, fmt::format("x and y have two units: \"{}\"", excerpt(names)),
+           "Bring them to one unit");
+    }
+    StatedUnits stated{.plan = x ? x : y, .height = z};
+    if (!stated.plan && !table_.degrees) stated.plan = z;
+    input_.unit = in_stated_unit(input_, stated, fmt::format("\"{}\"", excerpt(names))).unit;
   }
 
   static bool has_columns_of_one_width(std::string_view line) {
@@ -247,8 +266,8 @@ class XyzReader {
     // m a degree on the ellipsoid WGS 84. The builder scales what is a length in the file.
     const double east = 111412.84 * std::cos(turn) - 93.5 * std::cos(3 * turn);
     const double north = 111132.92 - 559.82 * std::cos(2 * turn);
-    row[0] = std::remainder(longitude - zero_->first, 360) * east / input_.options.scale;
-    row[1] = (latitude - zero_->second) * north / input_.options.scale;
+    row[0] = std::remainder(longitude - zero_->first, 360) * east / input_.unit.plan;
+    row[1] = (latitude - zero_->second) * north / input_.unit.plan;
   }
 
   std::string format() const {
@@ -258,7 +277,7 @@ class XyzReader {
                        table_.degrees ? ", degrees made metres" : "");
   }
 
-  const Input& input_;
+  Input input_;                 // in the unit that the file states
   std::size_t begin_ = 0;       // of the first row, or of the number of a scan's points, bytes
   std::size_t first_ = 0;       // of the first row; then of the last number of a scan's points
   std::string_view header_{};   // the line of text before the rows

@@ -117,8 +117,7 @@ class StoreBlocks final : public BlockSupply {
     const StoreSample sample = sample_of(*store);
     if (!options_.facts) options_.facts = measure_facts(sample, options, pose);
     check_radius();
-    const PointStore::Layout& layout = store->layout();
-    all_ = moved(pose_, {layout.lower, layout.lower + Vector3d::Constant(layout.edge)});
+    all_ = moved(pose_, store->layout().box());
     look_over(sample.all);
   }
 

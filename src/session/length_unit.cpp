@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "geometry/inner_box.hpp"
-#include "io/cloud_builder.hpp"
+#include "io/units/file_unit.hpp"
+#include "io/units/length_names.hpp"
 #include "palpate/contact/proxy.hpp"
 
 namespace palpate::session {
@@ -29,17 +30,14 @@ constexpr std::array<LengthUnit, 5> kLengthUnits = {
     {{"mm", 0.001}, {"cm", 0.01}, {"m", 1}, {"inch", 0.0254}, {"ft", 0.3048}}};
 
 std::string name_of_unit(double metres) {
-  const auto unit = std::ranges::find(kLengthUnits, metres, &LengthUnit::metres);
+  const auto unit = std::ranges::find_if(kLengthUnits, [metres](const LengthUnit& each) {
+    return io::is_same_unit(metres, each.metres);
+  });
   return unit == kLengthUnits.end() ? fmt::format("{:g} m", metres) : unit->name;
 }
 
 double farthest(const Box& bounds) {
   return std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
-}
-
-bool is_survey(const Box& bounds) {
-  return farthest(bounds) > 5e4 &&
-         bounds.size().maxCoeff() < 0.5 * bounds.upper.cwiseAbs().maxCoeff();
 }
 
 UnitsGuess survey_units(const Box& bounds) {
@@ -52,16 +50,29 @@ UnitsGuess survey_units(const Box& bounds) {
           "if they are feet (state-plane data often is), give --scale 0.3048"};
 }
 
-// The unit that a file states, which the description of its format repeats. `rescaled`: the
-// caller gave the scale, and so states the unit.
-std::optional<UnitsGuess> stated_units(const std::string& format, bool rescaled) {
-  const bool feet = format.find(", in feet") != std::string::npos;
-  if (!feet && format.find(", in metres") == std::string::npos) return {};
-  if (!feet || rescaled) return UnitsGuess{"metres", "the file says what its unit is", ""};
-  return UnitsGuess{
-      "feet", "the file says so",
-      "give --scale 0.3048, or lengths and forces are those of a cloud 3.28 times as large",
-      0.3048};
+// What is to be said of a unit that the file states.
+UnitsGuess stated_units(const FileUnit& unit) {
+  const std::string name = io::name_of_length(unit.plan);
+  UnitsGuess stated{name, fmt::format("the file says so by {}", unit.words), ""};
+  if (!io::is_same_unit(unit.plan, unit.height)) {
+    stated.units += ", heights in " + io::name_of_length(unit.height);
+  } else if (!unit.height_stated && !io::is_same_unit(unit.plan, 1)) {
+    stated.advice = fmt::format(
+        "it says none of heights, which are taken to be in {}, too: if they are in metres, give "
+        "--scale {:.12g},1",
+        name, unit.plan);
+  }
+  return stated;
+}
+
+// What is to be said of a unit that the size of a mesh makes likely.
+UnitsGuess likely_units(const FileUnit& unit) {
+  const bool metres = unit.plan == 1;
+  return {metres ? "metres" : "millimetres", unit.words,
+          metres ? "if they are millimetres, give --scale 0.001"
+                 : "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 "
+                   "for inches, 0.3048 for feet",
+          unit.plan};
 }
 
 }  // namespace
@@ -95,7 +106,7 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
             "give --scale with the metres per unit of the file, or move the points"};
   }
   if (format.starts_with("glTF")) return {"metres", size + "; glTF is in metres", ""};
-  if (is_survey(bounds)) return survey_units(bounds);
+  if (io::is_survey(bounds)) return survey_units(bounds);
   if (format.starts_with("LAS") || format.starts_with("LAZ")) {
     return {"metres or feet", size + "; LAS files use either",
             "if they are feet, give --scale 0.3048"};
@@ -118,41 +129,23 @@ UnitsGuess guess_units(const Box& bounds, const std::string& format) {
   return {"metres", size + ", plausible for an object or a room in metres", ""};
 }
 
-double likely_unit(std::string_view format, double extent) {
-  constexpr double kShortest = 1;
-  constexpr double kLongest = 2000;
-  const bool unitless = format.starts_with("STL") || format.starts_with("OBJ");
-  return unitless && extent >= kShortest && extent <= kLongest ? 0.001 : 1;
+UnitsGuess units_of(const FileUnit& unit, const std::string& format, const Box& core) {
+  using Source = FileUnit::Source;
+  if (farthest(core) > Proxy::kLargestCoordinate) return guess_units(core, format);
+  if (unit.source == Source::stated) return stated_units(unit);
+  if (unit.source == Source::likely) return likely_units(unit);
+  if (unit.source == Source::assumed) return guess_units(core, format);
+  UnitsGuess given{"metres", "by the scale or the length that was given", ""};
+  if (!unit.words.empty()) given.advice = unit.words + "; remove --scale to use that";
+  return given;
 }
 
-double likely_unit(const CloudFile& file) {
-  if (!file.mesh || file.cloud.empty()) return 1;  // points alone are a scan's
-  return likely_unit(file.format, core_of(file.cloud).size().maxCoeff());
-}
-
-UnitsGuess units_of(const CloudFile& file, const Box& core, const ReadOptions& reading) {
-  if (file.format.ends_with(kTakenAsMillimetres)) {
-    return {"millimetres",
-            fmt::format("the longest side is {:.4g}, and the file says no unit",
-                        1000 * core.size().maxCoeff()),
-            "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 for "
-            "inches, 0.3048 for feet",
-            0.001};
+UnitsGuess units_of(const CloudFile& file, const Box& core) {
+  if (!file.splats || file.unit.source != FileUnit::Source::assumed) {
+    return units_of(file.unit, file.format, core);
   }
-  const bool rescaled = reading.length || reading.scale != 1;
-  const bool near = farthest(core) <= Proxy::kLargestCoordinate;
-  if (const auto stated = stated_units(file.format, rescaled); near && stated) return *stated;
-  if (!file.splats || rescaled) return guess_units(core, file.format);
   return {"unknown", fmt::format("{:.3g} long, and splats have no unit", core.size().maxCoeff()),
           "give --length with the metres of its longest side"};
-}
-
-double take_likely_unit(CloudFile& file) {
-  const double metres = likely_unit(file);
-  if (metres == 1) return metres;
-  io::rescale(file, metres);
-  file.format += kTakenAsMillimetres;
-  return metres;
 }
 
 ViewerControls::Setting unit_setting(const std::string& name, double metres,

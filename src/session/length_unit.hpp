@@ -27,26 +27,14 @@ struct UnitsGuess {
   double metres = 0;   ///< a unit, where it is so likely that a person is asked; 0: it is not
 };
 
-/// What take_likely_unit() adds to the format of a file.
-inline constexpr const char* kTakenAsMillimetres = ", taken as millimetres";
-
-/// Metres a unit of a file that was read as if it were in metres: 0.001 for STL and OBJ, which
-/// state none, where the longest side is 1 to 2000; else 1. Those who draw meshes for printers and
-/// machines draw in millimetres: shorter is no part, and longer no machine's.
-[[nodiscard]] double likely_unit(const CloudFile& file);
-/// The same of faces in a file of that format, whose longest side is `extent`, in its unit.
-[[nodiscard]] double likely_unit(std::string_view format, double extent);
-
 /// Guesses from coordinates as read, in what is taken for metres.
 [[nodiscard]] UnitsGuess guess_units(const Box& bounds, const std::string& format);
 
-/// The same of a cloud whose core_of() is `core`. Splats have no unit unless `reading` gives one.
-[[nodiscard]] UnitsGuess units_of(const CloudFile& file, const Box& core,
-                                  const ReadOptions& reading);
+/// The unit that was used for coordinates whose core_of() is `core`, and what is to be said of it.
+[[nodiscard]] UnitsGuess units_of(const FileUnit& unit, const std::string& format, const Box& core);
 
-/// Rescales a file that was read as if it were in metres, where its likely_unit() is another.
-/// @return metres a unit
-double take_likely_unit(CloudFile& file);
+/// The same of a cloud. Splats have no unit unless one is given.
+[[nodiscard]] UnitsGuess units_of(const CloudFile& file, const Box& core);
 
 /// What a person is asked of a file.
 struct UnitQuestion {

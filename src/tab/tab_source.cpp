@@ -71,9 +71,9 @@ Touched of_file(std::span<const std::byte> bytes, const std::string& name, doubl
   CloudFile file = read_cloud_bytes(bytes, name, reading);
   std::optional<session::UnitQuestion> question;
   if (unit == 0) {
-    unit = session::take_likely_unit(file);
+    unit = file.unit.plan;
     const Box core = session::core_of(file.cloud);
-    const double likely = session::units_of(file, core, reading).metres;
+    const double likely = session::units_of(file, core).metres;
     if (likely > 0) question = {core, likely};
   }
   std::string shown = name_of_file(name);

@@ -60,7 +60,7 @@ TEST(OpenedPlan, AnotherUnitIsOfItsFileAndNotOfTheNext) {
   EXPECT_EQ(inches.surface.proxy.friction.dynamic_coefficient, 0.4);
   const TouchPlan next = plan_of_file(inches, shell.path("b.xyz"));
   EXPECT_EQ(next.sources[0].reading.scale, 1);
-  EXPECT_EQ(next.sources[0].reading.unit, FileReading::Unit::unsaid);
+  EXPECT_FALSE(next.sources[0].reading.scale);
 }
 
 TEST(OpenedPlan, AnExampleIsPreparedAsByDefault) {

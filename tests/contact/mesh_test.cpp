@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 class FeltMesh {
  public:
   explicit FeltMesh(const std::string& bytes, const std::string& name = "mesh.obj") {
-    CloudFile file = read_cloud_bytes(std::as_bytes(std::span(bytes)), name);
+    CloudFile file = read_cloud_bytes(std::as_bytes(std::span(bytes)), name, {.scale = 1});
     spacing_ = file.mesh ? file.mesh->spacing : 0;
     scene_.add("mesh", file.cloud);
   }

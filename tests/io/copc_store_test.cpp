@@ -34,7 +34,7 @@ void expect_whole(const std::string& path, double scale) {
   ReadOptions options;
   options.scale = scale;
   const PointCloud whole = read_cloud(path, options);
-  const auto store = open_store(path, scale);
+  const auto store = open_store(path, {.scale = scale});
   ASSERT_TRUE(store);
   const PointStore::Layout& layout = store->layout();
   EXPECT_GE(layout.points, whole.size());

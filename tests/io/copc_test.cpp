@@ -156,7 +156,7 @@ TEST(Copc, PointsOfARealFileLieInTheCubesOfTheirNodes) {
   ASSERT_TRUE(copc);
   EXPECT_GT(copc->nodes.size(), 1u);
   expect_all_points(bytes, *copc);
-  test::expect_in_cubes(*open_store(path.string(), 1));
+  test::expect_in_cubes(*open_store(path.string()));
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ std::string bytes_of(const std::filesystem::path& path) {
 TEST_F(Data, LasPointsAreThoseOfTheFile) {
   const auto path = data_folder() / "pdal_small/autzen_trim.las";
   const std::string bytes = bytes_of(path);
-  const CloudFile file = read_cloud_file(path);
+  const CloudFile file = read_cloud_file(path, {.scale = 1});
   ASSERT_EQ(file.cloud.size(), 110000u);
   const auto number = [&]<class T>(std::size_t offset, T) {
     T value;
@@ -158,7 +158,7 @@ TEST_F(Data, LidarThroughXzStaysInTheBoundsOfItsHeader) {
   CloudFile file;
   {
     std::jthread unpack([&] { EXPECT_EQ(std::system(command.c_str()), 0); });
-    file = read_cloud_file(pipe);
+    file = read_cloud_file(pipe, {.scale = 1});
   }
   std::filesystem::remove(pipe);
   EXPECT_EQ(file.cloud.size(), 10653336u);

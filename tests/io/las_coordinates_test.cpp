@@ -48,7 +48,7 @@ std::string las_with(const std::string& record) {
 }
 
 std::string format_with(const std::string& record) {
-  return read_text(las_with(record), "a.las").format;
+  return read_text(las_with(record), "a.las", {}).format;
 }
 
 constexpr const char* kProjected =
@@ -74,15 +74,44 @@ TEST(LasCoordinates, TellTheUnitThatTheFileStates) {
   for (const std::uint16_t foot : {9002, 9003}) {
     EXPECT_EQ(format_with(geo_keys({{1024, 1}, {3076, foot}})), without + ", in feet");
   }
-  EXPECT_EQ(format_with(geo_keys({{3076, 9005}})), without) << "of a unit that nobody expects";
+  EXPECT_EQ(format_with(geo_keys({{3076, 9096}})), without + ", in yards");
+  EXPECT_EQ(format_with(geo_keys({{3076, 9001}, {4099, 9003}})),
+            without + ", in metres, heights in feet");
+  EXPECT_EQ(format_with(geo_keys({{3072, 2225}})), without + ", in feet") << "by the system's code";
+  EXPECT_EQ(format_with(geo_keys({{3072, 26910}, {4096, 6360}})),
+            without + ", in metres, heights in feet");
+  EXPECT_EQ(format_with(geo_keys({{3072, 32767}})), without) << "a user's own";
   EXPECT_EQ(format_with(wkt(kProjected)), without + ", in feet");
   EXPECT_EQ(format_with(wkt(R"(PROJCS["a",UNIT["US survey foot",0.3048006096012192]])")),
             without + ", in feet");
-  EXPECT_EQ(format_with(wkt(R"(PROJCS["a",UNIT["metre",1]],VERT_CS["b",UNIT["foot",0.3048]])")),
-            without + ", in metres");
+  EXPECT_EQ(format_with(wkt(R"(COMPD_CS["a",PROJCS["a",UNIT["metre",1]],)"
+                            R"(VERT_CS["b",UNIT["foot",0.3048]]])")),
+            without + ", in metres, heights in feet");
+  EXPECT_EQ(
+      format_with(wkt(R"(PROJCS["a",UNIT["Foot_US",0.3048006096]],VERTCS["b",UNIT["Meter",1]])")),
+      without + ", in feet, heights in metres")
+      << "in a row, as ESRI writes them";
   for (const char* broken : {"PROJCS[UNIT[", "PROJCS[UNIT[\"m\",", "UNIT[\"m\",x]", ""}) {
     EXPECT_EQ(format_with(wkt(broken)), without) << broken;
   }
+}
+
+TEST(LasCoordinates, HeightsHaveAUnitOfTheirOwn) {
+  const std::string bytes = las_with(geo_keys({{3076, 9001}, {4099, 9002}}));
+  const PointCloud plain = read_text(bytes, "a.las").cloud;
+  const CloudFile stated = read_text(bytes, "a.las", {});
+  EXPECT_EQ(stated.unit.plan, 1);
+  EXPECT_EQ(stated.unit.height, 0.3048);
+  const Eigen::Vector3d factors(1, 1, 0.3048);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_LT((stated.cloud.point(i) - plain.point(i).cwiseProduct(factors)).norm(), 1e-4);
+  }
+  const CloudFile given = read_text(bytes, "a.las", {.scale = 0.5, .height_scale = 2});
+  EXPECT_LT(
+      (given.cloud.point(1) - plain.point(1).cwiseProduct(Eigen::Vector3d(0.5, 0.5, 2))).norm(),
+      1e-3);
+  EXPECT_THAT(given.unit.words, HasSubstr("heights in feet"));
+  EXPECT_THAT(refusal(bytes, "a.las", {.height_scale = 2}), HasSubstr("heights alone"));
 }
 
 TEST(LasCoordinates, ReadKeysThatAreCutOff) {

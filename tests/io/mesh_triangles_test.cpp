@@ -44,7 +44,7 @@ Sums sums_of(const TriangleMesh& mesh) {
 
 std::string refused_mesh(const std::string& path) {
   try {
-    (void)read_mesh(path);
+    (void)read_mesh(path, {.scale = 1});
   } catch (const Error& error) {
     return error.what();
   }
@@ -66,7 +66,8 @@ TEST(MeshTriangles, AreThoseOfTheBoxInEveryFormat) {
 TEST(MeshTriangles, APolygonIsCoveredFromACornerThatSeesAllOfIt) {
   const test::Folder folder;
   const std::string corners = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 9 9 nan\n";
-  const Sums sums = sums_of(read_mesh(written(folder, "l.obj", corners + "f 1 2 3 4 5 6\n")));
+  const Sums sums =
+      sums_of(read_mesh(written(folder, "l.obj", corners + "f 1 2 3 4 5 6\n"), {.scale = 1}));
   EXPECT_NEAR(sums.area, 3, 1e-12);
   EXPECT_NEAR(sums.turned.z(), 3, 1e-12);
   const std::string comb =  // no corner sees both of its teeth
@@ -79,7 +80,7 @@ TEST(MeshTriangles, WhatIsLeftOutIsCounted) {
   const test::Folder folder;
   const std::string faces =
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 nan 1\nf 1 2 3\nf 2 3 1\nf 1 2 2\nf 1 2 4\n";
-  const TriangleMesh mesh = read_mesh(written(folder, "a.obj", faces));
+  const TriangleMesh mesh = read_mesh(written(folder, "a.obj", faces), {.scale = 1});
   EXPECT_EQ(mesh.triangles.size(), 1u);
   EXPECT_EQ(mesh.facts.triangles, 1u);
   EXPECT_EQ(mesh.facts.duplicates, 1u);

@@ -20,7 +20,7 @@ class Potree : public testing::Test {
  protected:
   std::shared_ptr<const PointStore> open(const PotreeFiles& files, double scale = 1) const {
     files.write(folder_);
-    return io::open_potree(folder_.path(), scale);
+    return io::open_potree(folder_.path(), {.scale = scale});
   }
 
   test::Folder folder_;

@@ -13,14 +13,15 @@
 
 namespace palpate {
 
+/// Reads bytes; numbers are metres, whatever the file states, unless `options` leave that open.
 inline CloudFile read_text(std::string_view bytes, const std::string& name = "cloud",
-                           const ReadOptions& options = {}) {
+                           const ReadOptions& options = {.scale = 1}) {
   return read_cloud_bytes(std::as_bytes(std::span(bytes)), name, options);
 }
 
 /// What the reader says to bytes that it refuses; "no error" if it takes them.
 inline std::string refusal(std::string_view bytes, const std::string& name = "cloud",
-                           const ReadOptions& options = {}) {
+                           const ReadOptions& options = {.scale = 1}) {
   try {
     (void)read_text(bytes, name, options);
   } catch (const Error& error) {

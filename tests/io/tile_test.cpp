@@ -199,7 +199,7 @@ TEST(Tile, OtherCloudsHaveStepsThatFitTheirLength) {
   }
   folder.write("a.xyz", text);
   TileOptions options = small_options();
-  options.scale = 0.001;
+  options.reading.scale = 0.001;
   tile({folder / "a.xyz"}, folder / "out", options);
   const ReadStore store = read_store(folder / "out");
   EXPECT_DOUBLE_EQ(store.metadata["scale"][0].get<double>(), 1e-8);

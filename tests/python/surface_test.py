@@ -121,8 +121,14 @@ class Files(unittest.TestCase):
             path = os.path.join(folder, "a.obj")
             with open(path, "w", encoding="utf-8") as file:
                 file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-            self.assertEqual(len(pp.read_cloud(path, mesh_spacing=0.1)), 100)
-            self.assertGreater(len(pp.read_cloud(path)), 100_000)
+            self.assertEqual(len(pp.read_cloud(path, scale=1, mesh_spacing=0.1)), 100)
+            with self.assertWarnsRegex(UserWarning, "taken as millimetres.* give scale=1 if"):
+                self.assertAlmostEqual(np.ptp(pp.read_cloud(path).positions[:, 0]), 1e-3, 5)
+            with open(path, "a", encoding="utf-8") as file:
+                file.write("# Unit: inch\n")
+            self.assertAlmostEqual(np.ptp(pp.read_cloud(path).positions[:, 0]), 0.0254, 3)
+            flat = pp.read_cloud(path, scale=(0.5, 2)).positions
+            self.assertAlmostEqual(np.ptp(flat[:, 0]), 0.5, 2)
 
     def test_preparation_reports(self):
         prepared = pp.prepare(pp.synthetic_cloud("sphere"), voxel=0)

@@ -31,30 +31,32 @@ TEST(LengthUnit, UnitsAreGuessedWithAReason) {
 TEST(LengthUnit, AUnitThatTheFileStatesIsNotAskedFor) {
   CloudFile file;
   file.format = "LAS 1.2, point format 0, in feet";
+  file.unit = {0.3048, 0.3048, FileUnit::Source::stated, true, "its GeoTIFF keys"};
   const Box survey = box({635600, 848900, 400}, {3400, 4600, 200});
-  EXPECT_EQ(units_of(file, survey, {}).units, "feet");
-  EXPECT_NE(units_of(file, survey, {}).advice, "");
-  EXPECT_EQ(units_of(file, survey, {.scale = 0.3048}).advice, "");
-  file.format = "LAS 1.2, point format 0, in metres";
-  EXPECT_EQ(units_of(file, survey, {}).advice, "");
+  EXPECT_EQ(units_of(file, survey).units, "feet");
+  EXPECT_EQ(units_of(file, survey).reason, "the file says so by its GeoTIFF keys");
+  EXPECT_EQ(units_of(file, survey).advice, "");
+  EXPECT_EQ(units_of(file, survey).metres, 0) << "it is used";
+  file.unit.height_stated = false;
+  EXPECT_NE(units_of(file, survey).advice.find("give --scale 0.3048,1"), std::string::npos);
+  file.unit.height = 1;
+  EXPECT_EQ(units_of(file, survey).units, "feet, heights in metres");
+  file.unit = {1, 1, FileUnit::Source::given, true, "the file states feet"};
+  EXPECT_NE(units_of(file, survey).advice.find("remove --scale"), std::string::npos);
 }
 
-TEST(LengthUnit, AMeshWithoutAUnitIsInMillimetresWhereAPartOfAMachineCouldBe) {
-  const auto unit = [](const char* format, float longest, bool faces = true) {
-    CloudFile file;
-    if (faces) file.mesh.emplace();
-    file.format = format;
-    file.cloud.positions = {{0, 0, 0}, {longest, 0, 0}, {0, longest / 2, 0}};
-    return likely_unit(file);
-  };
-  EXPECT_EQ(unit("STL, binary", 20), 0.001);
-  EXPECT_EQ(unit("OBJ", 1), 0.001);
-  EXPECT_EQ(unit("STL, ascii", 2000), 0.001);
-  EXPECT_EQ(unit("STL, binary", 0.9f), 1);
-  EXPECT_EQ(unit("OBJ", 2001), 1);
-  EXPECT_EQ(unit("OBJ", 5, false), 1) << "points of a scan";
-  EXPECT_EQ(unit("PLY, ascii", 20), 1);
-  EXPECT_EQ(unit("glTF, binary", 20), 1);
+TEST(LengthUnit, WhatWasTakenIsSaidWithWhatChangesIt) {
+  CloudFile file;
+  file.format = "STL, binary";
+  file.unit = {0.001, 0.001, FileUnit::Source::likely, true, "a reason"};
+  const Box core = box({0, 0, 0}, {0.02, 0.01, 0.01});
+  EXPECT_EQ(units_of(file, core).units, "millimetres");
+  EXPECT_EQ(units_of(file, core).metres, 0.001);
+  EXPECT_NE(units_of(file, core).advice.find("--scale: 1 for metres"), std::string::npos);
+  file.unit.plan = file.unit.height = 1;
+  EXPECT_EQ(units_of(file, core).units, "metres");
+  EXPECT_EQ(units_of(file, core).metres, 1);
+  EXPECT_NE(units_of(file, core).advice.find("give --scale 0.001"), std::string::npos);
 }
 
 TEST(LengthUnit, OutlierSaysNothingOfTheCore) {
@@ -65,17 +67,6 @@ TEST(LengthUnit, OutlierSaysNothingOfTheCore) {
   cloud.positions.push_back({500, -300, 200});
   EXPECT_GT(bounds_of(cloud).size().maxCoeff(), 400);
   EXPECT_NEAR(core_of(cloud).size().maxCoeff(), all.size().maxCoeff(), 2e-3);
-}
-
-TEST(LengthUnit, APartOfAMachineIsRescaledOnce) {
-  CloudFile file;
-  file.mesh.emplace();
-  file.format = "STL, binary";
-  file.cloud.positions = {{0, 0, 0}, {20, 0, 0}, {0, 10, 0}};
-  EXPECT_EQ(take_likely_unit(file), 0.001);
-  EXPECT_FLOAT_EQ(file.cloud.positions[1].x(), 0.02f);
-  EXPECT_EQ(units_of(file, core_of(file.cloud), {}).metres, 0.001);
-  EXPECT_EQ(take_likely_unit(file), 1) << "2 cm long is no part in millimetres";
 }
 
 TEST(LengthUnit, TheSettingAsksForTheLikelyUnit) {

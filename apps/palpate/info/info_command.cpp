@@ -169,7 +169,7 @@ InfoReport measure_cloud(const CloudArgument& argument, const FileReading& optio
   const PointCloud& cloud = report.loaded.file.cloud;
   report.bounds = session::bounds_of(cloud);
   report.core = session::core_of(cloud);
-  report.units = session::units_of(report.loaded.file, report.core, options);
+  report.units = session::units_of(report.loaded.file, report.core);
   report.organised = depth_frame_of(cloud);
   if (report.organised.frame) {
     Source felt(argument.name, {});

@@ -104,6 +104,7 @@ std::string SetupFile::resolved(const std::string& path) const {
 std::string SetupFile::numbers(std::string_view key, const toml::node& node) const {
   std::string joined;
   const toml::array* list = node.as_array();
+  if (node.is_number()) return fmt::format("{}", *node.value<double>());  // one is a list, too
   if (list == nullptr) {
     fail(node.source(),
          fmt::format("'{}' is {}; give a list of numbers in [ ]", key, type_name(node)));

@@ -165,7 +165,7 @@ void complete(SourcePlan& source, const SurfacePlan& surface) {
   depth.farthest = source.farthest.value_or(depth.farthest);
   check_range(depth);
   source.as_cloud = source.as_cloud || surface.paper;
-  require(!source.reading.length || source.reading.scale == 1,
+  require(!source.reading.length || !source.reading.scale,
           "--length chooses the scale; remove --scale or --length");
   std::optional<Policy>& policy = source.options.policy.policy;
   require(policy != Policy::morph || !source.as_cloud,

@@ -111,16 +111,34 @@ std::vector<CloudArgument> split_scans(const CloudArgument& source, std::size_t 
   return scans;
 }
 
+void take_scale(const std::string& text, ReadOptions& options) {
+  constexpr const char* kForm =
+      "metres a unit, e.g. 0.3048, or 0.3048,1 where heights have another";
+  const std::vector<double> scales = parse_numbers(text, 0, "--scale", kForm);
+  for (const double scale : scales) {
+    if (scale > 0) continue;
+    throw UsageError(fmt::format("--scale: {} is not a number above 0; give {}", scale, kForm));
+  }
+  if (scales.size() > 2) {
+    throw UsageError(fmt::format("--scale: '{}' has more than 2 numbers; give {}", text, kForm));
+  }
+  options.scale = scales.front();
+  options.height_scale.reset();
+  if (scales.size() > 1) options.height_scale = scales.back();
+}
+
 void add_reading_options(OptionTable& table, FileReading& o) {
   table.under("Reading", "reading", true);
   table
-      .add("--scale", o.scale, "FACTOR", positive(),
-           "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet (1; STL and OBJ "
-           "files that are 1 to 2000 long are taken to be in millimetres)")
+      .add_text(
+          "--scale", KeyKind::numbers, "FACTOR",
+          [&o](const std::string& text) { take_scale(text, o); },
+          "metres per unit of the file: 0.001 for millimetres, 0.3048 for feet; 0.3048,1 where "
+          "heights are in metres (what the file states; STL and OBJ files that state none and are "
+          "1 to 2000 long are taken to be in millimetres)")
       .only_for({&RunFacts::is_static,
                  "applies only to files; cameras report their own, sequences store it in "
-                 "sequence.json, and bags and topics take ,unit=METRES behind their names"})
-      .option->each([&o](const std::string& /*text*/) { o.unit = FileReading::Unit::given; });
+                 "sequence.json, and bags and topics take ,unit=METRES behind their names"});
   table
       .add("--length", o.length, "METRES", positive(),
            "length of the cloud's longest side, instead of --scale; splats have no unit of their "

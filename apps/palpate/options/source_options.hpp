@@ -16,11 +16,9 @@ class OptionTable;
 /// The kind of a source, from its name and its file's first bytes.
 enum class SourceKind { cloud, depth_image, stream };
 
-/// How a file is read, and where its unit comes from.
+/// How a file is read.
 struct FileReading : ReadOptions {
-  /// Who stated the unit: nobody, an option, or somebody on the page.
-  enum class Unit { unsaid, given, chosen };
-  Unit unit = Unit::unsaid;  ///< of `scale`
+  bool chosen = false;  ///< its scale is of somebody on the page
 };
 
 /// A source that is to be touched: what it is, how it is read, prepared and treated in time.
@@ -34,6 +32,9 @@ struct SourcePlan {
   bool loop = false;                    ///< a sequence starts again at its end
   std::size_t cache = std::size_t{1} << 30U;  ///< bytes of memory for a store on disk; judgement
 };
+
+/// Sets the scale of "0.3048", or of "0.3048,1" with that of heights. @throws UsageError.
+void take_scale(const std::string& text, ReadOptions& options);
 
 /// Registers the options that set how the bytes of a file become points.
 void add_reading_options(OptionTable& table, FileReading& options);

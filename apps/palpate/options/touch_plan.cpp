@@ -253,7 +253,8 @@ TouchPlan plan_of_sources(TouchPlan plan, const std::vector<std::string>& source
 TouchPlan plan_in_unit(TouchPlan plan, std::size_t source, double metres) {
   FileReading& reading = plan.sources.at(source).reading;
   reading.scale = metres;
-  reading.unit = FileReading::Unit::chosen;
+  reading.height_scale.reset();
+  reading.chosen = true;
   reading.length.reset();
   plan.page.wanted = true;
   return plan;
@@ -268,9 +269,9 @@ TouchPlan plan_of_file(TouchPlan plan, const std::string& path) {
     like.options.T_world_sensor.setIdentity();
     if (like.options.prepare.viewpoint) like.options.prepare.orientation = {};
     like.options.prepare.viewpoint.reset();
-    if (like.reading.unit == FileReading::Unit::chosen) {  // of the file before
-      like.reading.unit = FileReading::Unit::unsaid;
-      like.reading.scale = 1;
+    if (like.reading.chosen) {  // of the file before
+      like.reading.chosen = false;
+      like.reading.scale.reset();
     }
   }
   plan = plan_of_choices(std::move(plan), choices);

@@ -12,7 +12,6 @@
 #include "palpate/base/error.hpp"
 #include "palpate/geometry/shapes.hpp"
 #include "palpate/tool/tool_proxy.hpp"
-#include "session/length_unit.hpp"
 
 namespace palpate::app {
 
@@ -136,14 +135,11 @@ NamedTool::NamedTool(ToolPlan plan) : plan_(std::move(plan)) {
   if (mesh_file(plan_).empty()) return;
   const MeshName name = parse_mesh_tool(plan_.text);
   ReadOptions options;
+  options.scale = name.unit;
   mesh_ = read_mesh(name.path, options);
-  const Eigen::Vector3d size = box_around(mesh_.vertices).size();
-  const double unit = name.unit.value_or(session::likely_unit(mesh_.format, size.maxCoeff()));
-  for (Eigen::Vector3d& vertex : mesh_.vertices) vertex *= unit;
-  const bool guessed = !name.unit && unit != 1;
-  unit_ = fmt::format("{}{}, {}", mesh_.format, guessed ? session::kTakenAsMillimetres : "",
-                      words_of(unit * size));
-  check_reach(name, unit, box_around(mesh_.vertices));
+  const Box box = box_around(mesh_.vertices);
+  unit_ = fmt::format("{}, {}", mesh_.format, words_of(box.size()));
+  check_reach(name, mesh_.unit.plan, box);
 }
 
 Tool NamedTool::with_spacing(double spacing) const {

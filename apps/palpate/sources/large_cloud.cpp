@@ -99,7 +99,7 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   using Clock = std::chrono::steady_clock;
   const SourcePlan& plan = result.plan;
   const auto begin = Clock::now();
-  const auto store = open_store(plan.argument.path, plan.reading.scale);
+  const auto store = open_store(plan.argument.path, plan.reading);
   if (!store) return false;
   const PointStore::Layout& layout = store->layout();
   const double whole = kWholeBytes * static_cast<double>(layout.points);
@@ -116,10 +116,9 @@ bool add_store(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.paged = true;
   const Source& source = first_surface(scene, result);
   result.prepared = source.report();
-  if (plan.reading.unit == FileReading::Unit::unsaid) {
-    const PointCloud seen = in_file(*source.state().overview, plan.options.T_world_sensor);
-    result.units = session::guess_units(session::core_of(seen), layout.format);
-  }
+  const PointCloud seen = in_file(*source.state().overview, plan.options.T_world_sensor);
+  result.unit = layout.unit;
+  result.units = session::units_of(layout.unit, layout.format, session::core_of(seen));
   result.prepare_seconds = std::chrono::duration<double>(Clock::now() - opened).count();
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -12,11 +13,11 @@
 #include "apps/palpate/cli/terminal.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/input.hpp"
+#include "io/units/file_unit.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/sensor/depth_camera.hpp"
-#include "session/length_unit.hpp"
 
 namespace palpate::app {
 
@@ -41,7 +42,7 @@ void note_pipe(const std::string& path) {
 
 CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   if (argument.path.starts_with(kSynthetic)) {
-    return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale);
+    return make_synthetic(argument.path.substr(kSynthetic.size()), options.scale.value_or(1));
   }
   note_pipe(argument.path);
   ReadOptions shown = options;
@@ -52,35 +53,6 @@ CloudFile read(const CloudArgument& argument, const ReadOptions& options) {
   };
   CloudFile file = read_cloud_file(argument.path, shown);
   if (options.progress) options.progress(1);
-  return file;
-}
-
-// A file whose unit is guessed, and that can be read twice.
-bool is_unitless_file(const std::string& path) {
-  std::error_code unknown;
-  const std::string type = io::lower_case(std::filesystem::path(path).extension().string());
-  return (type == ".stl" || type == ".obj") && std::filesystem::is_regular_file(path, unknown);
-}
-
-// A spacing of points is in metres, which are fixed once the cloud was read without it.
-CloudFile read_in_likely_unit(const CloudArgument& argument, ReadOptions options) {
-  const double spacing = options.mesh_spacing;
-  const bool twice = spacing > 0 && is_unitless_file(argument.path);
-  if (twice) options.mesh_spacing = 0;
-  CloudFile file = read(argument, options);
-  options.scale = session::likely_unit(file);
-  if (twice) {
-    options.mesh_spacing = spacing;
-    file = read(argument, options);
-  } else if (options.scale != 1 && spacing > 0) {
-    throw Error(fmt::format(
-        "{}: --mesh-spacing is in metres, and the file says no unit; give --scale, too: 0.001 for "
-        "millimetres, 1 for metres",
-        argument.path));
-  } else if (options.scale != 1) {
-    io::rescale(file, options.scale);
-  }
-  if (options.scale != 1) file.format += session::kTakenAsMillimetres;
   return file;
 }
 
@@ -128,9 +100,7 @@ std::unique_ptr<DepthCamera> open(const SourcePlan& source, const Clock* clock) 
 
 LoadedCloud load(const CloudArgument& argument, const FileReading& options) {
   const auto start = std::chrono::steady_clock::now();
-  const bool unsaid = options.unit == FileReading::Unit::unsaid && !options.length;
-  LoadedCloud result{argument,
-                     unsaid ? read_in_likely_unit(argument, options) : read(argument, options), 0};
+  LoadedCloud result{argument, read(argument, options), 0};
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (result.file.cloud.empty()) {
     throw Error(
@@ -139,6 +109,46 @@ LoadedCloud load(const CloudArgument& argument, const FileReading& options) {
                     argument.path, result.file.declared, result.file.dropped));
   }
   return result;
+}
+
+namespace {
+
+// A file whose unit may be a matter of its size.
+bool may_lack_unit(const SourcePlan& source) {
+  const std::string& path = source.argument.path;
+  std::string type = io::extension(path);
+  if (type == ".gz") type = io::extension(path.substr(0, path.size() - type.size()));
+  std::error_code unknown;
+  return source.kind == SourceKind::cloud && !source.reading.scale && !source.reading.length &&
+         (type == ".stl" || type == ".obj") && std::filesystem::is_regular_file(path, unknown);
+}
+
+}  // namespace
+
+std::vector<std::optional<LoadedCloud>> load_in_one_unit(const std::vector<SourcePlan>& sources) {
+  std::vector<std::optional<LoadedCloud>> loaded(sources.size());
+  if (std::ranges::count_if(sources, may_lack_unit) < 2) return loaded;
+  const LoadedCloud* in_metres = nullptr;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (!may_lack_unit(sources[i])) continue;
+    loaded[i] = load(sources[i].argument, sources[i].reading);
+    const FileUnit& unit = loaded[i]->file.unit;
+    if (unit.source == FileUnit::Source::likely && unit.plan == 1) in_metres = &*loaded[i];
+  }
+  for (std::size_t i = 0; i < sources.size() && in_metres != nullptr; ++i) {
+    if (!loaded[i] || loaded[i]->file.unit.source != FileUnit::Source::likely ||
+        loaded[i]->file.unit.plan == 1) {
+      continue;
+    }
+    FileReading reading = sources[i].reading;
+    reading.scale = 1;
+    loaded[i] = load(sources[i].argument, reading);
+    loaded[i]->file.unit.source = FileUnit::Source::likely;
+    loaded[i]->file.unit.words =
+        fmt::format("it states no unit, and {} is in metres by its size", in_metres->argument.name);
+    loaded[i]->file.format += io::words_of(loaded[i]->file.unit);
+  }
+  return loaded;
 }
 
 void check_intensities(const LoadedCloud& loaded) {
@@ -159,7 +169,7 @@ void check_voxel(const LoadedCloud& loaded, const PrepareOptions& options) {
 DepthFrame load_depth_image(const std::string& path, const ReadOptions& options) {
   ReadDepthOptions read;
   read.camera.pinhole = options.intrinsics.value_or(Pinhole{.fx = 1, .fy = 1, .cx = 0, .cy = 0});
-  read.depth_unit = options.depth_unit * options.scale;
+  read.depth_unit = options.depth_unit * options.scale.value_or(1);
   DepthFrame frame = read_depth_frame(path, read);  // first of all it has to be a depth image
   if (!options.intrinsics) {
     throw Error(

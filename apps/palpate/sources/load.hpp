@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/palpate/options/source_options.hpp"
 #include "palpate/base/clock.hpp"
@@ -18,10 +20,15 @@ struct LoadedCloud {
   double seconds = 0;
 };
 
-/// Reads one cloud, file, standard input or synthetic, with progress on standard error; where
-/// nobody stated its unit, in the likely_unit() of its format and size.
+/// Reads one cloud, file, standard input or synthetic, with progress on standard error.
 /// @throws Error as read_cloud_file() does, and when it holds no point.
 [[nodiscard]] LoadedCloud load(const CloudArgument& argument, const FileReading& options);
+
+/// Reads those STL and OBJ files, if there are several, whose unit nobody gave: in one unit, which
+/// is millimetres where each of them is probably in these. The others are empty.
+/// @throws Error as load() does.
+[[nodiscard]] std::vector<std::optional<LoadedCloud>> load_in_one_unit(
+    const std::vector<SourcePlan>& sources);
 
 /// @throws Error when the points have no intensities, which materials are made of.
 void check_intensities(const LoadedCloud& loaded);

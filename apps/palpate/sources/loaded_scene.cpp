@@ -107,12 +107,13 @@ void check_felt(const Source& source, LoadedSource& result) {
   result.state = source.state();
 }
 
-void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
+void add_cloud(Scene& scene, const LoadOptions& options, std::optional<LoadedCloud> read,
+               LoadedSource& result) {
   const SourcePlan& plan = result.plan;
   if (add_store(scene, options, result)) {
     return check_felt(scene.source(scene.size() - 1), result);
   }
-  LoadedCloud loaded = load(plan.argument, plan.reading);
+  LoadedCloud loaded = read ? *std::move(read) : load(plan.argument, plan.reading);
   if (plan.options.prepare.material_from_intensity) check_intensities(loaded);
   check_voxel(loaded, plan.options.prepare);
   result.format = loaded.file.format;
@@ -121,10 +122,8 @@ void add_cloud(Scene& scene, const LoadOptions& options, LoadedSource& result) {
   result.mesh = loaded.file.mesh;
   result.read_seconds = loaded.seconds;
   result.splats = loaded.file.splats;
-  if (plan.reading.unit == FileReading::Unit::unsaid && !plan.reading.length) {
-    result.units =
-        session::units_of(loaded.file, session::core_of(loaded.file.cloud), plan.reading);
-  }
+  result.unit = loaded.file.unit;
+  result.units = session::units_of(loaded.file, session::core_of(loaded.file.cloud));
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
     check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
@@ -257,6 +256,7 @@ bool in_picture_axes(const LoadedScene& loaded) {
 
 LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptions& options) {
   LoadedScene loaded;
+  auto read = load_in_one_unit(sources);
   for (const SourcePlan& plan : sources) {
     LoadedSource& source = loaded.sources.emplace_back();
     source.plan = plan;
@@ -267,7 +267,7 @@ LoadedScene load_sources(const std::vector<SourcePlan>& sources, const LoadOptio
     } else if (is_filtered_image(plan)) {
       add_depth_image(loaded.scene, options.keep_clouds, source);
     } else {
-      add_cloud(loaded.scene, options, source);
+      add_cloud(loaded.scene, options, std::move(read[loaded.sources.size() - 1]), source);
     }
   }
   return loaded;

@@ -43,7 +43,8 @@ struct LoadedSource {
   std::optional<SplatFacts> splats = {};  ///< of a scene of splats
   std::optional<MeshFacts> mesh = {};     ///< of a file with faces
   double read_seconds = 0;
-  session::UnitsGuess units;            ///< of a file that was read without --scale and --length
+  FileUnit unit;                        ///< of a file
+  session::UnitsGuess units;            ///< what is to be said of it
   double prepare_seconds = 0;           ///< wall time of everything between reading and touching
   std::unique_ptr<OnDemand> on_demand;  ///< of a large cloud whose blocks become ready in the run
   bool paged = false;                   ///< it is a store on disk, of which memory holds a part

@@ -9,8 +9,10 @@
 #include "apps/palpate/cli/errors.hpp"
 #include "apps/palpate/cli/output.hpp"
 #include "apps/palpate/cli/terminal.hpp"
+#include "apps/palpate/options/source_options.hpp"
 #include "apps/palpate/report/report.hpp"
 #include "extras/tile/tile.hpp"
+#include "session/length_unit.hpp"
 
 namespace palpate::app {
 
@@ -39,11 +41,11 @@ void add_tile_options(CLI::App& command, TileCommand& tile) {
       ->required()
       ->type_name("FOLDER");
   command
-      .add_option(
-          "--scale", tile.scale,
-          wrapped("metres per unit of the files: 0.001 for millimetres, 0.3048 for feet (1)"))
-      ->type_name("FACTOR")
-      ->check(positive());
+      .add_option_function<std::string>(
+          "--scale", [&tile](const std::string& text) { take_scale(text, tile.reading); },
+          wrapped("metres per unit of the files: 0.001 for millimetres, 0.3048 for feet; 0.3048,1 "
+                  "where heights are in metres (what each file states, or as for touch)"))
+      ->type_name("FACTOR");
   command.add_flag("--force", tile.force,
                    wrapped("replace a store that is complete, or was begun with other inputs"));
   add_json_option(command, tile.json);
@@ -58,7 +60,7 @@ void tile(const TileCommand& command) {
   std::optional<Progress> progress;
   std::string shown;
   io::tile::TileOptions options;
-  options.scale = command.scale;
+  options.reading = command.reading;
   options.force = command.force;
   options.progress = [&](const std::string& step, double done) {
     if (step != shown) progress.emplace(step);
@@ -74,6 +76,12 @@ void tile(const TileCommand& command) {
              "{octree_bytes} bytes, coordinates in steps of {step_m}, {spacing_m} between points "
              "of the root",
              result.bytes, result.step, result.spacing);
+  for (const io::tile::TileResult::Input& input : result.inputs) {
+    const session::UnitsGuess units = session::units_of(input.unit, input.format, input.box);
+    report.item("inputs", {"units", units.advice.empty() ? Mark::plain : Mark::warning},
+                "{name}: {units}, {reason}[; {advice}]", input.name, units.units, units.reason,
+                units.advice);
+  }
   report.print(command.json == "-" ? stderr : stdout);
   write_whole(json, text_of(report.data));
 }

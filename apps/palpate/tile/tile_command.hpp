@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "palpate/io/files.hpp"
+
 namespace CLI {
 class App;
 }
@@ -15,7 +17,7 @@ struct TileCommand {
   std::vector<std::string> inputs;
   std::string out;
   std::string json;
-  double scale = 1;
+  ReadOptions reading;  ///< the scale
   bool force = false;
 };
 

@@ -25,11 +25,6 @@ constexpr std::array<Example, 3> kExamples = {{{"rabbit", "rabbit=synthetic:rabb
                                                {"desk", "desk=camera:simulated:desk"},
                                                {"room", "room=synthetic:room"}}};
 
-// Metres a unit of its file.
-double unit_taken(const LoadedSource& source) {
-  return source.format.ends_with(session::kTakenAsMillimetres) ? 0.001 : source.plan.reading.scale;
-}
-
 // Is it a camera, which nobody else may open meanwhile, or what can be read once alone?
 bool opens_once(const LoadedSource& source) {
   const std::string& path = source.plan.argument.path;
@@ -48,7 +43,7 @@ Setting unit_setting_of(const LoadedSource& source, const Source& felt) {
   const std::shared_ptr<const PointCloud> cloud =
       source.cloud ? source.cloud : felt.state().overview;
   if (source.units.metres > 0 && cloud) question = {session::core_of(*cloud), source.units.metres};
-  return session::unit_setting(source.plan.argument.name, unit_taken(source), question);
+  return session::unit_setting(source.plan.argument.name, source.unit.plan, question);
 }
 
 Setting scene_setting(const LoadedScene& loaded) {

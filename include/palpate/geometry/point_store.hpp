@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/geometry/file_unit.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/shapes.hpp"
 
@@ -28,14 +29,17 @@ class PointStore {
   /// What the header and the tree contain, without any point. Lengths in metres.
   struct Layout {
     std::string format;                                ///< such as "COPC" or "Potree 2.0, DEFAULT"
+    FileUnit unit;                                     ///< that was used
     Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the clouds that are read
     Eigen::Vector3d lower = Eigen::Vector3d::Zero();   ///< corner of the root's cube
     double edge = 0;                                   ///< of the root's cube
-    double spacing = 0;                                ///< of the root's points
-    std::size_t points = 0;                            ///< of all nodes
+    double flatness = 1;      ///< height of cubes over their edge: heights may have another unit
+    double spacing = 0;       ///< of the root's points
+    std::size_t points = 0;   ///< of all nodes
     std::vector<Node> nodes;  ///< in the order in which their points are stored
 
     [[nodiscard]] Box box(std::size_t node) const;  ///< the cube of a node
+    [[nodiscard]] Box box() const;                  ///< and of the root
   };
 
   virtual ~PointStore() = default;

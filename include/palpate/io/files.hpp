@@ -13,13 +13,17 @@
 #include <vector>
 
 #include "palpate/depth/depth_frame.hpp"
+#include "palpate/geometry/file_unit.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/point_store.hpp"
 
 namespace palpate {
 
 struct ReadOptions {
-  double scale = 1;  ///< multiplies the file's coordinates to give metres; depths too
+  /// m a unit of the file, whose depths it multiplies, too. Unset: what the file states, else
+  /// millimetres for a mesh without a unit that may be a part of a machine, else metres.
+  std::optional<double> scale{};
+  std::optional<double> height_scale{};  ///< m a unit of z, where it is not `scale`
   /// m; chooses the scale so that the longest side of the cloud's box, without the outermost half
   /// percent at either end of each axis, is so long.
   std::optional<double> length{};
@@ -52,6 +56,7 @@ struct MeshFacts {
 struct CloudFile {
   PointCloud cloud;
   std::string format;        ///< such as "PLY, binary little endian"
+  FileUnit unit{};           ///< that was used
   std::size_t declared = 0;  ///< points or splats of the file; of a depth image its pixels
   std::size_t dropped = 0;   ///< of them not finite, beyond 10^12 m, or marked invalid
   std::optional<SplatFacts> splats{};  ///< of a scene of splats
@@ -71,6 +76,10 @@ struct CloudFile {
 /// with normals and colours. All scans of an E57 file are joined in the file's frame; "house.e57#2"
 /// is the second one alone, with its viewpoint where a scanner stood there.
 ///
+/// The unit of its coordinates is what `options` say, else what the file states (LAS, COPC and
+/// Potree by their systems of coordinates; comments, and headers of columns), else what is likely;
+/// `unit` of the result says which.
+///
 /// The cloud's origin stays zero where floats around zero lose at most four bits; otherwise it is
 /// a round point near the median of the cloud.
 /// @throws Error that names the file, the position in it (byte or line) and a remedy: also for a
@@ -87,10 +96,10 @@ struct CloudFile {
 /// Any other path alone. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::vector<std::filesystem::path> scans_of(const std::filesystem::path& path);
 
-/// Opens a COPC file or a folder of Potree 2.0 to be read node by node. Coordinates times `scale`
-/// are metres. null: it is no store. @throws Error as read_cloud_file() does.
+/// Opens a COPC file or a folder of Potree 2.0 to be read node by node. `options`: the
+/// scale. null: it is no store. @throws Error as read_cloud_file() does.
 [[nodiscard]] std::shared_ptr<const PointStore> open_store(const std::filesystem::path& path,
-                                                           double scale = 1);
+                                                           const ReadOptions& options = {});
 
 /// The cloud alone.
 [[nodiscard]] PointCloud read_cloud(const std::filesystem::path& path,
@@ -102,6 +111,7 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< indices of vertices
   std::string format{};                                   ///< such as "STL, binary"
   MeshFacts facts{};                                      ///< which faces of the file they are
+  FileUnit unit{};                                        ///< that was used
 };
 
 /// Reads the faces of PLY, OBJ, STL, glTF and GLB, as Tool::mesh() takes them. Left out is what

@@ -45,19 +45,14 @@ std::vector<InputPoint> points_of(const PointCloud& cloud) {
   return points;
 }
 
-TileInput open_whole(const std::string& path, double scale) {
-  const auto read = [path, scale] {
-    ReadOptions options;
-    options.scale = scale;
-    return read_cloud_file(path, options).cloud;
-  };
-  const PointCloud cloud = read();
-  Box box;
-  for (std::size_t i = 0; i < cloud.size(); ++i) box.extend(cloud.point(i));
-  TileInput input{.name = path, .points = cloud.size()};
-  input.origin = box.lower;
-  input.length = box.size().maxCoeff();
-  input.read = [read](std::size_t) { return points_of(read()); };
+TileInput open_whole(const std::string& path, const ReadOptions& options) {
+  const CloudFile file = read_cloud_file(path, options);
+  TileInput input{.name = path, .format = file.format, .unit = file.unit};
+  input.points = file.cloud.size();
+  for (std::size_t i = 0; i < file.cloud.size(); ++i) input.box.extend(file.cloud.point(i));
+  input.origin = input.box.lower;
+  input.length = input.box.size().maxCoeff();
+  input.read = [path, options](std::size_t) { return points_of(read_cloud(path, options)); };
   return input;
 }
 
@@ -91,12 +86,12 @@ double step_for(double length) {
   return step;
 }
 
-TileInput open_input(const std::string& path, double scale) {
+TileInput open_input(const std::string& path, const ReadOptions& options) {
   if (path.starts_with("synthetic:")) return make_terrain(count_in(path));
   if (path == "-") {
     throw Error("standard input cannot be tiled, as it is read more than once. Give a file.");
   }
-  return is_las(split_scan(path).file) ? open_las(path, scale) : open_whole(path, scale);
+  return is_las(split_scan(path).file) ? open_las(path, options) : open_whole(path, options);
 }
 
 }  // namespace palpate::io::tile

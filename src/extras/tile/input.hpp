@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/io/files.hpp"
+
 namespace palpate::io::tile {
 
 struct InputPoint {
@@ -20,7 +23,10 @@ struct InputPoint {
 /// A cloud whose points come in pieces.
 struct TileInput {
   std::string name;
-  std::size_t points = 0;  ///< those that read() leaves out among them
+  std::string format = {};  ///< of a file
+  FileUnit unit = {};       ///< that is used
+  Box box = {};             ///< m, of its points as announced
+  std::size_t points = 0;   ///< those that read() leaves out among them
   std::size_t pieces = 1;
   Eigen::Vector3d steps = Eigen::Vector3d::Zero();  ///< m, of a survey's coordinates; 0: it is none
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; positions are whole steps away
@@ -31,12 +37,12 @@ struct TileInput {
 };
 
 /// The file, or "synthetic:terrain:N". LAS and LAZ are read piece by piece, others whole each time.
-/// `scale`: multiplies a file's coordinates to give metres.
+/// `options`: the scale.
 /// @throws Error that names it and what is wrong.
-[[nodiscard]] TileInput open_input(const std::string& path, double scale);
+[[nodiscard]] TileInput open_input(const std::string& path, const ReadOptions& options);
 
 /// A LAS or LAZ file.
-[[nodiscard]] TileInput open_las(const std::string& path, double scale);
+[[nodiscard]] TileInput open_las(const std::string& path, const ReadOptions& options);
 
 /// So many points of made terrain: hills and houses, points 0.1 m apart, with noise of 3 cm.
 [[nodiscard]] TileInput make_terrain(std::size_t points);

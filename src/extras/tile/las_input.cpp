@@ -19,13 +19,15 @@ constexpr std::size_t kSlice = 65536;  // records that are read at once (judgeme
 
 class LasFile {
  public:
-  LasFile(const std::string& path, double scale)
+  LasFile(const std::string& path, const ReadOptions& options)
       : file_(path),
+        options_(options),
         head_(read_las_head(file_)),
         header_(read_las_header(input())),
-        scale_(scale * header_.scale),
-        offset_(scale * header_.offset) {
-    check_no_degrees(input(), header_);
+        unit_(in_las_unit(input(), header_).unit) {
+    const Eigen::Vector3d scale(unit_.plan, unit_.plan, unit_.height);
+    scale_ = scale.cwiseProduct(header_.scale);
+    offset_ = scale.cwiseProduct(header_.offset);
     if (header_.compressed) {
       chunks_ = laz::read_chunk_table(input(), header_, parts_of(file_));
     } else {
@@ -34,7 +36,11 @@ class LasFile {
   }
 
   [[nodiscard]] TileInput described() const {
-    TileInput input{.name = file_.name(), .points = header_.points, .pieces = chunks_.size()};
+    TileInput input{.name = file_.name(), .format = header_.name(), .unit = unit_};
+    input.points = header_.points;
+    input.pieces = chunks_.size();
+    const Eigen::Vector3d scale(unit_.plan, unit_.plan, unit_.height);
+    input.box = {scale.cwiseProduct(header_.lower), scale.cwiseProduct(header_.upper)};
     input.steps = scale_;
     input.origin = offset_;
     return input;
@@ -91,6 +97,7 @@ class LasFile {
   ReadOptions options_;
   Bytes head_;
   LasHeader header_;
+  FileUnit unit_;
   Eigen::Vector3d scale_;           // m
   Eigen::Vector3d offset_;          // m
   std::vector<laz::Chunk> chunks_;  // of a LAS file: slices
@@ -98,8 +105,8 @@ class LasFile {
 
 }  // namespace
 
-TileInput open_las(const std::string& path, double scale) {
-  const auto file = std::make_shared<const LasFile>(path, scale);
+TileInput open_las(const std::string& path, const ReadOptions& options) {
+  const auto file = std::make_shared<const LasFile>(path, options);
   TileInput input = file->described();
   input.read = [file](std::size_t piece) { return file->read(piece); };
   return input;

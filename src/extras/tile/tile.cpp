@@ -24,7 +24,9 @@ constexpr const char* kMetadata = "metadata.json";
 // Describes what makes the bytes of a store what they are: the inputs' names in the first line.
 std::string job_of(const std::vector<std::string>& inputs, const TileOptions& options) {
   std::string names;
-  std::string details = fmt::format("scale {}, {} points a chunk, {} a leaf\n", options.scale,
+  const ReadOptions& reading = options.reading;
+  std::string details = fmt::format("scale {}, {} of heights, {} points a chunk, {} a leaf\n",
+                                    reading.scale.value_or(0), reading.height_scale.value_or(0),
                                     options.chunk_points, options.leaf_points);
   for (const std::string& path : inputs) {
     names += (names.empty() ? "" : " ") + path;
@@ -51,14 +53,24 @@ class Tiler {
     refuse_others_files();
     const bool goes_on = was_begun();
     std::vector<TileInput> inputs;
-    for (const std::string& path : paths_) inputs.push_back(open_input(path, options_.scale));
+    for (const std::string& path : paths_) inputs.push_back(open_input(path, options_.reading));
     const Plan plan = make_plan(inputs, options_.chunk_points, reporter("counting"));
     if (!goes_on) begin();
     if (!fs::exists(work_ / kMetadata)) build(inputs, plan);
     publish();
     constexpr double kSpacings = 128;  // along the edge of a node (format)
-    return {plan.points, plan.dropped, fs::file_size(out_ / "octree.bin"), plan.frame.step,
-            plan.frame.edge() / kSpacings};
+    TileResult result{{},
+                      plan.points,
+                      plan.dropped,
+                      fs::file_size(out_ / "octree.bin"),
+                      plan.frame.step,
+                      plan.frame.edge() / kSpacings};
+    for (const TileInput& input : inputs) {
+      if (!input.format.empty()) {
+        result.inputs.push_back({input.name, input.format, input.unit, input.box});
+      }
+    }
+    return result;
   }
 
  private:

@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "palpate/geometry/shapes.hpp"
+#include "palpate/io/files.hpp"
+
 namespace palpate::io::tile {
 
 struct TileOptions {
-  double scale = 1;                      ///< multiplies coordinates to give metres
+  ReadOptions reading = {};              ///< of which the scale is used
   bool force = false;                    ///< replace what is there, whole or not
   std::size_t chunk_points = 8'000'000;  ///< sorted at once (judgement: 0.5 GB for each)
   std::size_t leaf_points = 16'384;      ///< a page of Potree takes so many at once (judgement)
@@ -23,6 +26,13 @@ struct TileOptions {
 };
 
 struct TileResult {
+  struct Input {
+    std::string name;
+    std::string format;
+    FileUnit unit;  ///< that was used
+    Box box;        ///< m, of its points as announced
+  };
+  std::vector<Input> inputs = {};  ///< files
   std::size_t points = 0;
   std::size_t dropped = 0;  ///< marked as not to be used, or not finite
   std::uint64_t bytes = 0;  ///< of octree.bin

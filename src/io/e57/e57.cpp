@@ -209,7 +209,7 @@ CloudFile read_e57(const Input& input) {
   }
   CloudFile file = builder.finish(format_name(chosen, contents));
   const E57Scan& first = *chosen.front();
-  const Eigen::Vector3d stand = input.options.scale * first.T_file_scan.translation();
+  const Eigen::Vector3d stand = input.scale().cwiseProduct(first.T_file_scan.translation());
   if (chosen.size() == 1 && seen_from_origin(first) && is_usable(stand))
     file.cloud.viewpoint = stand;
   return file;

@@ -11,6 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "io/mesh/face_sampler.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
@@ -53,6 +54,7 @@ struct FaceSurvey {
   Box box;
   double area = 0;
   double samples = 0;  // areas as seen along the axis that each face is sampled along
+  FileUnit unit;
 };
 
 double longest_edge(const Mesh& mesh, std::span<const std::uint32_t> face) {
@@ -67,7 +69,7 @@ double longest_edge(const Mesh& mesh, std::span<const std::uint32_t> face) {
 
 bool has_area(const Input& input, const Mesh& mesh, std::span<const std::uint32_t> face) {
   for (const std::uint32_t corner : face) {
-    if (!is_usable(input.options.scale * mesh.vertices[corner].head<3>())) return false;
+    if (!is_usable(input.scale().cwiseProduct(mesh.vertices[corner].head<3>()))) return false;
   }
   const double twice_area = face_normal(mesh, face).norm();
   const double edge = longest_edge(mesh, face);
@@ -123,6 +125,9 @@ FaceSurvey survey_faces(const Input& input, const Mesh& mesh) {
     survey.samples += twice.cwiseAbs().maxCoeff() / 2;
     for (const std::uint32_t corner : face) survey.box.extend(mesh.vertices[corner].head<3>());
   }
+  const bool open = input.unit.source == FileUnit::Source::assumed && !input.options.length;
+  const bool guessed = open && !mesh.has_unit && !survey.used.empty();
+  survey.unit = guessed ? likely_unit(survey.box) : input.unit;
   return survey;
 }
 
@@ -146,7 +151,7 @@ bool vertices_suffice(const Mesh& mesh, const FaceSurvey& survey) {
 
 // The requested spacing, or a fitting one. In the file's unit.
 double choose_spacing(const Input& input, const FaceSurvey& survey) {
-  const double requested = input.options.mesh_spacing / input.options.scale;
+  const double requested = input.options.mesh_spacing / survey.unit.plan;
   if (!(requested > 0)) return fitting_spacing(survey);
   const double least =
       std::max(std::sqrt(survey.samples / kMostAsked), survey.box.size().norm() / kFinestAsked);
@@ -154,7 +159,7 @@ double choose_spacing(const Input& input, const FaceSurvey& survey) {
   fail(input,
        fmt::format("faces sampled every {:.3g} m would be more than {} million points",
                    input.options.mesh_spacing, kMostAsked / 1e6),
-       fmt::format("Give a spacing of {:.2g} m or more", 1.1 * input.options.scale * least));
+       fmt::format("Give a spacing of {:.2g} m or more", 1.1 * survey.unit.plan * least));
 }
 
 void check_bounds(const Input& input, const FaceSampler& sampler, double most, double requested) {
@@ -170,9 +175,17 @@ void check_bounds(const Input& input, const FaceSampler& sampler, double most, d
   if (sampler.work_spent()) fail(input, "its faces have too many corners in a row", kSimplify);
 }
 
+// The file in the unit that its faces probably have.
+CloudFile in_unit(const FaceSurvey& survey, CloudFile file) {
+  const double factor = survey.unit.plan / file.unit.plan;
+  if (factor != 1) rescale(file, factor);
+  file.unit = survey.unit;
+  return file;
+}
+
 CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::string format) {
   const double spacing = choose_spacing(input, survey);
-  survey.facts.spacing = input.options.scale * spacing;
+  survey.facts.spacing = input.unit.plan * spacing;
   Columns columns = mesh.columns;
   columns.normals = true;
   const Lattice lattice(survey.box, spacing);
@@ -195,7 +208,7 @@ CloudFile sample(const Input& input, const Mesh& mesh, FaceSurvey& survey, std::
   CloudFile file = builder.finish(std::move(format));
   file.declared = mesh.vertices.size();
   file.mesh = survey.facts;
-  return file;
+  return in_unit(survey, std::move(file));
 }
 
 void require_faces(const Input& input, const Mesh& mesh, const FaceSurvey& survey) {
@@ -217,6 +230,7 @@ CloudFile hand_over(const Input& input, const Mesh& mesh, const FaceSurvey& surv
   CloudFile file;
   file.format = std::move(format);
   file.mesh = survey.facts;
+  file.unit = survey.unit;
   return file;
 }
 
@@ -255,7 +269,7 @@ CloudFile choose_cloud(const Input& input, const Mesh& mesh, CloudFile vertices)
     return sample(input, mesh, survey, std::move(vertices.format));
   }
   vertices.mesh = survey.facts;
-  return vertices;
+  return in_unit(survey, std::move(vertices));
 }
 
 }  // namespace palpate::io

@@ -25,6 +25,7 @@ struct Mesh {
   std::vector<std::size_t> ends{};       ///< where each face ends in `corners`
   Columns columns{};                     ///< colours and intensities that vertices have
   ColorScale color_scale = ColorScale::byte;
+  bool has_unit = true;  ///< false: the format has none
 
   /// The next vertex becomes a corner of the face that close_face() ends.
   void add_corner(std::size_t vertex) { corners.push_back(static_cast<std::uint32_t>(vertex)); }

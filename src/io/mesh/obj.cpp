@@ -12,6 +12,7 @@
 #include "io/input.hpp"
 #include "io/mesh/mesh.hpp"
 #include "io/text_scanner.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
@@ -151,7 +152,7 @@ class ObjReader {
   TextScanner vertices_;
   TextScanner normals_;
   Values values_{};
-  Mesh mesh_{.color_scale = ColorScale::guess};
+  Mesh mesh_{.color_scale = ColorScale::guess, .has_unit = false};
 };
 
 // The text with blanks instead of each backslash before a line's end, and of that end, but not in
@@ -173,7 +174,8 @@ std::string join_lines(std::string_view text) {
 
 }  // namespace
 
-CloudFile read_obj(const Input& input) {
+CloudFile read_obj(const Input& given) {
+  const Input input = in_unit_of_comments(given, given.text(), "#");
   const std::string joined = join_lines(input.text());
   if (joined.empty()) return ObjReader(input, input).run();
   const Input lines{std::as_bytes(std::span(joined)), input.name, input.options};

@@ -9,6 +9,7 @@
 #include "io/input.hpp"
 #include "io/mesh/mesh.hpp"
 #include "io/text_scanner.hpp"
+#include "io/units/file_unit.hpp"
 
 namespace palpate::io {
 namespace {
@@ -44,7 +45,7 @@ CloudFile read_binary(const Input& input) {
                                             (size - kHead) / kTriangle, count_of(input)),
                  "Download or export it again");
   }
-  Mesh mesh;
+  Mesh mesh{.has_unit = false};
   const std::size_t count = count_of(input);
   mesh.vertices.reserve(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -115,7 +116,7 @@ class StlTextReader {
   TextScanner scanner_;
   std::size_t begin_ = 0;  // of the line
   std::size_t open_ = 0;   // corners of the face that has not ended yet
-  Mesh mesh_;
+  Mesh mesh_{.has_unit = false};
 };
 
 }  // namespace
@@ -124,7 +125,10 @@ bool is_stl(const Input& input) {
   return has_binary_size(input) || starts_as_text(input) || extension(input.name) == ".stl";
 }
 
-CloudFile read_stl(const Input& input) {
+CloudFile read_stl(const Input& given) {
+  const std::string_view head = given.text().substr(0, kComment);
+  const Input input = in_unit_of_comments(
+      given, head.substr(0, head.find_first_of(std::string_view("\0\r\n", 3))), "");
   if (!has_binary_size(input) && starts_as_text(input)) return StlTextReader(input).run();
   return read_binary(input);
 }

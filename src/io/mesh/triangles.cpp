@@ -60,7 +60,7 @@ TriangleMesh triangles_of(const Input& input, const Mesh& mesh, std::string form
     std::uint32_t& number = numbers[vertex];
     if (number == kUnused) {
       number = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.emplace_back(input.options.scale * mesh.vertices[vertex].head<3>());
+      result.vertices.emplace_back(input.scale().cwiseProduct(mesh.vertices[vertex].head<3>()));
     }
     return number;
   };

@@ -45,6 +45,9 @@ class MetadataReader {
     metadata_.offset = vector("offset");
     metadata_.scale = vector("scale");
     metadata_.spacing = number("spacing");
+    const json* projection = find("projection");
+    if (projection != nullptr && projection->is_string())
+      metadata_.projection = projection->get<std::string>();
     if (!(metadata_.scale.minCoeff() > 0)) wrong("scale must be above zero");
     read_cube();
     read_encoding();

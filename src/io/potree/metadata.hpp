@@ -27,6 +27,7 @@ struct Metadata {
   Eigen::Vector3d lower;        ///< corner of the root's cube
   double edge = 0;              ///< of the root's cube
   double spacing = 0;           ///< of the root's points
+  std::string projection;       ///< the system of its coordinates; empty: unknown
   bool packed = false;  ///< BROTLI: attribute after attribute, packed; DEFAULT: point by point
   std::size_t point_size = 0;  ///< bytes of a point, unpacked
   Attribute position;

@@ -16,6 +16,7 @@
 #include "io/potree/hierarchy.hpp"
 #include "io/potree/metadata.hpp"
 #include "io/potree/points.hpp"
+#include "io/units/file_unit.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::io {
@@ -41,17 +42,20 @@ double largest_of(const std::optional<potree::Attribute>& attribute,
 class PotreeStore final : public PointStore {
  public:
   PotreeStore(const fs::path& folder, const potree::Metadata& metadata,
-              std::vector<StoredNode> nodes, double scale)
+              std::vector<StoredNode> nodes, const Input& input)
       : metadata_(metadata),
-        scale_(scale * metadata.scale),
-        offset_(scale * metadata.offset),
+        scale_(input.scale().cwiseProduct(metadata.scale)),
+        offset_(input.scale().cwiseProduct(metadata.offset)),
         nodes_(std::move(nodes)),
         octree_(folder / "octree.bin") {
     check_nodes(nodes_, metadata_, octree_.name(), octree_.size());
-    layout_.format = fmt::format("Potree 2.0, {}", metadata_.packed ? "BROTLI" : "DEFAULT");
-    layout_.lower = scale * metadata_.lower;
-    layout_.edge = scale * metadata_.edge;
-    layout_.spacing = scale * metadata_.spacing;
+    layout_.unit = input.unit;
+    layout_.format = fmt::format("Potree 2.0, {}{}", metadata_.packed ? "BROTLI" : "DEFAULT",
+                                 words_of(input.unit));
+    layout_.lower = input.scale().cwiseProduct(metadata_.lower);
+    layout_.edge = input.unit.plan * metadata_.edge;
+    layout_.flatness = input.unit.height / input.unit.plan;
+    layout_.spacing = input.unit.plan * metadata_.spacing;
     if (!is_usable(layout_.lower) || !(layout_.edge >= kSmallestEdge) ||
         !(layout_.edge <= kLargestCoordinate)) {
       throw Error(fmt::format("{}: no cloud is {} m long or so far away. Give another scale.",
@@ -142,7 +146,7 @@ bool is_potree(const fs::path& path) {
   return file.filename() == kMetadata && fs::is_regular_file(file, unknown);
 }
 
-std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale) {
+std::shared_ptr<const PointStore> open_potree(const fs::path& path, const ReadOptions& options) {
   const fs::path folder = path.filename() == kMetadata ? path.parent_path() : path;
   std::error_code unknown;
   if (!fs::is_regular_file(folder / kMetadata, unknown)) {
@@ -150,16 +154,21 @@ std::shared_ptr<const PointStore> open_potree(const fs::path& path, double scale
         fmt::format("{}: is a folder and holds no metadata.json, so it is no Potree store. {}",
                     folder.string(), instead_of(folder)));
   }
-  const ReadOptions options;
   const auto input_of = [&](const Bytes& bytes, const char* name) {
     return Input{bytes.span(), (folder / name).string(), options};
   };
   const Bytes description = read_bytes(folder / kMetadata);
   const potree::Metadata metadata = potree::read_metadata(input_of(description, kMetadata));
+  const StatedUnits stated = units_in_projection(metadata.projection);
+  const Input input = in_stated_unit(input_of(description, kMetadata), stated, "its projection");
+  if (stated.degrees) {
+    fail(input, "its coordinates are degrees of longitude and latitude, as it says",
+         "Make it again of a cloud that is projected to metres");
+  }
   const Bytes hierarchy = read_bytes(folder / "hierarchy.bin");
   std::vector<StoredNode> nodes =
       potree::read_hierarchy(input_of(hierarchy, "hierarchy.bin"), metadata);
-  return std::make_shared<PotreeStore>(folder, metadata, std::move(nodes), scale);
+  return std::make_shared<PotreeStore>(folder, metadata, std::move(nodes), input);
 }
 
 }  // namespace palpate::io

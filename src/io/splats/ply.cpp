@@ -64,9 +64,7 @@ SplatFile read_trained(const Input& input, const PlyHeader& header, const PlyEle
   rows.splats.reserve(most_rows(input, header, element));
   PlyTable table = table_of(element, kTrained);
   table.row[kThirdScale] = -std::numeric_limits<double>::infinity();  // a flat splat has none
-  table.take = [&](std::span<const double> row) {
-    rows.add(trained_splat(row), input.options.scale);
-  };
+  table.take = [&](std::span<const double> row) { rows.add(trained_splat(row), input.unit.plan); };
   rows.format += unused(read_ply_rows(input, header, {&table, 1}));
   return rows;
 }
@@ -131,7 +129,7 @@ SplatFile read_packed(const Input& input, const PlyHeader& header, const PlyElem
     std::ranges::copy(row, chunks.emplace_back().begin());
   };
   tables[1].take = [&](std::span<const double> row) {
-    rows.add(packed_splat(row, chunks[done++ / kChunkSize]), input.options.scale);
+    rows.add(packed_splat(row, chunks[done++ / kChunkSize]), input.unit.plan);
   };
   rows.splats.reserve(most_rows(input, header, element));
   rows.format += unused(read_ply_rows(input, header, tables));

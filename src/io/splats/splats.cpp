@@ -68,10 +68,14 @@ void move_origin(PointCloud& cloud) {
 
 CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   constexpr double kReading = 0.3;  // of the time, about (measured)
+  if (input.unit.plan != input.unit.height) {
+    fail(input, "splats have one unit along all axes", "Give one scale for x, y and z");
+  }
   ReadOptions part = input.options;
   const auto& report = input.options.progress;
   if (report) part.progress = [&](double done) { report(kReading * done); };
-  SplatFile rows = read({input.bytes, input.name, part});
+  SplatFile rows =
+      read({.bytes = input.bytes, .name = input.name, .options = part, .unit = input.unit});
   check_not_empty(input, rows.splats.size(), rows.dropped);
   SplatShell shell = shell_of(rows.splats, [&](double done) {
     if (report) report(kReading + (1 - kReading) * done);
@@ -84,6 +88,7 @@ CloudFile shell_file(const Input& input, SplatFile (*read)(const Input&)) {
   file.cloud = std::move(shell.cloud);
   move_origin(file.cloud);
   file.format = std::move(rows.format);
+  file.unit = input.unit;
   file.declared = rows.splats.size() + rows.dropped;
   file.dropped = rows.dropped;
   file.splats = {.visible = shell.visible,
@@ -115,7 +120,7 @@ SplatFile read_dot_splat(const Input& input) {
               .rotation = {turn(0), turn(1), turn(2), turn(3)},
               .opacity = static_cast<float>(byte(3)) / 255,
               .color = {byte(0), byte(1), byte(2)}},
-             input.options.scale);
+             input.unit.plan);
     progress.at(at);
   }
   return file;

@@ -219,7 +219,7 @@ SplatFile read_spz(const Input& input) {
   file.splats.reserve(header.count);
   Progress progress(input.options, header.count);
   for (std::size_t i = 0; i < header.count; ++i) {
-    file.add(splat_at(header, columns, i), input.options.scale);
+    file.add(splat_at(header, columns, i), input.unit.plan);
     progress.at(i);
   }
   return file;
