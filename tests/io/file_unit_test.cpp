@@ -86,7 +86,7 @@ TEST(FileUnit, CommentsOfAMeshStateIt) {
       EXPECT_NEAR(file.unit.plan, metres, 1e-12);
       float longest = 0;
       for (const auto& p : file.cloud.positions) longest = std::max(longest, p.x());
-      EXPECT_NEAR(longest + static_cast<float>(file.cloud.origin.x()), size * metres,
+      EXPECT_NEAR(static_cast<double>(longest) + file.cloud.origin.x(), size * metres,
                   0.01 * size * metres);
     }
   }

@@ -63,8 +63,8 @@ class Writer {
     const std::string base =
         R"(PROJCRS["a",BASEGEOGCRS["b",DATUM["c",ELLIPSOID["d",6378137,298,LENGTHUNIT["metre",1]]]],)"
         R"(CONVERSION["e",METHOD["f"],PARAMETER["g",1,LENGTHUNIT["metre",1]]],CS[Cartesian,2],)";
-    if (below(2) == 0) return base + R"(AXIS["(E)",east],AXIS["(N)",north],)" + length + "]";
-    return base + fmt::format(R"(AXIS["(E)",east,{0}],AXIS["(N)",north,{0}]])", length);
+    if (below(2) == 0) return base + R"(AXIS["E",east],AXIS["N",north],)" + length + "]";
+    return base + fmt::format(R"(AXIS["E",east,{0}],AXIS["N",north,{0}]])", length);
   }
 
   std::string height(const NamedUnit& named) {
@@ -132,15 +132,15 @@ TEST(Wkt, DegreesAreFoundInEveryDialect) {
     EXPECT_TRUE(units_in_projection(text).degrees) << text;
   }
   const StatedUnits geocentric = units_in_projection(
-      R"(GEODCRS["a",DATUM["b"],CS[Cartesian,3],AXIS["(X)",geocentricX],LENGTHUNIT["metre",1]])");
+      R"(GEODCRS["a",DATUM["b"],CS[Cartesian,3],AXIS["X",geocentricX],LENGTHUNIT["metre",1]])");
   EXPECT_FALSE(geocentric.degrees);
   EXPECT_EQ(geocentric.plan, 1);
 }
 
 TEST(Wkt, AThreeDimensionalSystemStatesHeights) {
   const StatedUnits stated = units_in_projection(
-      R"(PROJCRS["a",BASEGEOGCRS["b"],CS[Cartesian,3],AXIS["(E)",east,LENGTHUNIT["foot",0.3048]],)"
-      R"(AXIS["(N)",north,LENGTHUNIT["foot",0.3048]],AXIS["(h)",up,LENGTHUNIT["metre",1]]])");
+      R"(PROJCRS["a",BASEGEOGCRS["b"],CS[Cartesian,3],AXIS["E",east,LENGTHUNIT["foot",0.3048]],)"
+      R"(AXIS["N",north,LENGTHUNIT["foot",0.3048]],AXIS["h",up,LENGTHUNIT["metre",1]]])");
   EXPECT_EQ(stated.plan, 0.3048);
   EXPECT_EQ(stated.height, 1);
 }
@@ -174,7 +174,7 @@ TEST(Wkt, WhatIsCutOrDamagedIsNoTree) {
     std::string flipped = text;
     flipped[writer.below(text.size())] = static_cast<char>(writer.below(256));
     const StatedUnits stated = units_in_projection(flipped);
-    if (stated.plan) EXPECT_GT(*stated.plan, 0);
+    EXPECT_GT(stated.plan.value_or(1), 0);
   }
 }
 
