@@ -83,10 +83,12 @@ Input in_stated_unit(Input input, const StatedUnits& stated, std::string words) 
 
 Input in_unit_of_comments(const Input& input, std::string_view text, std::string_view mark) {
   Comments comments(mark);
-  while (!text.empty() && comments.goes_on()) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    comments.look_at(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
+  std::size_t at = text.find(mark);  // marks are sought, since faces may be millions of lines
+  while (at < text.size() && comments.goes_on()) {
+    const std::size_t begin = text.find_last_of("\r\n", at) + 1;  // npos + 1 is 0
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    comments.look_at(text.substr(begin, end - begin));
+    at = end < text.size() ? text.find(mark, end + 1) : text.size();
   }
   return comments.applied_to(input);
 }
