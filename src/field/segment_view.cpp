@@ -26,6 +26,8 @@ constexpr float kMeets = 1.1f;  // R; judgement
 // What the eye sees (docs/method.md 2.7); all are judgement.
 constexpr float kView = 1.2f;  // R beyond the nearest point, within which points count
 constexpr double kFades = 1;   // R of travel on which what was seen fades to a third
+// R from a surface within which a known side counts. Measured: in creases it is up to 0.08 R high.
+constexpr double kDoubt = 0.1;
 
 /// The index of a component, which is added if it is new. Components are never more than segments,
 /// so there is room for them.
@@ -134,6 +136,26 @@ void choose_eye(SegmentView& view, const Stance& stance) noexcept {
   view.eye.view = std::sqrt(closest) + kView * view.radius;
 }
 
+/// The balanced surface of a component around the eye (docs/method.md 2.4).
+struct Balanced {
+  double weight = 0, heights = 0;  // heights: of the eye over the points' planes
+  Vector3d normals = Vector3d::Zero();
+  Vector3d backs = Vector3d::Zero();  // from the points to the eye
+
+  void add(const Point& point, const Vector3f& back, float squared) noexcept {
+    const double w = static_cast<double>(point.confidence) * weight_within(squared, point.radius);
+    weight += w;
+    heights += w * static_cast<double>(point.normal.dot(back));
+    normals += w * point.normal.cast<double>();
+    backs += w * back.cast<double>();
+  }
+  /// What speaks for the side of the normals, in R: the eye's, or within kDoubt the known one.
+  [[nodiscard]] double seen(bool known, double radius) const noexcept {
+    const double height = 0.5 * (heights + normals.dot(backs) / weight) / radius;
+    return known && std::abs(height) < kDoubt * weight ? kDoubt * weight : height;
+  }
+};
+
 }  // namespace
 
 SegmentTable::SegmentTable() {
@@ -238,9 +260,9 @@ bool SegmentView::is_above(const Point& point) const noexcept {
   return height_over(*this, point) >= rise_of(*this, point);
 }
 
-/// Sums what speaks for the sides that the eye sees. What was seen on the path here counts less the
-/// longer it is; it counts since close to a sparse bend few points show a side, and the planes
-/// of some are wrong.
+/// Sums what speaks for the sides that the eye sees: close to points their surface, as the planes
+/// of most are higher than an eye close to a bulge. What was seen on the path here counts less the
+/// longer it is: close to a sparse bend few points show a side, and the planes of some are wrong.
 void SegmentView::look(const Stance& stance, double travel, bool from_behind) noexcept {
   const auto decided = [this](const Segment& segment) {
     return is_decided(segment, table.components[segment.component]);
@@ -249,6 +271,7 @@ void SegmentView::look(const Stance& stance, double travel, bool from_behind) no
   choose_eye(*this, stance);
   const double kept = std::exp(-travel / (kFades * static_cast<double>(radius)));
   std::array<double, kNone> seen{};
+  std::array<Balanced, kNone> around{};
   for (const Point& p : points) {
     Segment& segment = table.segments[p.segment];
     if (decided(segment)) continue;
@@ -263,9 +286,12 @@ void SegmentView::look(const Stance& stance, double travel, bool from_behind) no
     const float over = from_behind && is_one_sided(p) ? height - rise_of(*this, p) : height;
     const double sharp = std::max(0.f, std::abs(over) - kUnsharp * p.residual) / length;
     seen[segment.component] += w * sharp * (over < 0 ? -1 : 1);
+    if (squared < p.radius * p.radius) around[segment.component].add(p, back, squared);
   }
   for (std::size_t k = 0; k < table.components.size(); ++k) {
     Component& component = table.components[k];
+    if (around[k].weight > 0 && !component.is_one_sided())
+      seen[k] = around[k].seen(component.outward, static_cast<double>(radius));
     const bool fades = component.seen != 0 && !component.is_one_sided();
     component.seen = fades ? kept * component.seen + (1 - kept) * seen[k] : seen[k];
   }

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "palpate/contact/proxy.hpp"
+#include "palpate/io/files.hpp"
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/scene/scene_field.hpp"
@@ -99,6 +102,19 @@ TEST(FirstStep, InFrontOfASphereIsInFront) {
 
 TEST(FirstStep, InFrontOfATorusIsInFront) {
   expect_free_above(synthetic_cloud("torus"));
+}
+
+/// Its ears bend within R, and its legs meet the body in creases.
+TEST(FirstStep, InFrontOfARabbitIsInFront) {
+  expect_free_above(synthetic_cloud("rabbit"));
+}
+
+TEST(FirstStep, InFrontOfTheBunnyIsInFront) {
+  const char* const data = std::getenv("PALPATE_DATA");
+  const std::filesystem::path path =
+      std::filesystem::path(data ? data : "") / "stanford_bunny/bun_zipper.ply";
+  if (!data || !std::filesystem::exists(path)) GTEST_SKIP() << "no PALPATE_DATA";
+  expect_free_above(read_cloud(path));
 }
 
 /// The world's origin is at its foot, where all three faces can be seen from.
