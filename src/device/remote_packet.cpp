@@ -164,6 +164,8 @@ std::string_view explain(PacketFlaw flaw) noexcept {
     case PacketFlaw::order:
       return "its sequence number or timestamp did not increase; wait for the timeout before "
              "restarting";
+    case PacketFlaw::mixed:
+      return "its version is not that of the client's first packet; send one version";
     case PacketFlaw::other_client:
       return "the device is in use by another client; stop that one";
     case PacketFlaw::no_address:

@@ -94,10 +94,11 @@ enum class PacketFlaw : std::uint8_t {
   range,         ///< a number that is too large
   orientation,   ///< one that has not unit length
   order,         ///< sequence or stamp have not grown: repeated, or overtaken
+  mixed,         ///< another version than the client began with
   other_client,  ///< the device belongs to another client
   no_address,    ///< the client's socket has no address to answer to
 };
-inline constexpr std::size_t kPacketFlaws = 11;
+inline constexpr std::size_t kPacketFlaws = 12;
 
 struct ParsedState {
   PacketFlaw flaw = PacketFlaw::none;
@@ -135,20 +136,25 @@ class RemoteProtocol {
   [[nodiscard]] const SocketAddress& client() const noexcept { return client_; }
 
  private:
+  struct Received {
+    StatePacket packet;
+    double time = 0;  // when it came
+  };
+
   [[nodiscard]] bool is_silent(double now) const noexcept;
   [[nodiscard]] bool is_newer(const StatePacket& packet) const noexcept;
-  void begin(const StatePacket& packet, const SocketAddress& from) noexcept;
-  void take(const StatePacket& packet) noexcept;
+  void begin(const StatePacket& packet, const SocketAddress& from, double now) noexcept;
+  void take(const StatePacket& packet, double now) noexcept;
   void move_limit(double now) noexcept;
-  void show(const StatePacket& packet) noexcept;
+  void estimate_velocity() noexcept;
   [[nodiscard]] Wrench allowed(const Wrench& wrench) const noexcept;
   [[nodiscard]] ForcePacket next_packet() noexcept;
 
   RemoteDeviceOptions options_;
   SocketAddress client_;  // kept a while after it fell silent
-  StatePacket newest_;
+  Received newest_;
+  Received shown_;  // whose velocity was told last
   DeviceState state_{.status = DeviceState::Status::silent};
-  double received_ = 0;         // when the newest packet came
   double now_ = 0;              // of the last state()
   double limit_ = 0;            // of the force, N; torque and grip are limited to the same share
   bool connected_ = false;      // the client has sent something and has not left

@@ -1,62 +1,17 @@
 // Whom a remote device believes and how much force it lets flow: no socket, no clock.
-#include "device/remote_protocol.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+
+#include "device/remote_protocol_rig.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
-
-SocketAddress address(const char* name) {
-  SocketAddress result;
-  result.size = std::strlen(name) + 1;
-  std::memcpy(result.path.data(), name, result.size);
-  return result;
-}
-
-const SocketAddress kClient = address("/run/one");
-const SocketAddress kOther = address("/run/other");
-
-class RemoteProtocolTest : public testing::Test {
- protected:
-  // The client's next good packet, with the hand at x.
-  PacketFlaw say(double x, const SocketAddress& from = kClient) {
-    packet_.sequence += 1;
-    packet_.stamp += 1e-3;
-    packet_.position.x() = x;
-    return repeat(from);
-  }
-  PacketFlaw repeat(const SocketAddress& from = kClient) {
-    return link_.receive(encode(packet_), from, now_);
-  }
-  // A step without anything to hear.
-  DeviceState step(double dt = 1e-3) {
-    now_ += dt;
-    return link_.state(now_);
-  }
-  // Good packets for a time; the last state.
-  DeviceState talk(double duration) {
-    DeviceState state;
-    for (const double end = now_ + duration; now_ < end;) {
-      EXPECT_EQ(say(0.01), PacketFlaw::none);
-      state = step();
-    }
-    return state;
-  }
-  double felt(double force = 100) {
-    const auto packet = link_.answer({.force = {0, 0, force}});
-    return packet ? packet->force.z() : -1;
-  }
-
-  RemoteDeviceOptions options_{.path = "none", .maximum_force = 5};
-  RemoteProtocol link_{options_};
-  StatePacket packet_;
-  double now_ = 1000;
-};
+using test::kClient;
+using test::kOther;
+using test::RemoteProtocolTest;
 
 TEST_F(RemoteProtocolTest, IsSilentUntilSomebodySpeaks) {
   EXPECT_EQ(step().status, DeviceState::Status::silent);
@@ -194,15 +149,52 @@ TEST_F(RemoteProtocolTest, RefusesClientsThatCannotBeAnswered) {
   EXPECT_EQ(step().status, DeviceState::Status::silent);
 }
 
-TEST_F(RemoteProtocolTest, VelocityIsToldOrThatOfTheLastTwoPlaces) {
+TEST_F(RemoteProtocolTest, VelocityIsThatOfTheLastTwoPlaces) {
   talk(0.01);
   say(0.0102);
   EXPECT_NEAR(step().velocity.x(), 0.2, 1e-9);
-  packet_.has_velocity = true;
-  packet_.velocity = {0, 3, 0};
-  say(0.02);
-  EXPECT_EQ(step().velocity, Vector3d(0, 3, 0));
+  EXPECT_NEAR(step().velocity.x(), 0.2, 1e-9) << "nothing new";
+  packet_.stamp += 4e-3;  // it came early
+  say(0.0112);
+  EXPECT_NEAR(step().velocity.x(), 0.2, 1e-9) << "by the client's clock";
+  step(3e-3);
+  say(0.0122);  // it came late, or its stamp is wrong
+  EXPECT_NEAR(step().velocity.x(), 0.25, 1e-9) << "by the time of its arrival";
   EXPECT_EQ(step(0.2).velocity, Vector3d::Zero()) << "silent";
+}
+
+TEST_F(RemoteProtocolTest, BelievesNoVelocityThatPositionsDoNotShow) {
+  talk(0.01);
+  packet_.has_velocity = true;
+  for (int i = 0; i < 10; ++i) {
+    packet_.velocity = {i % 2 == 0 ? 1000.0 : -1000.0, 0, 0};
+    EXPECT_EQ(say(0.01), PacketFlaw::none);
+    EXPECT_EQ(step().velocity, Vector3d::Zero());
+  }
+}
+
+TEST_F(RemoteProtocolTest, TellsWhenTheHandWasReadLast) {
+  talk(0.01);
+  say(0.01);
+  const double read = now_;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(step().time, read);
+  say(0.01);
+  EXPECT_GT(step().time, read) << "it rests";
+}
+
+TEST_F(RemoteProtocolTest, KeepsTheVersionThatAClientBeganWith) {
+  packet_.version = RemoteVersion::kTurns;
+  packet_.turns.orientation = Eigen::AngleAxisd(0.3, Vector3d::UnitY());
+  talk(0.01);
+  packet_.version = RemoteVersion::kForces;
+  EXPECT_EQ(say(0.02), PacketFlaw::mixed);
+  const DeviceState state = step();
+  EXPECT_EQ(state.position.x(), 0.01);
+  EXPECT_NEAR(state.orientation.angularDistance(packet_.turns.orientation), 0, 1e-12);
+  EXPECT_EQ(link_.answer({})->version, RemoteVersion::kTurns);
+  EXPECT_EQ(link_.farewell()->version, RemoteVersion::kTurns);
+  step(0.2);
+  EXPECT_EQ(say(0.02), PacketFlaw::none) << "a new beginning";
 }
 
 TEST_F(RemoteProtocolTest, AnswersWithWhatItAnswers) {
@@ -218,70 +210,6 @@ TEST_F(RemoteProtocolTest, AnswersWithWhatItAnswers) {
   EXPECT_GT(last->sequence, packet->sequence);
   EXPECT_TRUE(last->closing);
   EXPECT_EQ(last->force, Vector3d::Zero());
-}
-
-class RemoteTurnsTest : public RemoteProtocolTest {
- protected:
-  RemoteTurnsTest() {
-    options_.maximum_torque = 0.2;
-    options_.maximum_grip = 4;
-    link_ = RemoteProtocol(options_);
-    packet_.version = RemoteVersion::kTurns;
-    packet_.turns.renders_torque = packet_.turns.renders_grip = true;
-  }
-  [[nodiscard]] std::optional<ForcePacket> answer() {
-    return link_.answer({{0, 0, 100}, {0, 100, 0}, -100});
-  }
-};
-
-TEST_F(RemoteTurnsTest, TellsTurnsAndOpening) {
-  talk(0.002);
-  packet_.turns.orientation = Eigen::AngleAxisd(0.01, Vector3d::UnitY());
-  packet_.turns.opening = 0.03;
-  say(0.01);
-  const DeviceState guessed = step();
-  EXPECT_NEAR(guessed.orientation.angularDistance(packet_.turns.orientation), 0, 1e-12);
-  EXPECT_EQ(guessed.gripper, 0.03);
-  EXPECT_NEAR(guessed.angular_velocity.y(), 10, 1e-6) << "from the last two packets";
-  packet_.turns.has_velocity = true;
-  packet_.turns.velocity = {1, 2, 3};
-  say(0.01);
-  EXPECT_EQ(step().angular_velocity, Vector3d(1, 2, 3));
-  EXPECT_EQ(step(0.2).angular_velocity, Vector3d::Zero()) << "silent";
-}
-
-TEST_F(RemoteTurnsTest, LimitsTorqueAndGripToTheShareOfTheForce) {
-  EXPECT_EQ(talk(0.25).status, DeviceState::Status::ok);
-  const ForcePacket half = *answer();
-  EXPECT_NEAR(half.torque.y() / 0.2, half.force.z() / 5, 1e-12);
-  EXPECT_NEAR(half.grip / -4, half.force.z() / 5, 1e-12);
-  EXPECT_GT(half.force.z(), 1);
-  EXPECT_LT(half.force.z(), 4);
-  talk(1);
-  EXPECT_NEAR(answer()->torque.y(), 0.2, 1e-12);
-  EXPECT_NEAR(answer()->grip, -4, 1e-12);
-  step(0.2);  // silent, and faded
-  EXPECT_EQ(answer()->torque, Vector3d::Zero());
-  EXPECT_FALSE(answer()) << "all is zero, and was said";
-}
-
-TEST_F(RemoteTurnsTest, SendsNoTorqueToAClientThatHasNoMotorsForIt) {
-  packet_.turns.renders_torque = packet_.turns.renders_grip = false;
-  talk(1);
-  const ForcePacket sent = *answer();
-  EXPECT_EQ(sent.version, RemoteVersion::kTurns);
-  EXPECT_EQ(sent.torque, Vector3d::Zero());
-  EXPECT_EQ(sent.grip, 0);
-  EXPECT_NEAR(sent.force.z(), 5, 1e-12);
-}
-
-TEST_F(RemoteTurnsTest, AnswersAClientOfThreeAxesInItsVersion) {
-  packet_ = {};
-  talk(1);
-  const ForcePacket sent = *answer();
-  EXPECT_EQ(sent.version, RemoteVersion::kForces);
-  EXPECT_EQ(sent.torque, Vector3d::Zero());
-  EXPECT_EQ(encode(sent).size, 56u);
 }
 
 }  // namespace
