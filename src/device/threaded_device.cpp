@@ -255,6 +255,7 @@ DeviceState ThreadedDevice::read() noexcept {
   if (fresh) {
     in.state = in.seen.state;
     const bool located = in.located == in.seen.connection;
+    in.state.time = in.seen.end;
     in.state.status = located ? DeviceState::Status::ok : DeviceState::Status::silent;
     in.located = in.seen.connection;
   } else {
@@ -264,7 +265,6 @@ DeviceState ThreadedDevice::read() noexcept {
     in.state.buttons = 0;
     in.located = kNone;
   }
-  in.state.time = now;
   in.status.store(in.state.status);
   return in.state;
 }

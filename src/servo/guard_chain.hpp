@@ -8,6 +8,7 @@
 
 #include "palpate/servo/guard.hpp"
 #include "servo/description.hpp"
+#include "servo/hand_path.hpp"
 #include "servo/passivity.hpp"
 #include "servo/sliding_share.hpp"
 
@@ -66,14 +67,24 @@ class GuardChain {
   [[nodiscard]] const GuardOptions& options() const noexcept { return options_; }
 
  private:
-  /// Moved of the hand against the surface since the step before.
+  /// What the next force depends on besides the last one.
+  enum class Phase : std::uint8_t {
+    begins,   // nothing: where the hand was is forgotten
+    goes_on,  // on the hand's motion
+    lets_go,  // the same; after a reset the force fades before the next one begins
+  };
+
+  /// Motion of the hand against the surface.
   struct Moved {
-    Vector displacement;  // m
+    Vector displacement;  // from the reading before the last one to the last one, m
+    double time;          // that took, s
     Vector velocity;      // smoothed, m/s
+    double damping;       // N s/m; a damper as late as the readings is no stronger than a brake
   };
 
   void begin(const Input& input) noexcept;
-  [[nodiscard]] Moved follow(const Input& input) const noexcept;
+  [[nodiscard]] Vector pass_on(const Input& input) noexcept;
+  [[nodiscard]] Moved follow(const Input& input) noexcept;
   [[nodiscard]] double held(const Input& input) const noexcept;
   [[nodiscard]] Vector damp(const Input& input, const Moved& motion) const noexcept;
   [[nodiscard]] Vector start(const Input& input, const Vector& force) noexcept;
@@ -95,15 +106,17 @@ class GuardChain {
   Vector velocity_ = Vector::Zero();  // smoothed, of the step before
   Vector slewed_ = Vector::Zero();    // let through by clamp and slew then
   double stiffness_ = 0;              // that made a force last, N/m
+  HandPath<Vector> path_;
   SlidingShare<Input> sliding_;
   double gain_ = 0;  // of the soft start
-  bool started_ = false;
+  Phase phase_ = Phase::begins;
 };
 
 template <class Axes>
 void GuardChain<Axes>::reset() noexcept {
+  const bool acts = phase_ != Phase::begins && !before_.force.isZero(0);
   state_.fault = Guard::Fault::none;
-  started_ = false;
+  phase_ = acts ? Phase::lets_go : Phase::begins;
 }
 
 template <class Axes>
@@ -113,12 +126,20 @@ typename GuardChain<Axes>::Vector GuardChain<Axes>::pass(const Input& input) noe
   if (state_.fault != Guard::Fault::none) return fail(state_.fault);
   if (const Guard::Fault found = judge(input); found != Guard::Fault::none) return fail(found);
   if (!options_.on) return input.felt ? input.force : Vector::Zero();
-  if (!started_) begin(input);
-  const Moved motion = follow(input);
-  sliding_.update(before_, input, motion.displacement);
+  if (phase_ == Phase::lets_go && before_.force.isZero(0)) phase_ = Phase::begins;
+  if (phase_ != Phase::lets_go) return pass_on(input);
+  Input unfelt = input;
+  unfelt.felt = false;
+  return pass_on(unfelt);
+}
+
+template <class Axes>
+typename GuardChain<Axes>::Vector GuardChain<Axes>::pass_on(const Input& input) noexcept {
+  if (phase_ == Phase::begins) begin(input);
+  const Vector step = input.hip - before_.hip - input.drift * input.dt;
+  sliding_.update(before_, input, step);
   if (input.stiffness > 0) stiffness_ = input.stiffness;
-  passivity_.account(before_.force, motion.displacement, held(input), input.dt);
-  state_.energy = passivity_.energy();
+  const Moved motion = follow(input);
   if (input.dt > options_.silence) {
     gain_ = 0;
     slewed_.setZero();
@@ -141,16 +162,25 @@ void GuardChain<Axes>::begin(const Input& input) noexcept {
   gain_ = 0;
   slewed_.setZero();
   stiffness_ = 0;
+  path_.begin(velocity_);
   sliding_.begin(input);
   passivity_.reset();
-  started_ = true;
+  phase_ = Phase::goes_on;
 }
 
 template <class Axes>
-typename GuardChain<Axes>::Moved GuardChain<Axes>::follow(const Input& input) const noexcept {
-  const Vector now = input.velocity - input.drift;
-  return {input.hip - before_.hip - input.drift * input.dt,
-          velocity_ + Guard::kSmoothing * (now - velocity_)};
+typename GuardChain<Axes>::Moved GuardChain<Axes>::follow(const Input& input) noexcept {
+  path_.step(input, input.hip - before_.hip);
+  const auto& way = path_.last();
+  if (input.fresh) {
+    passivity_.account(before_.force, way.length, held(input), way.time, way.steps);
+    state_.energy = passivity_.energy();
+  }
+  const double damping = way.steps > 1
+                             ? std::min(options_.damping, passivity_.strongest(way.time, 0))
+                             : options_.damping;
+  return {way.length, way.time, velocity_ + Guard::kSmoothing * (path_.velocity() - velocity_),
+          damping};
 }
 
 // Energy in the spring, or in a force that still fades after the surface has gone: the larger, J.
@@ -164,11 +194,11 @@ template <class Axes>
 typename GuardChain<Axes>::Vector GuardChain<Axes>::damp(const Input& input,
                                                          const Moved& motion) const noexcept {
   if (!input.felt) return Vector::Zero();
-  if (options_.damping == 0 || input.normal.isZero(0)) return input.force;
+  if (motion.damping == 0 || input.normal.isZero(0)) return input.force;
   const double pressed = std::max(0.0, input.force.dot(input.normal));
-  const double damped = -options_.damping * motion.velocity.dot(input.normal);
+  const double damped = -motion.damping * motion.velocity.dot(input.normal);
   const Vector held = (1 - sliding_.share()) * tangential(motion.velocity, input.normal);
-  return input.force + std::max(damped, -pressed) * input.normal - options_.damping * held;
+  return input.force + std::max(damped, -pressed) * input.normal - motion.damping * held;
 }
 
 template <class Axes>
@@ -197,7 +227,7 @@ template <class Axes>
 typename GuardChain<Axes>::Vector GuardChain<Axes>::brake(const Input& input, const Moved& motion,
                                                           const Vector& force) noexcept {
   if (!input.felt || input.normal.isZero(0)) return force;
-  const Vector brake = passivity_.brake(force, motion.displacement, input.dt, options_.damping);
+  const Vector brake = passivity_.brake(force, motion.displacement, motion.time, motion.damping);
   if (brake.isZero(0)) return force;
   note(state_, GuardNote::braked, state_.counts.braked);
   return force + brake;
@@ -220,7 +250,7 @@ typename GuardChain<Axes>::Vector GuardChain<Axes>::limit_change(const Input& in
   const double loose = fades_unpaid(input, motion) ? stiffness_ : 0;
   const double stiffness = std::max({input.stiffness, before_.stiffness, loose});
   const double explained = stiffness * (input.hip - before_.hip).norm() +
-                           options_.damping * (motion.velocity - velocity_).norm();
+                           motion.damping * (motion.velocity - velocity_).norm();
   const double allowed = explained + options_.slew * input.dt;
   const Vector change = force - slewed_;
   const double size = change.norm();
@@ -253,7 +283,7 @@ typename GuardChain<Axes>::Vector GuardChain<Axes>::fail(Guard::Fault fault) noe
   if (state_.fault == Guard::Fault::none) ++state_.counts.faults;
   state_.fault = fault;
   state_.notes = GuardNote::fault;
-  started_ = false;
+  phase_ = Phase::begins;
   return Vector::Zero();
 }
 

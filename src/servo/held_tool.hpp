@@ -38,11 +38,11 @@ class HeldTool {
 
   /// Does the hand feel more than a force? Then this guards its steps.
   [[nodiscard]] bool is_felt_turning() const noexcept { return guard_.has_value(); }
-  /// What of the last step may go to the device, world. `touching`: the wrench counts; `velocity`:
-  /// of the hand's turns, rad/s.
-  [[nodiscard]] Wrench guarded(const Guard::Input& input, bool touching,
+  /// What of the last step may go to the device, world. `touching`: the wrench counts; `hand`: as
+  /// it is without the clutch; `velocity`: of its turns, rad/s.
+  [[nodiscard]] Wrench guarded(const Guard::Input& input, bool touching, const Pose& hand,
                                const Eigen::Vector3d& velocity) noexcept {
-    return guard_->pass(input, {touching ? wrench_ : Wrench(), hand_, velocity});
+    return guard_->pass(input, {touching ? wrench_ : Wrench(), hand, velocity});
   }
   [[nodiscard]] const Guard::State& guard_state() const noexcept { return guard_->state(); }
 

@@ -8,26 +8,38 @@
 namespace palpate {
 
 template <int kAxes>
-const typename PassivityOf<kAxes>::Vector& PassivityOf<kAxes>::sent(int steps_ago) const noexcept {
-  return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(steps_ago)) % sent_.size()];
+const typename PassivityOf<kAxes>::Sent& PassivityOf<kAxes>::sent(int readings_ago) const noexcept {
+  return sent_[(newest_ + sent_.size() - static_cast<std::size_t>(readings_ago)) % sent_.size()];
+}
+
+// How many readings ago was the force sent that acted since the last one, `steps` ago?
+template <int kAxes>
+int PassivityOf<kAxes>::acting(int steps) const noexcept {
+  if (options_.delay == 0 && steps == 1) return 0;
+  int readings = 1;
+  for (int before = 1; before < options_.delay && readings < kMaximumDelay; ++readings) {
+    before += sent(readings).steps;
+  }
+  return readings;
 }
 
 // Is no force acting, and none in the delay line?
 template <int kAxes>
 bool PassivityOf<kAxes>::rests() const noexcept {
-  for (int i = 0; i <= options_.delay; ++i) {
-    if (!sent(i).isZero(0)) return false;
+  for (int i = 0; i <= delay_; ++i) {
+    if (!sent(i).force.isZero(0)) return false;
   }
   return true;
 }
 
 template <int kAxes>
 void PassivityOf<kAxes>::account(const Vector& force, const Vector& displacement, double stored,
-                                 double dt) noexcept {
+                                 double dt, int steps) noexcept {
   if (!options_.on) return;
   newest_ = (newest_ + 1) % sent_.size();
-  sent_[newest_] = force;
-  energy_ += sent(options_.delay).dot(displacement);
+  sent_[newest_] = {force, steps};
+  energy_ += sent(acting(steps)).force.dot(displacement);
+  delay_ = steps == 1 ? options_.delay : std::max(1, (options_.delay + steps - 1) / steps);
   const double dissipated = -energy_ - stored;
   if (dissipated <= 0) return;
   if (stored == 0 && rests()) {
@@ -40,13 +52,14 @@ void PassivityOf<kAxes>::account(const Vector& force, const Vector& displacement
 template <int kAxes>
 void PassivityOf<kAxes>::reset() noexcept {
   energy_ = 0;
-  sent_.fill(Vector::Zero());
+  sent_.fill({});
+  delay_ = options_.delay;
 }
 
 template <int kAxes>
 double PassivityOf<kAxes>::committed(const Vector& displacement) const noexcept {
   double energy = energy_;
-  for (int i = 0; i < options_.delay; ++i) energy += sent(i).dot(displacement);
+  for (int i = 0; i < delay_; ++i) energy += sent(i).force.dot(displacement);
   return energy;
 }
 
@@ -62,10 +75,9 @@ typename PassivityOf<kAxes>::Vector PassivityOf<kAxes>::brake(const Vector& forc
   return -std::min(energy / square, strongest(dt, damping) / dt) * displacement;
 }
 
-// Strongest brake, as a damper beside another of `damping`, N s/m.
 template <int kAxes>
 double PassivityOf<kAxes>::strongest(double dt, double damping) const noexcept {
-  return std::max(0.0, options_.mass / (2 * std::max(2, options_.delay + 1) * dt) - damping);
+  return std::max(0.0, options_.mass / (2 * std::max(2, delay_ + 1) * dt) - damping);
 }
 
 template class PassivityOf<3>;

@@ -37,11 +37,11 @@ struct Servo::Inside {
   Inside(Device& its_device, Scene& scene, const ServoOptions& its_options)
       : device(its_device),
         options(options_for(device.info(), its_options)),
-        limited(options.proxy, stiffness_limit_of(device.info(), options)),
+        limited(options.proxy, stiffness_limit_of(device.info(), options), device.info().rate),
         guard(in_world(options.guard, options.workspace.scale)),
         requests(options) {
     if (options.tool) {
-      tool = std::make_unique<HeldTool>(scene, options, device.info(), limited.limit);
+      tool = std::make_unique<HeldTool>(scene, options, device.info(), limited.limit.told);
     } else {
       limited.field.emplace(scene, options.field, "a field", options.workspace.scale);
     }
@@ -54,6 +54,11 @@ struct Servo::Inside {
   void touch_with_tool() noexcept;
   [[nodiscard]] Pose pose() const noexcept {
     return {state.hip, state.orientation, options.workspace.scale * state.gripper};
+  }
+  // The hand's own, whatever the clutch does.
+  [[nodiscard]] Pose hand_pose() const noexcept {
+    return {hand, options.workspace.orientation_to_world(basis.device.orientation),
+            options.workspace.scale * basis.device.gripper};
   }
   [[nodiscard]] bool is_clutched(std::uint32_t buttons) const noexcept;
   [[nodiscard]] Guard::Input felt() noexcept;
@@ -103,6 +108,7 @@ void Servo::Inside::step(const DeviceState& read, double now) noexcept {
   state.dt = goes_on || !std::isfinite(now) ? now - state.time : first_step(device.info());
   state.time = now;
   hand = options.workspace.position_to_world(read.position);
+  limited.rhythm.take(read, state.dt);
   basis.device = read;
   received = received || read.status != DeviceState::Status::silent;
   if (options.traces != nullptr && options.traces->accepts()) options.traces->prefetch();
@@ -129,9 +135,9 @@ void Servo::Inside::touch_with_point() noexcept {
 }
 
 void Servo::Inside::touch_with_tool() noexcept {
-  const Pose hand_pose = clutch.turned(pose(), state.clutched, tool->pose());
-  state.orientation = hand_pose.orientation;
-  state.contact = tool->step(state.time, hand_pose, state.dt);
+  const Pose held = clutch.turned(pose(), state.clutched, tool->pose());
+  state.orientation = held.orientation;
+  state.contact = tool->step(state.time, held, state.dt);
   state.field_notes = tool->notes();
   if (options.traces != nullptr) basis.found = tool->found();
   state.tool = tool->pose();
@@ -162,13 +168,10 @@ void Servo::Inside::apply_pending() noexcept {
   if (basis.reset || !received) {
     clutch = {};
     limited.proxy.reset(hand);
-    if (tool)
-      tool->reset({hand, options.workspace.orientation_to_world(basis.device.orientation),
-                   options.workspace.scale * basis.device.gripper});
+    if (tool) tool->reset(hand_pose());
     guard.reset();
   }
-  if (basis.contact) limited.change(*basis.contact);
-  if (basis.contact && tool) tool->change(limited.proxy.options());
+  if (limited.change(basis.contact) && tool) tool->change(limited.proxy.options());
   if (basis.field && tool) tool->change(*basis.field);
   if (basis.field && limited.field) limited.field->change(*basis.field);
 }
@@ -176,7 +179,8 @@ void Servo::Inside::apply_pending() noexcept {
 Guard::Input Servo::Inside::felt() noexcept {
   Guard::Input input;
   input.felt = !state.paused && state.device != DeviceState::Status::silent;
-  input.softened = limited.is_softened;
+  input.softened = limited.is_softened();
+  input.fresh = limited.rhythm.is_fresh();
   input.hip = hand;
   input.velocity = state.velocity;
   input.dt = state.dt;
@@ -203,7 +207,7 @@ void Servo::Inside::let_through(const Guard::Input& input) noexcept {
   }
   const Vector3d turning =
       options.workspace.T_world_device.linear() * basis.device.angular_velocity;
-  const Wrench felt = tool->guarded(input, !state.clutched, turning);
+  const Wrench felt = tool->guarded(input, !state.clutched, hand_pose(), turning);
   state.force = felt.force;
   state.torque = felt.torque;
   state.grip = felt.grip;
@@ -245,7 +249,7 @@ const ServoOptions& Servo::options() const noexcept {
   return inside_->options;
 }
 double Servo::stiffness_limit() const noexcept {
-  return inside_->limited.limit;
+  return inside_->limited.limit.told;
 }
 ServoState Servo::state() const noexcept {
   return inside_->shown.state.get();
@@ -256,11 +260,9 @@ StepDurations Servo::durations() const noexcept {
 std::vector<Eigen::Vector3f> Servo::forces_since(std::uint64_t& seen) const {
   return inside_->shown.forces.since(seen);
 }
-
 ContactSettings Servo::contact() const noexcept {
   return inside_->requests.contact.get();
 }
-
 FieldOptions Servo::field() const noexcept {
   return inside_->requests.field.get();
 }
@@ -268,7 +270,6 @@ FieldOptions Servo::field() const noexcept {
 void Servo::pause(bool paused) noexcept {
   inside_->requests.paused.store(paused);
 }
-
 void Servo::reset() noexcept {
   inside_->requests.reset.store(true);
 }

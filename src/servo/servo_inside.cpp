@@ -51,7 +51,7 @@ double passive_gyration(const DeviceInfo& device, const ServoOptions& options) {
   const double scale = options.workspace.scale;
   const double wanted = ToolProxy(options.tool).options().gyration / scale;
   const double felt =
-      std::min(options.proxy.stiffness, stiffness_limit_of(device, options)) * scale;
+      std::min(options.proxy.stiffness, stiffness_limit_of(device, options).told) * scale;
   DeviceInfo turning = device;
   turning.damping = 0;
   const double damped =
@@ -162,16 +162,25 @@ ServoOptions options_for(const DeviceInfo& device, ServoOptions options) {
   return options;
 }
 
-double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
+StiffnessLimit stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options) {
   const GuardOptions& guard = options.guard;
-  if (!guard.on) return std::numeric_limits<double>::infinity();
-  double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
-  if (device.maximum_stiffness > 0) felt = std::min(felt, device.maximum_stiffness);
+  StiffnessLimit limit;
+  if (!guard.on) return limit;
   const double scale = options.workspace.scale;
+  double felt = guard.stiffness_share * passive_stiffness(device, guard.damping);
   if (turns(device, options) && options.gyration > 0) {
     felt = std::min(felt, turning_limit(device, guard, options.gyration / scale));
   }
-  return felt / scale;
+  limit.passive = limit.told = felt / scale;
+  if (device.maximum_stiffness > 0) {
+    limit.told = std::min(felt, device.maximum_stiffness) / scale;
+  }
+  if (!(device.rate > 0)) return limit;
+  const double period = 1 / device.rate;
+  limit.span = period + 2 * device.delay.value_or(period);
+  // PassivityOf::strongest() of readings that are further apart than the delay is.
+  if (guard.damping > 0) limit.damped = guard.passivity.mass / (4 * guard.damping);
+  return limit;
 }
 
 GuardOptions guard_for(const DeviceInfo& device, GuardOptions options) {

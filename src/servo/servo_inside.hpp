@@ -6,12 +6,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <vector>
 
 #include "base/latest.hpp"
 #include "palpate/servo/servo.hpp"
+#include "servo/hand_rhythm.hpp"
 #include "servo/step_trace.hpp"
 
 namespace palpate {
@@ -158,15 +160,46 @@ struct Requests {
   std::atomic<bool> reset{false};
 };
 
+/// The stiffest surface that a hand's device bears, N/m in the world.
+struct StiffnessLimit {
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
+
+  double told = kAny;     ///< as often as the device told that it is read
+  double passive = kAny;  ///< the same where its maker limits nothing
+  double span = 0;        ///< T + 2 T_d of the device, s
+  double damped = kAny;   ///< s: the guard's damper is too strong for readings further apart
+
+  /// The same of a hand that is read as rarely as it is. A reading that comes later holds position
+  /// and force for so much longer, and takes the force so much later.
+  [[nodiscard]] double at(const HandRhythm& rhythm) const noexcept {
+    const double late = rhythm.late();
+    if (!(late > 0) || told == kAny) return told;
+    const double damper = std::min(1.0, damped / rhythm.period());
+    return std::min(told, damper * passive * span / (span + 3 * late));
+  }
+};
+
 /// A point on surfaces that are no stiffer than the hand's device bears.
 struct LimitedProxy {
-  LimitedProxy(const ProxyOptions& options, double its_limit)
-      : limit(its_limit), is_softened(options.stiffness > limit), proxy(softened(options, limit)) {}
+  LimitedProxy(const ProxyOptions& options, const StiffnessLimit& its_limit, double rate)
+      : limit(its_limit),
+        wanted{options.stiffness, options.friction, options.texture},
+        rhythm(rate),
+        bearable(limit.told),
+        proxy(softened(options, limit.told)) {}
 
-  void change(const ContactSettings& wanted) noexcept {
-    is_softened = wanted.stiffness > limit;
-    proxy.change(std::min(wanted.stiffness, limit), wanted.friction, wanted.texture);
+  /// False: what is felt stays as it is.
+  bool change(const std::optional<ContactSettings>& settings) noexcept {
+    const double bears = limit.at(rhythm);
+    const bool same = std::min(wanted.stiffness, bears) == std::min(wanted.stiffness, bearable);
+    bearable = bears;
+    if (!settings && same) return false;
+    if (settings) wanted = *settings;
+    proxy.change(std::min(wanted.stiffness, bearable), wanted.friction, wanted.texture);
+    return true;
   }
+  /// Is a stiffer surface requested than the hand's device bears?
+  [[nodiscard]] bool is_softened() const noexcept { return wanted.stiffness > bearable; }
 
   // The options with no more stiffness than that.
   [[nodiscard]] static ProxyOptions softened(ProxyOptions proxy, double limit) {
@@ -174,8 +207,10 @@ struct LimitedProxy {
     return proxy;
   }
 
-  double limit;      // of the stiffness, N/m
-  bool is_softened;  // a stiffer surface is requested
+  StiffnessLimit limit;
+  ContactSettings wanted;
+  HandRhythm rhythm;  // of the hand
+  double bearable;    // the limit at that, N/m
   Proxy proxy;
   std::optional<SceneField> field;  // none: a tool is held in its place
 };
@@ -185,8 +220,8 @@ struct LimitedProxy {
 /// @throws Error for a clutch that is no button, and a maximum force below 0.
 [[nodiscard]] ServoOptions options_for(const DeviceInfo& device, ServoOptions options);
 
-/// Stiffness limit in the world, N/m: the hand's limit divided by the magnification, that of turns
-/// too if the device renders torque.
-[[nodiscard]] double stiffness_limit_of(const DeviceInfo& device, const ServoOptions& options);
+/// The hand's limit divided by the magnification, that of turns too if the device renders torque.
+[[nodiscard]] StiffnessLimit stiffness_limit_of(const DeviceInfo& device,
+                                                const ServoOptions& options);
 
 }  // namespace palpate

@@ -51,7 +51,12 @@ Wrench WrenchGuard::pass(const Guard::Input& input, const Turn& turn) noexcept {
   if (!started_) hand_ = turn.hand;
   started_ = true;
   turned_ += turn_between(hand_.orientation, turn.hand.orientation);
-  const double opened = turn.hand.opening - hand_.opening;
+  opened_ += turn.hand.opening - hand_.opening;
+  waited_ += input.dt;
+  if (input.fresh) {
+    opening_ = waited_ > 0 ? opened_ / waited_ : 0;
+    opened_ = waited_ = 0;
+  }
   hand_ = turn.hand;
   const Wrench& wrench = turn.wrench;
   WrenchAxes::Input all;
@@ -60,9 +65,9 @@ Wrench WrenchGuard::pass(const Guard::Input& input, const Turn& turn) noexcept {
   if (!pressed.isZero(0)) all.normal = pressed.normalized();
   all.drift.head<3>() = input.drift;
   all.hip = rendered(input.hip, gyration_ * turned_, turn.hand.opening);
-  all.velocity =
-      rendered(input.velocity, gyration_ * turn.velocity, input.dt > 0 ? opened / input.dt : 0);
+  all.velocity = rendered(input.velocity, gyration_ * turn.velocity, opening_);
   all.dt = input.dt;
+  all.fresh = input.fresh;
   all.stiffness = input.stiffness;
   all.felt = input.felt;
   all.softened = input.softened;
@@ -72,8 +77,11 @@ Wrench WrenchGuard::pass(const Guard::Input& input, const Turn& turn) noexcept {
 }
 
 void WrenchGuard::reset() noexcept {
+  const bool failed = chain_.state().fault != Guard::Fault::none;
   chain_.reset();
+  if (!failed) return;
   turned_.setZero();
+  opened_ = waited_ = opening_ = 0;
   started_ = false;
 }
 

@@ -18,9 +18,10 @@ struct WrenchAxes {
     Motion force = Motion::Zero();
     Motion normal = Motion::Zero();
     Motion drift = Motion::Zero();
-    Motion hip = Motion::Zero();  ///< the turns of all steps since a reset, added up
+    Motion hip = Motion::Zero();  ///< the turns of all steps since a fault, added up
     Motion velocity = Motion::Zero();
     double dt = 0;
+    bool fresh = true;
     double stiffness = 0;
     bool felt = true;
     bool softened = false;
@@ -73,6 +74,9 @@ class WrenchGuard {
   GuardChain<WrenchAxes> chain_;
   Pose hand_;                                         // in the last step
   Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  // turns of all steps, rad
+  double opened_ = 0;                                 // m, since the hand was read last
+  double waited_ = 0;                                 // s, since then
+  double opening_ = 0;                                // m/s, when it was
   bool started_ = false;
 };
 

@@ -113,6 +113,24 @@ TEST(Guard, HoldsZeroAtOnceAndUntilResetWhenSomethingIsNotFinite) {
   }
 }
 
+TEST(Guard, LetsAForceFadeWhenItIsReset) {
+  GuardOptions options = plain();
+  options.soft_start = 0.5;
+  Guard guard(options);
+  const Guard::Input resting = pushed({0, 0, 10});
+  double before = 0;
+  for (int i = 0; i < 1000; ++i) before = guard.pass(resting).z();
+  ASSERT_EQ(before, 10);
+  guard.reset();
+  for (int i = 0; before > 0; ++i) {
+    ASSERT_LT(i, 40) << "it stays";
+    const double force = guard.pass(resting).z();
+    EXPECT_NEAR(before - force, std::min(before, 0.3), 1e-9);
+    before = force;
+  }
+  EXPECT_EQ(guard.pass(resting).norm(), 10 * 1e-3 / 0.5) << "it comes up softly";
+}
+
 TEST(Guard, GivesZeroAfterASilenceAndComesBackSoftly) {
   Guard guard(plain());
   for (int i = 0; i < 50; ++i) static_cast<void>(guard.pass(pushed({0, 0, 2})));

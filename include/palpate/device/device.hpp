@@ -47,7 +47,10 @@ struct DeviceState {
   };
 
   Status status = Status::ok;
-  double time = 0;  ///< s, on the device's clock; a ServoThread uses its own
+  /// s, on the device's clock: when the hand was read. A state that repeats it holds that reading,
+  /// which a Servo takes into account; 0 where each state is a new one. A ServoThread steps by its
+  /// own clock.
+  double time = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   /// m/s; damping and brake depend on it. Estimate it from positions where it is not measured.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();

@@ -91,7 +91,10 @@ class Guard {
     Eigen::Vector3d hip = Eigen::Vector3d::Zero();       ///< m; goes as the hand itself does
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the hand, m/s
     double dt = 0;                                       ///< since the last step, s
-    double stiffness = 0;                                ///< K that made the force, N/m
+    /// False: the hand was not read since the last step, and its position is held. What is judged
+    /// by its motion waits for the next reading, and takes the whole time in between for it.
+    bool fresh = true;
+    double stiffness = 0;       ///< K that made the force, N/m
     bool felt = true;           ///< false: the force goes to zero and starts softly again
     bool softened = false;      ///< a stiffer surface was requested
     Fault fault = Fault::none;  ///< found already
@@ -133,7 +136,8 @@ class Guard {
   /// The force that may go to the device, N. Finite, whatever the input.
   [[nodiscard]] Eigen::Vector3d pass(const Input& input) noexcept;
 
-  /// Forgets a fault and where the hand was; the next force comes up from zero.
+  /// Forgets a fault, or lets go of the hand: a force that acts goes to zero as if nothing were
+  /// felt. Then it forgets where the hand was; the next force comes up from zero.
   void reset() noexcept;
 
   [[nodiscard]] const State& state() const noexcept;
