@@ -28,7 +28,12 @@ constexpr double kRegionRadii = 20;     // ... or, if that is more, so many R (j
 constexpr double kDepth = 0.75;         // R under the surface (judgement)
 constexpr double kLargestForce = 4;     // N (judgement)
 constexpr double kPaperMultiple = 2.5;  // m = R / s if s is unknown (docs/method.md 5.3, the paper)
-constexpr float kUpward = 0.7F;         // of a normal's z: within 45 degrees of up (judgement)
+// N that the usual hand and device take at 0.3 m/s, the fastest (3.5 N s/m and 0.05 N of friction)
+constexpr double kLeastForce = 1.1;
+// times the force of the deepest press: what friction on the surface and its slope take besides
+// (judgement)
+constexpr double kHarder = 1.1;
+constexpr float kUpward = 0.7F;  // of a normal's z: within 45 degrees of up (judgement)
 // m of the hand from the surface to the device's origin (judgement)
 constexpr double kStandoff = 2e-3;
 
@@ -136,6 +141,26 @@ Extent extent_of(const Union& all, const ExplorationOptions& options) {
   return extent;
 }
 
+// Hand and surface are springs in a row: the hand has to want more than it gets.
+StrokeOptions strokes_of(const Placement& plan, const FieldOptions& field, const Union& all,
+                         const ExplorationOptions& options) {
+  const double scale = plan.workspace.scale;
+  const double felt = plan.workspace.felt_stiffness(plan.stiffness);
+  StrokeOptions strokes;
+  strokes.duration = options.duration;
+  strokes.period = 1 / options.rate;
+  strokes.radius = all.radius;
+  strokes.depth = plan.depth * (1 + felt / options.hand.stiffness);
+  strokes.offset = offset(field, all, options.tool_radius);
+  strokes.tool = options.tool;
+  strokes.region = plan.region;
+  strokes.slide_speed = scale * std::clamp(0.5 * plan.region / scale, 0.05, 0.2);
+  strokes.travel_speed = scale * std::clamp(plan.region / scale, 0.1, 0.3);
+  strokes.seed = options.seed;
+  strokes.progress = options.progress;
+  return strokes;
+}
+
 // Upward where there is none.
 Vector3f normal_at(const ExploredSurface& surface, std::size_t point) {
   const bool has_normal = !surface.normals.empty() && !surface.normals[point].isZero();
@@ -189,20 +214,9 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   plan.stiffness = extent.stiffness;
   plan.depth = std::min(kDepth * all.radius, kLargestForce / plan.stiffness);
 
-  StrokeOptions strokes;
-  strokes.duration = options.duration;
-  strokes.period = 1 / options.rate;
-  strokes.radius = all.radius;
-  // Hand and surface are springs in a row: the hand has to want more than it gets.
-  const double felt = plan.workspace.felt_stiffness(plan.stiffness);
-  strokes.depth = plan.depth * (1 + felt / options.hand.stiffness);
-  strokes.offset = offset(field, all, options.tool_radius);
-  strokes.tool = options.tool;
-  strokes.region = plan.region;
-  strokes.slide_speed = scale * std::clamp(0.5 * plan.region / scale, 0.05, 0.2);
-  strokes.travel_speed = scale * std::clamp(plan.region / scale, 0.1, 0.3);
-  strokes.seed = options.seed;
-  strokes.progress = options.progress;
+  plan.force = std::max(kLeastForce, kHarder * plan.depth * plan.stiffness);
+
+  const StrokeOptions strokes = strokes_of(plan, field, all, options);
   plan.target = explore(all.view(), strokes, &plan.presses);
 
   Box path;
@@ -211,10 +225,14 @@ Placement plan_exploration(const Scene& scene, const FieldOptions& field,
   for (TrajectoryRow& row : plan.target) {
     row.position = plan.workspace.position_to_device(row.position);
   }
+  const double felt = plan.workspace.felt_stiffness(plan.stiffness);
   // Held, a hand stays behind its target by this share of the target's depth; half of it
   // distinguishes a hand that is held from one that is not.
   const double held = felt / (felt + options.hand.stiffness);
-  for (Press& press : plan.presses) press.pull *= 0.5 * held / scale;
+  for (Press& press : plan.presses) {
+    press.pull *= 0.5 * held / scale;
+    for (Vector3d& corner : press.over) corner = plan.workspace.position_to_device(corner);
+  }
   return plan;
 }
 

@@ -11,6 +11,7 @@
 #include "base/numbers.hpp"
 #include "base/requirement.hpp"
 #include "device/explored_tool.hpp"
+#include "device/free_way.hpp"
 #include "device/stroke_player.hpp"
 #include "palpate/base/error.hpp"
 
@@ -29,15 +30,17 @@ constexpr double kLongest = 1.2;  // s; longest stroke (judgement)
 constexpr double kDwell = 0.1;    // s at rest before and after a stroke (judgement)
 // Share of the extent: a start so far from all touched positions is far enough (judgement)
 constexpr double kFresh = 0.3;
-constexpr double kNear = 0.3;    // weight of the path there against that distance (judgement)
-constexpr int kCandidates = 24;  // start positions compared for a stroke (judgement)
-constexpr int kTries = 8;        // strokes tried until a free path leads to one (judgement)
-constexpr int kDirections = 4;   // directions tried from a start (judgement)
+constexpr double kNear = 0.3;        // weight of the path there against that distance (judgement)
+constexpr int kCandidates = 24;      // start positions compared for a stroke (judgement)
+constexpr int kTries = 8;            // strokes tried until a free path leads to one (judgement)
+constexpr double kMostPieces = 200;  // of an arc that is looked at (judgement)
+constexpr int kDirections = 4;       // directions tried from a start (judgement)
 
 class Explorer {
  public:
   Explorer(const ExploredSurface& surface, const StrokeOptions& options)
       : options_(options),
+        origin_(surface.origin),
         map_(surface, options.region, options.radius),
         tool_(options.tool),
         random_(options.seed),
@@ -50,7 +53,7 @@ class Explorer {
       if (options_.progress) options_.progress(player_.share());
       presses.push_back(touch(stroke));
       const MapSample last = stroke.back();
-      Route path;
+      FreeWay path;
       for (int i = 0; i < kTries && !path.clear; ++i) {
         stroke = next_stroke(next_start(last.position));
         path = route(last, stroke.front());
@@ -65,11 +68,8 @@ class Explorer {
   }
 
  private:
-  struct Route {
-    std::vector<Vector3d> positions;
-    bool clear = false;
-  };
-
+  // That is free around a way.
+  [[nodiscard]] double room() const { return 0.5 * kClearance * options_.radius; }
   [[nodiscard]] double clearance() const { return options_.offset + kClearance * options_.radius; }
   [[nodiscard]] Vector3d over(const MapSample& s, double height) const {
     return s.position + (height + tool_.reach(s.normal)) * s.normal;
@@ -81,7 +81,7 @@ class Explorer {
 
   // Can the hand leave the surface here without meeting it again? Not from inside a closed object.
   [[nodiscard]] bool open(const MapSample& s) const {
-    const double step = 0.5 * kClearance * options_.radius;
+    const double step = room();
     const double farthest = std::max(map_.extent(), 3 * step);
     double d = 2 * step;
     while (d <= farthest) {
@@ -109,6 +109,7 @@ class Explorer {
     }
     player_.move(path, options_.slide_speed);
     press.end = player_.time();
+    for (const MapSample& each : stroke) press.over.push_back(origin_ + above(each));
     player_.dwell(path.back(), kDwell / 2);
     player_.move({path.back(), above(stroke.back())}, options_.slide_speed);
     press.resume = player_.time();
@@ -172,6 +173,7 @@ class Explorer {
       if (next.normal.isZero() || !map_.inside(next.position)) break;
       if (next.normal.dot(path.back().normal) < 0.2) break;
       if ((next.position - path.back().position).norm() > 4 * step) break;
+      if (map_.distance(above(next)) < room()) break;
       path.push_back(next);
       direction -= direction.dot(next.normal) * next.normal;
       if (direction.norm() < 1e-3) break;
@@ -183,16 +185,18 @@ class Explorer {
 
   // Through free space from over one position to over another: the flattest arc that touches
   // nothing and passes over what stands between or, where a roof is over everything, under it.
-  [[nodiscard]] Route route(const MapSample& from, const MapSample& to) const {
+  [[nodiscard]] FreeWay route(const MapSample& from, const MapSample& to) const {
     const Vector3d a = above(from);
     const Vector3d b = above(to);
     Vector3d up = from.normal + to.normal;
     if (up.norm() < 0.3) up = 0.5 * (a + b) - map_.center();
     if (up.norm() < 1e-9) up = from.normal.unitOrthogonal();
     up.normalize();
-    Route best;
+    FreeWay best;
     for (const double lift : {0.0, 0.25, 0.5, 1.0, 2.0, 4.0}) {
-      Route path = arc(a, b, lift * std::max((b - a).norm(), 4 * clearance()) * up);
+      const Vector3d rise = lift * std::max((b - a).norm(), 4 * clearance()) * up;
+      FreeWay path = arc({a, b}, rise, room(), kMostPieces,
+                         [this](const Vector3d& x) { return map_.distance(x); });
       if (!path.clear) continue;
       const bool over = std::ranges::all_of(path.positions, [&](auto& p) { return open({p, up}); });
       if (over || !best.clear) best = std::move(path);
@@ -201,28 +205,8 @@ class Explorer {
     return best;
   }
 
-  // Arc from a to b; begins and ends in the direction of `rise`, and goes up by 3/4 of it.
-  [[nodiscard]] Route arc(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
-    const double length = (b - a).norm() + 1.5 * rise.norm();
-    const double piece = 0.5 * kClearance * options_.radius;
-    const int pieces = static_cast<int>(std::clamp(length / piece, 16.0, 200.0));
-    Route path;
-    Vector3d seen = a;
-    double room = 0;  // free around it
-    for (int i = 0; i <= pieces; ++i) {
-      const double u = static_cast<double>(i) / pieces;
-      const Vector3d position = a + u * u * (3 - 2 * u) * (b - a) + 3 * u * (1 - u) * rise;
-      path.positions.push_back(position);
-      if ((position - seen).norm() < room) continue;
-      seen = position;
-      room = map_.distance(position) - piece;
-      if (room <= 0) return path;
-    }
-    path.clear = true;
-    return path;
-  }
-
   StrokeOptions options_;
+  Vector3d origin_;
   SurfaceMap map_;
   ExploredTool tool_;
   Random random_;

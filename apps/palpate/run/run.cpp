@@ -69,8 +69,7 @@ void open_hardware(Hand& hand, const MotionPlan& motion, RealtimeOptions asked,
              info.rate, late, info.maximum_force);
 }
 
-// m: the motors of a simulated wrist are those of its handle at half of a stylus, as its masses are
-// (SimulatedWrist).
+// m: the motors of a simulated wrist are those of its handle at half of a stylus (SimulatedWrist).
 constexpr double kWristLever = 0.03;
 
 // The hand is where `trajectory` says, whatever the force.
@@ -87,6 +86,7 @@ void guide(Hand& hand, const HandTask& task, SimulatedDeviceOptions device, Traj
   if (!device.duration && !task.page.wanted) device.duration = target.back().time;
   TeleoperatedHandOptions options{.speed = session::kReachingSpeed};
   if (hand.plan) options.presses = hand.plan->presses;
+  if (hand.plan) options.force = hand.plan->force;
   if (task.page.served) hand.remote = std::make_unique<RemoteTarget>();
   hand.guide = std::make_unique<TeleoperatedHand>(hand.remote ? *hand.remote : kNobody,
                                                   std::move(target), options);

@@ -27,6 +27,7 @@ struct Placement {
   double depth = 0;      ///< that a hand that explores is meant to reach under the surface, m
   Trajectory target;  ///< where such a hand wants to be, device frame; empty: it does not explore
   std::vector<Press> presses = {};  ///< of that trajectory
+  double force = 0;                 ///< N that such a hand has to pull with at most
 };
 
 struct ExplorationOptions {

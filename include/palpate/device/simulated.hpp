@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,39 +15,10 @@
 
 #include "palpate/base/clock.hpp"
 #include "palpate/device/device.hpp"
+#include "palpate/device/target_source.hpp"
 #include "palpate/io/trajectory.hpp"
 
 namespace palpate {
-
-/// Returns step by step the target of a simulated device's hand, for motions that are unknown in
-/// advance.
-class TargetSource {
- public:
-  /// A position that the hand pulls towards, and what it does there.
-  struct Target {
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, device frame
-    std::uint32_t buttons = 0;                           ///< bit k: button k is down
-    /// The hand pulls with no more, N, nor with more than its SimulatedDeviceOptions allow; above
-    /// 0.
-    double maximum_force = std::numeric_limits<double>::infinity();
-    /// Where the hand pulls the device's wrist to, if it has one: from the tool's axes to the
-    /// device's, of unit length.
-    Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double opening = 0;  ///< how far the hand has a gripper open, m
-  };
-
-  virtual ~TargetSource() = default;
-
-  /// The target at `time`, s on the device's clock, which grows from call to call; the device is at
-  /// `position` now, m, device frame. Called on the servo's thread: no allocation, lock, throw or
-  /// system call. A target that is not finite makes the device fail.
-  [[nodiscard]] virtual Target target(double time, const Eigen::Vector3d& position) noexcept = 0;
-
- protected:
-  TargetSource() = default;
-  TargetSource(const TargetSource&) = default;
-  TargetSource& operator=(const TargetSource&) = default;
-};
 
 /// A wrist that turns about the handle. The defaults are those of the device at a lever of
 /// 30 mm, half of a stylus.
@@ -199,6 +171,15 @@ class PacedDevice final : public Device {
 /// grow strictly.
 void check(const Trajectory& trajectory);
 
+/// A way to a place: straight from corner to corner. The last one is the place.
+struct Way {
+  static constexpr std::size_t kMost = 32;  ///< of an arc; then its pieces turn by 6 degrees
+
+  std::array<Eigen::Vector3d, kMost> corners;  ///< m, device frame
+  std::size_t size = 0;                        ///< 0: there is none
+  double speed = 0;                            ///< of the hand on it, m/s; > 0
+};
+
 /// A tool that is taken, moved and released from outside: by a page's mouse, over a network, by
 /// another program. One thread at a time sends; any number of others read, without locks.
 class RemoteTarget {
@@ -209,6 +190,8 @@ class RemoteTarget {
     double stamp = 0;         ///< of the target, s, on the sender's clock
     bool held = false;        ///< somebody holds the tool
     std::uint64_t moves = 0;  ///< targets that were sent so far
+    Way way = {};             ///< that leads to the target; none: the hand goes there straight
+    std::uint64_t ways = 0;   ///< that were begun so far
   };
 
   RemoteTarget();
@@ -218,6 +201,12 @@ class RemoteTarget {
   /// grows from call to call. False: ignored, since it is not finite, pulls with no force, or its
   /// orientation has not unit length. Wait-free, as all that follows.
   bool move(const TargetSource::Target& target, double stamp) noexcept;
+
+  /// Takes the tool as move() does. It goes to the last corner of `way`, which takes the place of
+  /// the target's position. `begins`: the hand begins it where it is; otherwise `way` is the one
+  /// before, but for its end. False: ignored, also where there is no way, a corner is not finite,
+  /// or the speed is not above 0.
+  bool fly(const TargetSource::Target& target, const Way& way, bool begins, double stamp) noexcept;
 
   /// The user of the tool is still connected and keeps it still: a mouse that rests sends
   /// nothing, so its connection calls this, more often than the reader's command_timeout.
@@ -240,14 +229,20 @@ struct Press {
   double begin = 0, end = 0;  ///< s, on the trajectory
   double resume = 0;  ///< s: where the trajectory is off the surface again, not before `end`
   double pull = 0;    ///< m; a hand that is held back stays farther from its target
+  /// m: corners of a way off the surface, over the press from its begin to where the trajectory is
+  /// at `resume`; empty: there is none
+  std::vector<Eigen::Vector3d> over = {};
 };
 
 struct TeleoperatedHandOptions {
-  double speed = 0.5;            ///< limit of the target's speed, but on the trajectory, m/s; > 0
-  double braking = 10;           ///< m/s^2 with which the target comes to rest at a command; > 0
-  double command_timeout = 0.1;  ///< s without a command after which the tool is released; > 0
-  double release_time = 0.2;     ///< time constant in which the hand ceases to pull, s; > 0
-  double return_after = 3;       ///< s from the release until the trajectory goes on; 0 or more
+  double speed = 0.5;          ///< limit of the target's speed, but on the trajectory, m/s; > 0
+  double travel_speed = 0.25;  ///< of the target on its way from touch to touch, m/s; > 0
+  /// N that the hand pulls with at most on its trajectory; > 0
+  double force = std::numeric_limits<double>::infinity();
+  double braking = 10;              ///< m/s^2 with which the target comes to rest at a command; > 0
+  double command_timeout = 0.1;     ///< s without a command after which the tool is released; > 0
+  double release_time = 0.2;        ///< time constant in which the hand ceases to pull, s; > 0
+  double return_after = 3;          ///< s from the release until the trajectory goes on; 0 or more
   std::vector<Press> presses = {};  ///< on the trajectory, in the order of their times
 };
 
@@ -255,17 +250,18 @@ struct TeleoperatedHandOptions {
 /// somebody takes the tool; then it follows the commands, and some time after the release it
 /// returns to the trajectory.
 ///
-///  - To the trajectory's beginning, and back to where it was interrupted, the target moves at
-///    `speed`; the trajectory waits for it.
+///  - A way that a command names begins where the hand is, and ends slowly.
+///  - To the trajectory's beginning, and back to where it was interrupted or, if that was a press,
+///    to the press's `resume`, the target moves at `travel_speed` from where the hand is, and the
+///    hand pulls with 1 N at most until it has caught up. The trajectory waits for it.
 ///  - A hand that nothing held back for 50 ms of a press has lost what it pressed (a rim, a hole):
-///  it goes straight to where the trajectory is off the surface, and on from there.
+///    it lifts to the nearest place of the press's `over`, and goes along that and on from there.
 ///  - Commands are interpolated between their irregular times, and followed no faster than `speed`
 ///    and than comes to rest there by `braking`.
 ///  - What it holds turns after the commands as fast as a hand of 80 mm moves its edge at `speed`,
 ///  stays so when released, and turns back where the trajectory goes on.
-///  - A command that limits the hand's force does so until the trajectory goes on, after its
-///  release,
-///    too. Where the next has no limit the target begins at the device.
+///  - A command that limits the hand's force does so after its release, too. Where the next has no
+///  limit the target begins at the device.
 ///  - A command that is overdue counts as a release: the target moves to where the device is, so
 ///    that nothing pulls any more and the surface pushes it out.
 ///
