@@ -10,6 +10,7 @@
 #include "palpate/device/simulated.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
+#include "session/led_hand.hpp"
 #include "session/page_hand.hpp"
 
 namespace palpate::tab {
@@ -34,14 +35,8 @@ struct TabHand {
         placement(place_device(scene, {}, {})),
         guide(remote, {}, {.speed = session::kReachingSpeed}),
         device({}, guide),
-        servo(device, scene, servo_options(placement)) {}
-
-  void go(TargetSource::Target target) {
-    target.position = placement.workspace.position_to_device(target.position);
-    target.orientation = placement.workspace.orientation_to_device(target.orientation);
-    target.opening /= placement.workspace.scale;
-    remote.move(target, heard);
-  }
+        servo(device, scene, servo_options(placement)),
+        led(remote, placement.workspace, scene) {}
 
   // `before`: is called with the time of each step, s; what it takes is not the step's.
   template <class Before>
@@ -77,6 +72,7 @@ struct TabHand {
   TeleoperatedHand guide;
   SimulatedDevice device;
   Servo servo;
+  session::LedHand led;
   std::optional<double> start;  // when the device's time was 0
   std::uint64_t steps = 0;
   double heard = 0;      // when the page said something last

@@ -66,8 +66,10 @@ struct TabProgram::Parts {
     controls.presets = session::preset_names();
     controls.preset = [this](const std::string& name) { apply(preset(initial, name, scope())); };
     controls.scale = [this](std::size_t) { return hand.placement.workspace.scale; };
-    controls.hand = [this](std::size_t, const TargetSource::Target& target) { hand.go(target); };
-    controls.release = [this](std::size_t) { hand.remote.release(); };
+    controls.hand = [this](std::size_t, const TargetSource::Target& target, const auto& eye) {
+      hand.led.move(target, eye, hand.servo, hand.heard);
+    };
+    controls.release = [this](std::size_t) { hand.led.release(); };
     return controls;
   }
 

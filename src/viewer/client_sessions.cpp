@@ -111,7 +111,9 @@ void ToolHolders::move(Session& session, const Hand& hand) {
   if (session.lost.contains(hand.device)) return;  // sent before it received the loss
   TargetSource::Target target = hand.target;
   target.position += options_.origin;
-  control(hand.device, target);
+  std::optional<Eigen::Vector3d> eye = hand.eye;
+  if (eye) *eye += options_.origin;
+  control(hand.device, target, eye);
   Session* const before = holders_[hand.device];
   if (before != nullptr && before != &session) {
     before->lose(hand.device, "another page took the tool");

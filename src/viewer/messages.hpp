@@ -34,7 +34,8 @@ struct Hello {
 };
 struct Hand {
   std::size_t device = 0;
-  TargetSource::Target target;  ///< position: m, relative to the origin; finite
+  TargetSource::Target target;              ///< position: m, relative to the origin; finite
+  std::optional<Eigen::Vector3d> eye = {};  ///< likewise; unset: the target is followed at once
 };
 struct Release {
   std::size_t device = 0;

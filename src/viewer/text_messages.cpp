@@ -83,15 +83,20 @@ Eigen::Quaterniond orientation(const json& object) {
   return q.normalized();
 }
 
-Hand hand(const json& object) {
-  const json& position = member(object, "position");
-  if (!position.is_array() || position.size() != 3) throw Unread{"'position' is not [x, y, z]"};
-  Hand hand;
-  hand.device = device(object);
-  for (std::size_t i = 0; i < 3; ++i) {
-    hand.target.position[static_cast<Eigen::Index>(i)] =
-        number(position[i], "position", -kFarthestHand, kFarthestHand);
+Eigen::Vector3d place(const json& object, const char* name) {
+  const json& parts = member(object, name);
+  if (!parts.is_array() || parts.size() != 3) {
+    throw Unread{fmt::format("'{}' is not [x, y, z]", name)};
   }
+  const auto at = [&](int i) { return number(parts[i], name, -kFarthestHand, kFarthestHand); };
+  return {at(0), at(1), at(2)};
+}
+
+Hand hand(const json& object) {
+  Hand hand;
+  hand.target.position = place(object, "position");
+  if (object.contains("eye")) hand.eye = place(object, "eye");
+  hand.device = device(object);
   hand.target.buttons = static_cast<std::uint32_t>(whole(object, "buttons", kAllButtons));
   if (object.contains("force")) {
     hand.target.maximum_force = number(object["force"], "force", kLeastForce, kMostForce);

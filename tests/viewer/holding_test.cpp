@@ -53,6 +53,16 @@ TEST(ClientSessions, WhoLosesTheToolToAnotherIsTold) {
   EXPECT_TRUE(rig.released.empty());
 }
 
+TEST(ClientSessions, TheEyeOfAHandIsInTheWorldToo) {
+  SessionsRig rig;
+  Session& session = rig.enter();
+  rig.answers(session,
+              R"({"type":"hand","device":0,"position":[0,0,0],"eye":[1,2,3],"buttons":0})");
+  EXPECT_EQ(rig.eye, Eigen::Vector3d(101, 2, 3));
+  rig.answers(session, R"({"type":"hand","device":0,"position":[0,0,0],"buttons":0})");
+  EXPECT_FALSE(rig.eye);
+}
+
 TEST(ClientSessions, WhatALoserSaidBeforeItKnewTakesNothingBack) {
   SessionsRig rig;
   Session& first = rig.enter();

@@ -32,8 +32,10 @@ struct SessionsRig {
     options.controls.preset = [this](const std::string& name) { preset = name; };
     options.controls.pause = [this](bool on) { paused = on; };
     options.controls.reset = [this](std::optional<std::size_t> tool) { resets.push_back(tool); };
-    options.controls.hand = [this](std::size_t, const TargetSource::Target& target) {
+    options.controls.hand = [this](std::size_t, const TargetSource::Target& target,
+                                   const std::optional<Eigen::Vector3d>& from) {
       hand = target.position;
+      eye = from;
       pull = target.maximum_force;
     };
     options.controls.release = [this](std::size_t device) { released.push_back(device); };
@@ -77,6 +79,7 @@ struct SessionsRig {
   bool paused = false;
   std::vector<std::optional<std::size_t>> resets;
   Eigen::Vector3d hand = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> eye = {};
   double pull = 0;
   std::vector<std::size_t> released;
   std::deque<Session> clients;

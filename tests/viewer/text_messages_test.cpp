@@ -35,6 +35,11 @@ TEST(ClientMessage, EveryKindOfTheProtocolIsRead) {
                                  R"("orientation":[0.6,0,0,0.8],"opening":0.02})");
   EXPECT_TRUE(turned.target.orientation.coeffs().isApprox(Eigen::Vector4d(0.6, 0, 0, 0.8), 1e-12));
   EXPECT_EQ(turned.target.opening, 0.02);
+  EXPECT_FALSE(turned.eye);
+  const Hand led = read<Hand>(
+      R"({"type":"hand","device":1,"position":[0,0,0],"eye":[1,2,-3],"buttons":0,"force":2})");
+  EXPECT_EQ(led.eye, Eigen::Vector3d(1, 2, -3));
+  EXPECT_EQ(led.target.maximum_force, 2);
   EXPECT_EQ(read<Release>(R"({"type":"release","device":2})").device, 2u);
   EXPECT_EQ(std::get<double>(read<Set>(R"({"type":"set","key":"k","value":-1.5})").value), -1.5);
   EXPECT_EQ(std::get<bool>(read<Set>(R"({"type":"set","key":"k","value":true})").value), true);
@@ -69,6 +74,8 @@ TEST(ClientMessage, WhatCannotBeReadIsRefusedWithWords) {
            R"({"type":"hello","token":"a","points":1.5})",
            R"({"type":"hello","token":"a","points":1e9})",
            R"({"type":"hand","device":0,"position":[0,0],"buttons":0})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"eye":[0,0],"buttons":0})",
+           R"({"type":"hand","device":0,"position":[0,0,0],"eye":[0,0,1e7],"buttons":0})",
            R"({"type":"hand","device":0,"position":[0,0,"0"],"buttons":0})",
            R"({"type":"hand","device":0,"position":[0,0,null],"buttons":0})",
            R"({"type":"hand","device":0,"position":[0,0,1e999],"buttons":0})",

@@ -241,7 +241,7 @@ TEST(Viewer, AHandIsReleasedWhenItsPageGoesAway) {
   std::atomic<int> released{0};
   std::atomic<double> height{0};
   ViewerControls controls;
-  controls.hand = [&](std::size_t, const TargetSource::Target& target) {
+  controls.hand = [&](std::size_t, const TargetSource::Target& target, const auto& /*eye*/) {
     const Eigen::Vector3d& place = target.position;
     height = place.z();
   };

@@ -56,6 +56,21 @@ test("the hand speaks 125 times a second at most, and the last place is told", (
   assert.ok(message.type === "hand" && message.position[0] === 1000);
 });
 
+test("where the program leads it, it tells from where the place is seen, until something else moves it", () => {
+  const hand = newHand();
+  hand.take(0, toolAt(0, 0, 0));
+  pass(10);
+  hand.goTo(new Vector3(1, 0, 0), new Vector3(0, 0, 5), 2);
+  pass(10);
+  const led = sent.at(-1)!.message;
+  assert.ok(led.type === "hand");
+  assert.deepEqual([led.eye, led.force], [[0, 0, 5], 2]);
+  hand.moveTo(new Vector3(2, 0, 0));
+  pass(10);
+  const { message } = sent.at(-1)!;
+  assert.ok(message.type === "hand" && message.eye === undefined && message.force === undefined);
+});
+
 test("a hand that is let go says so at once, and nothing after", () => {
   const hand = newHand();
   hand.take(0, toolAt(0, 0, 0));

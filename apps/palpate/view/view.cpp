@@ -129,6 +129,14 @@ struct PageNews {
   PageProgress surface = {};
 };
 
+std::deque<PageHold> holds_of(Run& run, const std::vector<Servo*>& servos) {
+  std::deque<PageHold> holds;
+  for (std::size_t i = 0; i < run.hands.size(); ++i) {
+    holds.emplace_back(run.hands[i], run.loaded.scene, *servos[i]);
+  }
+  return holds;
+}
+
 struct View::Parts {
   Parts(Run& r, std::vector<Servo*> s, const LiveFeed& f, const RosBridge* b)
       : run(r),
@@ -137,7 +145,7 @@ struct View::Parts {
         initial(initial_settings(r)),
         settings(initial),
         next(r),
-        holds(r.hands.begin(), r.hands.end()),
+        holds(holds_of(r, servos)),
         preparer(r, initial.preparation,
                  [this](const std::string& why, const auto& held) { go_back(why, held); }),
         news{r, f, viewer},
@@ -201,9 +209,8 @@ struct View::Parts {
     }
     controls.scale = [this](std::size_t hand) { return run.hands[hand].workspace.scale; };
     controls.takeable = [this](std::size_t hand) { return holds[hand].possible(); };
-    controls.hand = [this](std::size_t hand, const TargetSource::Target& target) {
-      holds[hand].move(target);
-    };
+    controls.hand = [this](std::size_t hand, const TargetSource::Target& target,
+                           const std::optional<Vector3d>& eye) { holds[hand].move(target, eye); };
     controls.release = [this](std::size_t hand) { holds[hand].release(); };
     return controls;
   }

@@ -100,8 +100,12 @@ struct ViewerControls {
   std::function<bool(std::size_t device)> takeable = {};
   /// World metres of a metre that its hand moves; empty: 1.
   std::function<double(std::size_t device)> scale = {};
-  /// Gives a tool the target of a page's hand, world frame.
-  std::function<void(std::size_t device, const TargetSource::Target& target)> hand = {};
+  /// Gives a tool the target of a page's hand, world frame. `eye`: from where the page sees that
+  /// place, if the hand is to go there through free space or, with a limited force, to come down
+  /// on it.
+  std::function<void(std::size_t device, const TargetSource::Target& target,
+                     const std::optional<Eigen::Vector3d>& eye)>
+      hand = {};
   /// The page let go of the tool, or went away.
   std::function<void(std::size_t device)> release = {};
 };

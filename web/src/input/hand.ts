@@ -15,6 +15,7 @@ export class Hand {
   turned: Quaternion | undefined; // of a tool that turns
   private opening = 0; // m
   private extent = 0; // of the tool from its handle, m
+  private eye: Vector3 | undefined; // that sees the position, where the program leads the hand there
   private force: number | undefined; // N, that it pulls with at most; undefined: as hard as it can
   private buttons = 0;
   private sent = -Infinity;
@@ -33,7 +34,7 @@ export class Hand {
     this.extent = tool.shape?.extent ?? 0;
     this.opening = tool.opening;
     this.held = true;
-    this.force = undefined;
+    this.force = this.eye = undefined;
     this.mark();
     this.changed();
   }
@@ -51,13 +52,23 @@ export class Hand {
     if (!this.held || !Number.isFinite(position.lengthSq())) return;
     this.position.copy(position);
     this.force = force;
+    this.eye = undefined;
+    this.mark();
+  }
+
+  /** The program takes it there: through free space or, with a force, down onto it. */
+  goTo(position: Vector3, eye: Vector3, force?: number): void {
+    if (!this.held || !Number.isFinite(position.lengthSq() + eye.lengthSq())) return;
+    this.position.copy(position);
+    this.force = force;
+    this.eye = eye.clone();
     this.mark();
   }
 
   /** Right, up and away as the eye sees them, m. */
   nudge(camera: PerspectiveCamera, right: number, up: number, away: number): void {
     if (!this.held || (right === 0 && up === 0 && away === 0)) return;
-    this.force = undefined;
+    this.force = this.eye = undefined;
     this.position.add(new Vector3(right, up, -away).applyQuaternion(camera.quaternion));
     this.mark();
   }
@@ -98,6 +109,7 @@ export class Hand {
     this.send({
       type: "hand", device: this.device, position: this.position.toArray(), buttons: this.buttons,
       ...(this.force === undefined ? {} : { force: this.force }),
+      ...(this.eye === undefined ? {} : { eye: this.eye.toArray() }),
       ...(this.turned === undefined ? {} : { orientation: this.turned.toArray(), opening: this.opening }),
     });
   }

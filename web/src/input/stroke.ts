@@ -1,6 +1,6 @@
 // The tool on the surface under a pointer: it hovers there while it is held, and presses while a button is
-// down: the hand wants to be deep below the surface, but pulls with a limited force. To another surface it is
-// lifted: it goes there straight, and nothing holds it.
+// down: the hand wants to be deep below the surface, but pulls with a limited force. Wherever it does not touch,
+// the program leads it: to where it hovers, lifted and through free space, and down onto the surface.
 
 import { MathUtils, Plane, Raycaster, Vector2, Vector3 } from "three";
 import type { Seen } from "../view/pick";
@@ -18,7 +18,6 @@ const kBelow = 3; // and where a hand that presses wants to be at least
 const kGive = 6; // times as deep as the surface yields to the force, as the hand's spring is not much softer
 const kDeepest = 20; // times the least
 const kSunk = 2; // reaches below what is seen, some 20 mm of the hand: a press that goes so deep, and is soft, ends
-const kNear = 0.25; // and from where it pulls with a limited force
 const kGrazing = 0.25; // cosine: a plane seen at a flatter angle does not determine where the pointer is on it
 // ms in which a proxy that something else holds may come free, and a force that contact keeps small grow: a hand that
 // nobody moves has to be lifted for that
@@ -42,7 +41,6 @@ export class Stroke {
   private good = 0; // ms, when nothing else held the proxy
   private strong = 0; // ms, when nothing kept the force small
   private freed = -Infinity; // ms
-  private left = -Infinity; // ms, when it began to go to another surface
   private readonly caster = new Raycaster();
 
   /** free: puts the proxy to the hand. */
@@ -60,6 +58,7 @@ export class Stroke {
 
   /** pressure: of a pen that reports it, 0 to 1. */
   press(on: boolean, pressure?: number): void {
+    if (on && !this.pressing) this.there = false;
     this.pressing = on;
     this.pen = pressure === undefined ? undefined : Math.max(kLeast, kPen * pressure);
   }
@@ -93,11 +92,10 @@ export class Stroke {
     this.content = this.pressing && tool.touching && tool.force.length() > kEnough * (this.pen ?? this.force);
     if (!this.pressing || tool.touching) this.misses = 0;
     this.judge(tool, above, felt, now);
-    const height = -this.below(tool);
     const pressing = this.pressing && this.there && seen !== undefined && !tool.behind;
-    if (tool.touching && now - this.left < kPatience / 4) this.hand.moveTo(tool.hipPosition); // until it is free
-    else if (!pressing) this.hand.moveTo(above);
-    else if (!tool.touching && height > kNear * reach) this.hand.moveTo(position.clone().addScaledVector(normal, lift - kNear * reach));
+    const eye = this.world.stage.camera.position;
+    if (!pressing) this.hand.goTo(above, eye);
+    else if (!tool.touching) this.hand.goTo(position.clone().addScaledVector(normal, lift - kBelow * reach), eye, this.pen ?? this.force);
     else this.hand.moveTo(position.clone().addScaledVector(normal, lift - this.depth(tool, reach)), this.pen ?? this.force);
   }
 
@@ -127,8 +125,9 @@ export class Stroke {
     const deep = Math.abs(offset.dot(this.caster.ray.direction));
     const aside = Math.sqrt(Math.max(0, offset.lengthSq() - deep * deep));
     const was = this.there;
-    if (felt) this.there = true;
-    else if (this.missed(tool) || deep > aside + 2 * kAbove * reach) this.there = false;
+    const far = aside > 2 * kAbove * reach;
+    if (felt && (was || !far)) this.there = true;
+    else if (this.missed(tool) || deep > aside + 2 * kAbove * reach || (far && !tool.touching)) this.there = false;
     else if (tool.hipPosition.distanceTo(above) < reach + (tool.shape?.extent ?? 0) / 4) this.there = true;
     this.sunk = tool.touching && (this.sunk || (tool.weak && this.below(tool) > kSunk * reach));
     if (this.sunk) this.there = false;
@@ -138,9 +137,8 @@ export class Stroke {
       this.freed = this.strong = now;
     }
     if (felt || !tool.touching) this.good = now;
-    else if (!this.there || now - this.good > kPatience) this.putToHand(now, tool.faulty);
+    else if (now - this.good > kPatience) this.putToHand(now, tool.faulty);
     if (!was || this.there) return;
-    this.left = now;
     if (this.missed(tool) && this.aside(tool) < reach) this.misses += 1;
   }
 

@@ -91,7 +91,7 @@ export type FromProgram =
 
 export type ToProgram =
   | { type: "hello"; token: string; points: number }
-  | { type: "hand"; device: number; position: Vector; buttons: number; force?: number; orientation?: Quaternion; opening?: number }
+  | { type: "hand"; device: number; position: Vector; buttons: number; force?: number; eye?: Vector; orientation?: Quaternion; opening?: number }
   | { type: "release"; device: number }
   | { type: "set"; key: string; value: SettingValue }
   | { type: "preset"; name: string }

@@ -1,0 +1,217 @@
+// Finds ways for a hand that a page leads.
+#include "session/led_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "device/free_way.hpp"
+
+namespace palpate::session {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRoom = 1.25;      // R that are free around a way, as of a hand that explores
+constexpr double kLeastRoom = 0.5;  // R: ways between the points of a surface are none (judgement)
+// Share of what is free around the goal that suffices for the way there (judgement)
+constexpr double kShare = 0.6;
+constexpr double kPatience = 0.2;     // s until a way is looked for again (judgement)
+constexpr double kMostPieces = 4000;  // of an arc that is looked at; some milliseconds
+constexpr double kTravelTime = 1;     // s that a long way takes (judgement)
+constexpr double kTouchSpeed = 0.1;   // m/s: 0.1 kg on 500 N/m make 0.7 N of it at most
+constexpr double kLeastSpeed = 0.25;  // m/s of the hand, as of one that explores ...
+constexpr double kMostSpeed = 1;      // ... and at most (judgement)
+constexpr double kWayForce = 4;       // N; that takes 3.6 of the usual hand and device
+// N that a hand pulls with at most where nothing shows a free way. Against a wall it reaches
+// 0.13 m/s with it (3.5 N s/m), which 0.1 kg and 500 N/m turn into 0.9 N.
+constexpr double kGropingForce = 0.5;
+
+// All points of a scene.
+class Obstacles {
+ public:
+  explicit Obstacles(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.size(); ++i) {
+      std::shared_ptr<const SurfacePoints> points = scene.source(i).points();
+      if (!points || points->size() == 0) continue;
+      radius_ = std::max<double>(radius_, points->radius);
+      sources_.push_back(std::move(points));
+    }
+  }
+
+  /// The largest R, m; 0: there is nothing.
+  [[nodiscard]] double radius() const { return radius_; }
+
+  /// From the nearest point to `x`, m; infinite: there is none.
+  [[nodiscard]] Vector3d offset(const Vector3d& x) {
+    Vector3d least = Vector3d::Constant(std::numeric_limits<double>::infinity());
+    for (const auto& source : sources_) {
+      source->grid.nearest((x - source->origin).cast<float>(), 1, found_);
+      const Vector3d point =
+          source->origin + source->grid.points()[found_.front().index].cast<double>();
+      if ((x - point).squaredNorm() < least.squaredNorm()) least = x - point;
+    }
+    return least;
+  }
+  [[nodiscard]] double distance(const Vector3d& x) { return offset(x).norm(); }
+
+ private:
+  std::vector<std::shared_ptr<const SurfacePoints>> sources_;
+  std::vector<CellGrid::Neighbor> found_;
+  double radius_ = 0;
+};
+
+// Finds ways between two places off the surface.
+class Finder {
+ public:
+  Finder(Obstacles& obstacles, const Vector3d& goal, const Vector3d& eye)
+      : obstacles_(obstacles),
+        goal_(goal),
+        eye_(eye),
+        height_(std::min(obstacles.distance(goal), 2 * kRoom * obstacles.radius())),
+        room_(obstacles.radius() *
+              std::clamp(kShare * height_ / obstacles.radius(), kLeastRoom, kRoom)) {}
+
+  [[nodiscard]] double room() const { return room_; }
+
+  /// Where a hand that touches or nearly does is lifted to, on its own side of the surface; and is
+  /// it free on the way there?
+  [[nodiscard]] std::pair<Vector3d, bool> lifted(const ServoState& state) const {
+    const Contact& contact = state.contact;
+    if (contact.touching) return raised(contact.proxy, contact.normal);
+    const Vector3d away = obstacles_.offset(state.hip);
+    const double distance = away.norm();
+    if (distance >= height_ || distance <= 0) return {state.hip, true};
+    return raised(state.hip - away, away / distance);
+  }
+
+  /// The first that is clear of: straight, arcs off both surfaces or towards the eye, and along
+  /// what the eye saw.
+  [[nodiscard]] FreeWay from(const Vector3d& start) const {
+    FreeWay way = piece(start, goal_, Vector3d::Zero());
+    const double length = (goal_ - start).norm();
+    const Vector3d off = (off_surface(start) + off_surface(goal_)).normalized();
+    const Vector3d towards = (eye_ - 0.5 * (start + goal_)).normalized();
+    for (const double lift : {0.25, 0.5, 1.0, 2.0}) {
+      for (const Vector3d& up : {off, towards}) {
+        if (!way.clear) way = piece(start, goal_, lift * std::max(length, 4 * room_) * up);
+      }
+    }
+    for (const double share : {0.1, 0.2, 0.4, 0.7, 1.0}) {
+      if (!way.clear) way = seen(start, share);
+    }
+    return way;
+  }
+
+ private:
+  // Off the surface at `foot`: no other is nearer on the way up.
+  [[nodiscard]] std::pair<Vector3d, bool> raised(const Vector3d& foot,
+                                                 const Vector3d& normal) const {
+    bool free = true;
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+      const double height = share * height_;
+      free = free && obstacles_.distance(foot + height * normal) > kShare * height;
+    }
+    return {foot + height_ * normal, free};
+  }
+
+  [[nodiscard]] FreeWay piece(const Vector3d& a, const Vector3d& b, const Vector3d& rise) const {
+    return arc({a, b}, rise, room_, kMostPieces,
+               [this](const Vector3d& x) { return obstacles_.distance(x); });
+  }
+
+  [[nodiscard]] Vector3d off_surface(const Vector3d& x) const {
+    return obstacles_.offset(x).normalized();
+  }
+
+  // Some share of the way to the eye and back.
+  [[nodiscard]] FreeWay seen(const Vector3d& start, double share) const {
+    const Vector3d from = start + share * (eye_ - start);
+    const Vector3d to = goal_ + share * (eye_ - goal_);
+    FreeWay way{{from, to, goal_}, true};
+    for (const auto& [a, b] : {std::pair(start, from), std::pair(from, to), std::pair(to, goal_)}) {
+      way.clear = way.clear && piece(a, b, Vector3d::Zero()).clear;
+    }
+    return way;
+  }
+
+  Obstacles& obstacles_;
+  Vector3d goal_;
+  Vector3d eye_;
+  double height_;  // of a lifted hand above the surface, m
+  double room_;    // that is free around a way, m
+};
+
+// So many of them, and the last.
+void thin(std::vector<Vector3d>& positions, std::size_t most) {
+  const std::size_t count = std::min(most, positions.size());
+  for (std::size_t i = 1; i < count; ++i) {
+    positions[i - 1] = positions[i * (positions.size() - 1) / (count - 1)];
+  }
+  if (count > 1) positions.resize(count - 1);
+}
+
+}  // namespace
+
+void LedHand::move(const TargetSource::Target& wish, const std::optional<Vector3d>& eye,
+                   const Servo& servo, double stamp) {
+  TargetSource::Target target = wish;
+  target.position = workspace_.position_to_device(wish.position);
+  target.orientation = workspace_.orientation_to_device(wish.orientation);
+  target.opening /= workspace_.scale;
+  if (!eye) {
+    goal_.reset();
+    remote_.move(target, stamp);
+    return;
+  }
+  const bool touches = std::isfinite(wish.maximum_force);
+  const bool same = goal_ && touches == touches_ && (*goal_ - wish.position).norm() <= near_;
+  const bool begins = !same || (!clear_ && stamp - planned_ > kPatience);
+  if (begins) plan(wish.position, *eye, touches, servo.state());
+  if (begins) planned_ = stamp;
+  touches_ = touches;
+  way_.corners[way_.size - 1] = target.position;
+  target.maximum_force = std::min(target.maximum_force, clear_ ? kWayForce : kGropingForce);
+  remote_.fly(target, way_, begins, stamp);
+}
+
+void LedHand::release() {
+  goal_.reset();
+  remote_.release();
+}
+
+void LedHand::plan(const Vector3d& goal, const Vector3d& eye, bool touches,
+                   const ServoState& state) {
+  goal_ = goal;
+  Obstacles obstacles(scene_);
+  const double radius = obstacles.radius();
+  std::vector<Vector3d> corners = {goal};
+  const bool begun = state.step > 0;  // before, nobody knows where the hand is
+  if (radius == 0 || touches || !begun) {
+    near_ = touches ? std::numeric_limits<double>::infinity() : 0;
+    clear_ = begun;
+  } else {
+    const Finder finder(obstacles, goal, eye);
+    near_ = finder.room();
+    const auto [start, free] = finder.lifted(state);
+    FreeWay way = finder.from(start);
+    clear_ = free && way.clear;
+    if (clear_) corners = std::move(way.positions);
+    thin(corners, Way::kMost - 1);
+    corners.insert(corners.begin(), start);
+  }
+  double length = 0;
+  way_.size = 0;
+  for (const Vector3d& corner : corners) {
+    way_.corners[way_.size++] = workspace_.position_to_device(corner);
+    if (way_.size > 1) length += (corner - corners[way_.size - 2]).norm() / workspace_.scale;
+  }
+  way_.speed = touches  ? kTouchSpeed
+               : clear_ ? std::clamp(length / kTravelTime, kLeastSpeed, kMostSpeed)
+                        : kLeastSpeed;
+}
+
+}  // namespace palpate::session
