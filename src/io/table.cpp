@@ -113,7 +113,8 @@ bool TableRows::read(std::span<const std::optional<std::size_t>> slots,
     }
     row[*slot] = *number;
   }
-  if (take_cell(rest, dialect_.separator)) fail_at_row(input_, {begin_, slots.size()}, dialect_);
+  if (!dialect_.open && take_cell(rest, dialect_.separator))
+    fail_at_row(input_, {begin_, slots.size()}, dialect_);
   return true;
 }
 
@@ -174,6 +175,10 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
     while (plain.roles.size() <= kMostTextColumns) {
       const auto cell = take_cell(rest, separator);
       if (!cell) break;
+      if (cell->find("[]") != std::string_view::npos) {
+        plain.open = fallback.open = true;
+        break;
+      }
       const bool is_unit = separator == " " && (cell->starts_with('[') || cell->starts_with('('));
       for (ColumnNames* names : {&plain, &fallback}) {
         if (!is_unit) {
@@ -185,7 +190,8 @@ std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns
     }
     const ColumnNames& names = plain.roles.has_point() ? plain : fallback;
     if (!names.roles.has_point() || (begin > 0 && is_prose(names.roles))) continue;
-    if (columns == 0 || names.roles.size() == columns) return names;
+    const std::size_t size = names.roles.size();
+    if (columns == 0 || size == columns || (names.open && size < columns)) return names;
   }
   return {};
 }

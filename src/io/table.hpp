@@ -21,6 +21,7 @@ struct Dialect {
   char decimal = '.';  ///< or a comma
   bool comments = false;
   std::string_view declarer = "the header declares";  ///< what sets the number of cells
+  bool open = false;                                  ///< any number of cells may follow those
 };
 
 /// Takes the next cell off a line, without blanks and double quotes around it; nothing at the end
@@ -72,6 +73,7 @@ inline constexpr std::string_view kSeparators[] = {";", "\t", ", ", ",", " "};
 struct ColumnNames {
   Roles roles{};
   bool degrees = false;  ///< x and y are longitude and latitude
+  bool open = false;     ///< a list follows them, as COLMAP's "TRACK[]": any number of values
   /// m a unit of x, y and z, where their names tell: "X [mm]".
   std::array<std::optional<double>, 3> units{};
 
@@ -82,7 +84,8 @@ struct ColumnNames {
 };
 
 /// The names in a line that names a point, divided by any separator: x, y and z or, without them,
-/// easting, northing and height, or their like. `columns`: so many names; 0: any number.
+/// easting, northing and height, or their like. `columns`: so many names, or at most so many before
+/// a list; 0: any number.
 [[nodiscard]] std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns);
 
 /// The first numbers of a row: all that guess_roles() looks at.

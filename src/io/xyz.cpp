@@ -39,6 +39,9 @@ constexpr std::string_view kRemedy =
     "A text cloud has one point per line, x y z first, or a header line that names the columns x, "
     "y, z";
 
+// What COLMAP writes above its points, where somebody left that out.
+constexpr std::string_view kPoints3d = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[]";
+
 class XyzReader {
  public:
   explicit XyzReader(const Input& input) : input_(input) {}
@@ -73,12 +76,24 @@ class XyzReader {
   }
 
  private:
+  // Lists that COLMAP writes beside its points begin with such a comment.
+  void refuse_others_of_colmap(std::string_view line) const {
+    for (const auto& [names, what] :
+         {std::pair("CAMERA_ID, MODEL", "cameras"), std::pair("IMAGE_ID, QW, QX", "pictures")}) {
+      if (line.find(names) == std::string_view::npos) continue;
+      fail(input_, fmt::format("this is COLMAP's list of {}, not of points", what),
+           "Give points3D.txt, which lies beside it");
+    }
+  }
+
   // Up to the first row, or to the number of a scan's points.
   void find_rows() {
+    if (lower_case(input_.name).ends_with("points3d.txt")) comment_ = kPoints3d;
     TextScanner scanner(input_);
     for (begin_ = scanner.offset(); !scanner.at_end(); begin_ = scanner.offset()) {
       const std::string_view line = scanner.next_line();
       if (is_blank_or_comment(line)) {
+        refuse_others_of_colmap(line);
         if (find_names(line, 0)) comment_ = line;  // CloudCompare: "//X Y Z"
         input_.unit = in_unit_of_comments(input_, line, "").unit;
       } else if (!header_.empty() || begins_with_number(line)) {
@@ -121,11 +136,12 @@ class XyzReader {
       table.degrees = names->degrees;
       table.units = names->units;
       table.roles = names->roles;
+      table.dialect.open = names->open;
     } else if (header_.empty()) {
       guess(table, columns);
     }
     if (!table.roles.has_point()) return;
-    table.slots.resize(columns);
+    table.slots.resize(table.dialect.open ? table.roles.size() : columns);
     for (std::size_t k = 0; k < table.roles.size(); ++k) {
       if (table.roles[k]) table.slots[k] = index_of(*table.roles[k]);
     }
@@ -170,7 +186,7 @@ class XyzReader {
       const bool zero = cell->size() > 1 && cell->starts_with('0') && parse_count(*cell);
       if (zero && table.dialect.separator == ",") return false;
     }
-    return !take_cell(line, table.dialect.separator);
+    return table.dialect.open || !take_cell(line, table.dialect.separator);
   }
 
   // Decides the roles of columns without names. All but the last one have to hold something, or

@@ -197,5 +197,30 @@ TEST(Xyz, ReadsNumbersOfEverySize) {
   EXPECT_EQ(file.dropped, 2u);
 }
 
+std::string of_colmap(bool comment) {
+  const std::string names =
+      "# 3D point list with one line of data per point:\n"
+      "#   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n"
+      "# Number of points: 3, mean track length: 2\n";
+  return (comment ? names : "") +
+         "77 1 2 3 10 20 30 0.5 1 0 2 5\n3 4 5 6 40 50 60 0.1 1 1\n9 7 8 9 1 2 3 0.2 1 2 2 7 3 1\n";
+}
+
+TEST(Xyz, ReadsColmapsPointsWhoseTracksAreOfAnyLength) {
+  for (const auto& [text, name] :
+       {std::pair(of_colmap(true), "a.txt"), std::pair(of_colmap(false), "sparse/points3D.txt")}) {
+    const CloudFile file = read_text(text, name);
+    ASSERT_EQ(file.cloud.size(), 3u);
+    EXPECT_EQ(file.format, "text, columns named");
+    EXPECT_EQ(file.cloud.point(1), Eigen::Vector3d(4, 5, 6));
+    EXPECT_EQ(file.cloud.colors[1], (std::array<std::uint8_t, 3>{40, 50, 60}));
+  }
+  EXPECT_EQ(read_text("1 2 3\n", "points3D.txt").cloud.size(), 1u);
+  EXPECT_NE(refusal("# Image list\n#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+                    "1 1 0 0 0 0 0 0 1 a.png\n")
+                .find("COLMAP's list of pictures"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace palpate
