@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <utility>
+
+#include "io/mesh/gltf_uri.hpp"
 
 namespace palpate::io {
 
@@ -25,8 +26,11 @@ constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 
 // Extensions that leave positions and indices as they are, by how their names begin.
-constexpr std::array<std::string_view, 5> kHarmless{"KHR_materials_", "KHR_texture_", "KHR_lights_",
-                                                    "EXT_texture_", "KHR_mesh_quantization"};
+// The last two are read, the very last as points.
+constexpr std::array<std::string_view, 7> kHarmless{
+    "KHR_materials_",        "KHR_texture_",          "KHR_lights_",
+    "EXT_texture_",          "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",
+    "KHR_gaussian_splatting"};
 
 std::optional<NumberType> number_type(std::size_t component) {
   constexpr std::array<std::optional<NumberType>, 7> kComponents{
@@ -40,59 +44,9 @@ std::optional<NumberType> number_type(std::size_t component) {
 std::size_t width_of(const json* type) {
   constexpr std::array<std::string_view, 4> kWidths{"SCALAR", "VEC2", "VEC3", "VEC4"};
   if (type == nullptr || !type->is_string()) return 0;
+  if (*type == "MAT4") return 16;
   const auto* const found = std::ranges::find(kWidths, type->get_ref<const std::string&>());
   return found == kWidths.end() ? 0 : static_cast<std::size_t>(found - kWidths.begin()) + 1;
-}
-
-// Six bits of a letter of base64; 64: it is none.
-unsigned six_bits(char c) {
-  constexpr std::string_view kLetters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  return static_cast<unsigned>(std::min(kLetters.find(c), kLetters.size()));
-}
-
-// Nothing for text that is no base64.
-std::optional<Bytes> decode_base64(std::string_view text) {
-  while (text.ends_with('=')) text.remove_suffix(1);
-  Bytes bytes(text.size() * 3 / 4);
-  unsigned held = 0;  // bits that no byte has been made of yet
-  int bits = 0;
-  std::size_t done = 0;
-  for (const char c : text) {
-    const unsigned six = six_bits(c);
-    if (six == 64) return {};
-    held = (held << 6U | six) & 0xFFFFU;
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes.span()[done++] = static_cast<std::byte>(held >> static_cast<unsigned>(bits));
-  }
-  return bytes;
-}
-
-// A path as an URI writes it, with %XX for some letters.
-std::string path_of_uri(std::string_view uri) {
-  std::string path;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned code = 0;
-    const char* const begin = uri.data() + i + 1;
-    const bool coded = uri[i] == '%' && i + 2 < uri.size() &&
-                       std::from_chars(begin, begin + 2, code, 16).ptr == begin + 2;
-    path += coded ? static_cast<char>(code) : uri[i];
-    if (coded) i += 2;
-  }
-  return path;
-}
-
-// The file without links and "..", if it lies in the folder.
-std::optional<std::filesystem::path> path_inside(const std::filesystem::path& folder,
-                                                 const std::filesystem::path& path) {
-  std::error_code failed;
-  const auto root = weakly_canonical(folder, failed);
-  if (failed || path.is_absolute() || path.empty()) return {};
-  auto file = weakly_canonical(folder / path, failed);
-  if (failed || std::ranges::mismatch(root, file).in1 != root.end()) return {};
-  return file;
 }
 
 // A value in a message. Arrays and objects may be nested too deeply to be written.
@@ -190,6 +144,29 @@ std::optional<std::size_t> GltfFile::whole(const json& object, const char* name)
     wrong(fmt::format("\"{}\" is {}, not a count", name, shown(*found)));
   }
   return static_cast<std::size_t>(number);
+}
+
+std::vector<std::size_t> GltfFile::indices(const json& object, const char* name) const {
+  std::vector<std::size_t> result;
+  const json* found = find_member(object, name);
+  if (found == nullptr || !found->is_array()) return result;
+  for (const json& each : *found) {
+    if (!each.is_number_unsigned()) wrong(fmt::format("\"{}\" are not all counts", name));
+    result.push_back(each.get<std::size_t>());
+  }
+  return result;
+}
+
+bool GltfFile::fill(const json& object, const char* name, std::span<double> values) const {
+  const json* found = find_member(object, name);
+  if (found == nullptr) return false;
+  bool good = found->is_array() && found->size() == values.size();
+  for (std::size_t i = 0; good && i < values.size(); ++i) {
+    good = (*found)[i].is_number();
+    if (good) values[i] = (*found)[i].get<double>();
+  }
+  if (!good) wrong(fmt::format("\"{}\" is not {} numbers", name, values.size()));
+  return true;
 }
 
 GltfNumbers GltfFile::numbers(std::size_t index) {

@@ -45,6 +45,11 @@ class GltfFile {
   /// A whole number that is a member. @throws Error where it is none.
   [[nodiscard]] std::optional<std::size_t> whole(const nlohmann::json& object,
                                                  const char* name) const;
+  /// The counts in a list that is a member; none without one. @throws Error for others.
+  [[nodiscard]] std::vector<std::size_t> indices(const nlohmann::json& object,
+                                                 const char* name) const;
+  /// Makes `values` a list of as many numbers. False: it is not there. @throws Error for another.
+  bool fill(const nlohmann::json& object, const char* name, std::span<double> values) const;
   /// Numbers of accessor `index`, which stay where they are as long as this object.
   /// @throws Error for sparse and compressed ones, and for data that is not there.
   [[nodiscard]] GltfNumbers numbers(std::size_t index);
