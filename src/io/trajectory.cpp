@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "geometry/turn.hpp"
+#include "io/held_columns.hpp"
 #include "io/table.hpp"
 #include "io/text_scanner.hpp"
 #include "io/time_unit.hpp"
@@ -22,12 +23,11 @@ namespace palpate {
 
 namespace {
 
-// First what every trajectory has, then what a measured force, an orientation and an opening take.
-constexpr std::array<std::string_view, 12> kColumns = {
-    "t", "hip_x", "hip_y", "hip_z", "fx", "fy", "fz", "qx", "qy", "qz", "qw", "gripper"};
+// First what every trajectory has, then what a measured force and an opening take.
+constexpr std::array<std::string_view, 8> kColumns = {"t",  "hip_x", "hip_y", "hip_z",
+                                                      "fx", "fy",    "fz",    "gripper"};
 constexpr std::size_t kNeeded = 4;
-constexpr std::size_t kTurned = 7;
-constexpr std::size_t kOpening = 11;
+constexpr std::size_t kOpening = 7;
 
 std::vector<std::string_view> split(std::string_view line, std::string_view separator) {
   std::vector<std::string_view> cells;
@@ -124,12 +124,14 @@ class Reader {
                          fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
       }
     }
-    if (!options_.forces || count(kNeeded, kTurned) < kTurned - kNeeded) {
-      std::fill(slots_.begin() + kNeeded, slots_.begin() + kTurned, std::nullopt);
+    if (!options_.forces || count(kNeeded, kOpening) < kOpening - kNeeded) {
+      std::fill(slots_.begin() + kNeeded, slots_.begin() + kOpening, std::nullopt);
     }
-    const std::size_t turned = count(kTurned, kOpening);
-    if (turned > 0 && turned < kOpening - kTurned)
-      fail("an orientation has four columns, qx,qy,qz,qw: name all of them, or none");
+    const io::FoundColumns found = io::find_held_columns(names);
+    if (!found.problem.empty()) fail(found.problem);
+    held_ = found.columns;
+    for (const std::string_view name : names) names_.emplace_back(name);
+    if (held_ && options_.remark && !held_->words.empty()) options_.remark(held_->words);
   }
 
   [[nodiscard]] std::size_t count(std::size_t begin, std::size_t end) const {
@@ -145,7 +147,7 @@ class Reader {
     }
     std::array<double, kColumns.size()> values{};
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-      if (slots_[i]) values[i] = value(cells, i);
+      if (slots_[i]) values[i] = value(cells, *slots_[i]);
     }
     if (const auto wrong = io::not_in_seconds(values[0])) {
       fail(fmt::format("{}. {}.", wrong->what, wrong->remedy));
@@ -159,21 +161,40 @@ class Reader {
     added.position = {values[1], values[2], values[3]};
     if (slots_[kNeeded]) added.force = {values[4], values[5], values[6]};
     if (slots_[kOpening]) added.opening = values[kOpening];
-    if (!slots_[kTurned]) return;
-    added.orientation = {values[10], values[7], values[8], values[9]};
-    if (!is_about_unit(*added.orientation)) fail("qx,qy,qz,qw is no quaternion of unit length");
+    if (held_) added.orientation = orientation(cells);
   }
 
-  double value(const std::vector<std::string_view>& cells, std::size_t column) {
-    const std::size_t slot = *slots_[column];
+  Eigen::Quaterniond orientation(const std::vector<std::string_view>& cells) const {
+    constexpr double kTurn = 6.3;  // rad, and a little
+    std::array<double, 4> numbers{};
+    std::size_t k = 0;
+    for (const std::size_t slot : held_->used()) {
+      numbers[k] = value(cells, slot);
+      if (held_->angles && !held_->stated && std::abs(numbers[k]) > kTurn) {
+        fail(
+            fmt::format("{} = {} is more than a turn in radians: write roll_deg,pitch_deg,yaw_deg "
+                        "in the header line if it is degrees, else roll_rad,pitch_rad,yaw_rad",
+                        names_[slot].substr(0, 40), numbers[k]));
+      }
+      ++k;
+    }
+    const Eigen::Quaterniond result = held_->orientation(numbers);
+    if (!is_about_unit(result)) {
+      fail(fmt::format("{} is no quaternion of unit length",
+                       held_->words.empty() ? "qx,qy,qz,qw" : held_->words));
+    }
+    return result;
+  }
+
+  [[nodiscard]] double value(const std::vector<std::string_view>& cells, std::size_t slot) const {
     if (slot >= cells.size()) {
       fail(fmt::format("the row ends before column '{}'; a row of this file has at least {} values",
-                       kColumns[column], slot + 1));
+                       names_[slot].substr(0, 40), slot + 1));
     }
     const std::optional<double> found = number(cells[slot]);
     if (!found) {
       fail(fmt::format("'{}' in column '{}' is not a finite number: correct or remove the row",
-                       cells[slot].substr(0, 40), kColumns[column]));
+                       cells[slot].substr(0, 40), names_[slot].substr(0, 40)));
     }
     return *found;
   }
@@ -184,6 +205,8 @@ class Reader {
   std::string_view separator_ = ",";
   bool begun_ = false;                                             // the columns are known
   std::array<std::optional<std::size_t>, kColumns.size()> slots_;  // of kColumns, in a row
+  std::vector<std::string> names_;                                 // of all columns
+  std::optional<io::HeldColumns> held_;
   Trajectory rows_;
 };
 

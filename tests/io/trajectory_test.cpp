@@ -1,8 +1,11 @@
 #include "palpate/io/trajectory.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "palpate/base/error.hpp"
 
@@ -52,6 +55,66 @@ TEST(Trajectory, ReadsHowAToolIsHeldWhereThatIsTold) {
             std::string::npos);
   EXPECT_NE(message(header + "0,1,2,3,0.6,0,0,0.8,nan\n").find("column 'gripper'"),
             std::string::npos);
+}
+
+// How the header's columns hold a tool, and what is said of them.
+std::pair<Eigen::Vector4d, std::string> held(const std::string& columns, const std::string& row) {
+  std::string said;
+  const TrajectoryOptions options{.remark = [&](const std::string& words) { said = words; }};
+  const Trajectory rows =
+      parse("t,hip_x,hip_y,hip_z," + columns + "\n0,1,2,3," + row + "\n", options);
+  const auto turn = rows[0].orientation;
+  return {turn ? Eigen::Vector4d(turn->coeffs()) : Eigen::Vector4d::Zero(), said};
+}
+
+TEST(Trajectory, AnOrientationMayHaveTheNamesOfOthers) {
+  const Eigen::Vector4d turn(0.6, 0, 0, 0.8);
+  for (const std::string names :
+       {"orientation.x,orientation.y,orientation.z,orientation.w",
+        "pose.pose.orientation.x,pose.pose.orientation.y,pose.pose.orientation.z,"
+        "pose.pose.orientation.w",
+        "/hand/pose/orientation/x,/hand/pose/orientation/y,/hand/pose/orientation/z,"
+        "/hand/pose/orientation/w",
+        "qx_world_device,qy_world_device,qz_world_device,qw_world_device",
+        "quat_x,quat_y,quat_z,quat_w", "QX,QY,QZ,QW"}) {
+    EXPECT_EQ(held(names, "0.6,0,0,0.8").first, turn) << names;
+    EXPECT_NE(held(names, "0.6,0,0,0.8").second, "") << names;
+  }
+  EXPECT_EQ(held("qw,qx,qy,qz,orientation.x", "0.8,0.6,0,0,9"), std::pair(turn, std::string()))
+      << "the usual names come first";
+  for (const std::string names : {"tool_qx,tool_qy,tool_qz,tool_qw", "a,b,c,d", "w,x,y,z",
+                                  "roll_rate,pitch_rate,yaw_rate,d", "orientation.x,b,c,d"}) {
+    EXPECT_EQ(held(names, "0.6,0,0,0.8").first, Eigen::Vector4d::Zero()) << names;
+  }
+}
+
+TEST(Trajectory, RollPitchAndYawTurnAboutFixedAxes) {
+  const double quarter = std::acos(0.0);
+  const auto [turn, said] = held("roll,pitch,yaw", fmt::format("{},0,{}", quarter, quarter));
+  // x to y, then y to z about x, then about z.
+  EXPECT_LT((turn - Eigen::Vector4d(0.5, 0.5, 0.5, 0.5)).norm(), 1e-12);
+  EXPECT_EQ(said, "roll, pitch and yaw taken as radians");
+  for (const std::string names :
+       {"roll_deg,pitch_deg,yaw_deg", "roll [deg],pitch [deg],yaw [deg]"}) {
+    const auto [same, words] = held(names, "90,0,90");
+    EXPECT_LT((same - turn).norm(), 1e-12);
+    EXPECT_EQ(words, "roll, pitch and yaw in degrees");
+  }
+}
+
+TEST(Trajectory, SaysWhichOrientationItCannotChoose) {
+  const std::string begin = "t,hip_x,hip_y,hip_z,";
+  EXPECT_NE(message(begin + "a.qx,a.qy,a.qz,a.qw,b.qx,b.qy,b.qz,b.qw\n").find("two orientations"),
+            std::string::npos);
+  EXPECT_NE(message(begin + "a_roll,b_roll,pitch,yaw\n").find("two columns of roll"),
+            std::string::npos);
+  const std::string degrees = begin + "roll,pitch,yaw\n0,1,2,3,90,0,0\n";
+  const std::string refused = message(degrees);
+  EXPECT_NE(
+      refused.find("roll = 90 is more than a turn in radians: write roll_deg,pitch_deg,yaw_deg"),
+      std::string::npos);
+  EXPECT_EQ(message(begin + "roll_deg,pitch_deg,yaw_deg\n0,1,2,3,90,0,0\n"), "no error");
+  EXPECT_EQ(message(begin + "roll_rad,pitch_rad,yaw_rad\n0,1,2,3,90,0,0\n"), "no error");
 }
 
 TEST(Trajectory, SaysThatTextIsUtf16) {

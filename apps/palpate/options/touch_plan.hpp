@@ -53,6 +53,7 @@ struct SurfacePlan {
 struct MotionPlan {
   std::string trajectory = {};          ///< file; empty: they explore
   TrajectoryOptions reading = {};       ///< of that file; with forces: they are compared
+  std::string held = {};                ///< how its columns hold a tool; empty: as the usual say
   std::optional<double> duration = {};  ///< s
   std::uint64_t seed = 1;               ///< of the first hand's exploration
   std::optional<double> rate = {};      ///< steps a second, Hz

@@ -93,7 +93,10 @@ void add_placement(Report& report, const Hand& hand) {
 
 void add_device(Report& report, const Hand& hand) {
   report.data["device"] = {{"name", hand.device->info().name}};
-  if (hand.tool) add_tool(report, *hand.tool, hand.stiffness);
+  if (hand.tool) {
+    add_tool(report, *hand.tool, hand.stiffness);
+    report.row("held", "[{tool/held}]", hand.held);
+  }
   if (hand.plan) {
     report.row("explored",
                "an area up to {device/explored_m} across, pressing about {device/depth_m} deep",

@@ -22,7 +22,6 @@ namespace palpate::app {
 namespace {
 
 // A day: longer ones are times in another unit, or broken.
-constexpr double kLongestRun = 86'400;  // s
 
 // Guard's watchdog for simulated devices, s; judgement: PacedDevice catches up after a late step.
 constexpr double kSimulatedSilence = 0.05;
@@ -108,6 +107,7 @@ void simulate(Hand& hand, const HandTask& task, Trajectory target) {
 }
 
 void follow(Hand& hand, const HandTask& task, Trajectory trajectory) {
+  hand.held = task.motion.held;
   hand.stiffness = task.surface.stiffness.value_or(kStiffness);
   if (hand.chosen.kind == DeviceKind::scripted) return play_back(hand, std::move(trajectory));
   hand.workspace.scale = hand.chosen.placement.scale.value_or(1);
@@ -165,25 +165,6 @@ ExplorationOptions plan_options(const HandTask& task, const Trajectory& trajecto
   return plan;
 }
 
-void check(const Trajectory& trajectory, const std::string& file, bool simulated) {
-  if (trajectory.empty()) return;
-  const double duration = trajectory.back().time - trajectory.front().time;
-  if (simulated && duration > kLongestRun) {
-    throw UsageError(
-        fmt::format("--trajectory lasts {:.6g} s; --device simulated plays at most {:.0f} s: are "
-                    "its times in seconds?",
-                    duration, kLongestRun));
-  }
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const double far = trajectory[i].position.cwiseAbs().maxCoeff();
-    if (far <= Proxy::kLargestCoordinate) continue;
-    throw Error(
-        fmt::format("row {} of {} is {:.4g} m from the origin; surfaces beyond {:.0e} m cannot be "
-                    "resolved: are its positions in metres?",
-                    i, file, far, Proxy::kLargestCoordinate));
-  }
-}
-
 }  // namespace
 
 ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* steps) {
@@ -204,19 +185,6 @@ ServoOptions servo_options(const Run& run, const Hand& hand, ServoState::Queue* 
   }
   options.traces = run.recorder != nullptr ? run.recorder->add_hand() : nullptr;
   return options;
-}
-
-Trajectory trajectory_of(const MotionPlan& motion, const std::vector<DevicePlan>& devices) {
-  const bool follows = std::ranges::any_of(devices, &DevicePlan::follows_trajectory);
-  if (motion.trajectory.empty() || !follows) return {};
-  Trajectory trajectory = read_trajectory(motion.trajectory, motion.reading);
-  if (motion.reading.forces && !trajectory.front().force) {
-    throw Error(motion.trajectory + " has no columns fx, fy, fz; --compare needs them");
-  }
-  const bool simulated = std::ranges::any_of(
-      devices, [](const DevicePlan& each) { return each.kind == DeviceKind::simulated; });
-  check(trajectory, motion.trajectory, simulated);
-  return trajectory;
 }
 
 std::vector<Hand> open_hands(const std::vector<DevicePlan>& devices, const MotionPlan& motion,

@@ -40,6 +40,7 @@ struct Hand {
   std::optional<double> duration = {};  ///< s, of a device that never ends by itself
   std::optional<Placement> plan = {};   ///< of the built-in exploration, if it is that
   std::shared_ptr<const SampledTool> tool = {};  ///< that it holds; null: a point
+  std::string held = {};  ///< how, along its trajectory; empty: as qx, qy, qz, qw say
 };
 
 /// All that a run is made of: what is touched, who touches, and by which clock.
@@ -62,11 +63,11 @@ struct Run {
 /// Is handed every step of every hand, by its index, as soon as it is done.
 using EachStep = std::function<void(std::size_t hand, const ServoState&)>;
 
-/// Reads the trajectory of `motion`; empty: none is named, or no device follows one.
+/// Reads the trajectory of `motion`, and notes in it how tools are held along it; empty: none is
+/// named, or no device follows one.
 /// @throws Error as reading does, and when a position is farther from the origin than surfaces can
 /// be felt; UsageError when it lasts longer than a day and is to be simulated.
-[[nodiscard]] Trajectory trajectory_of(const MotionPlan& motion,
-                                       const std::vector<DevicePlan>& devices);
+[[nodiscard]] Trajectory trajectory_of(MotionPlan& motion, const std::vector<DevicePlan>& devices);
 
 /// A hand for each of `devices`. Those of other programs and those that hold hardware have their
 /// device: it is opened before anything is read. `clock` is the run's and outlives them; null:

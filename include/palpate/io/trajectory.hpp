@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <istream>
 #include <optional>
 #include <string>
@@ -27,11 +28,16 @@ struct TrajectoryOptions {
   /// column to pass over. Empty: the first line names them.
   std::vector<std::string> columns = {};
   bool forces = false;  ///< reads `fx`, `fy`, `fz`, N, if these columns are there
+  /// Called with the words for an orientation by other names: "roll, pitch and yaw taken as
+  /// radians", or the names. On this thread, before any row is read.
+  std::function<void(const std::string&)> remark = {};
 };
 
 /// Reads a trajectory from CSV: a header line that names the columns `t`, `hip_x`, `hip_y`, `hip_z`
 /// in any order among any others, then one row a step; seconds and metres. Columns `qx`, `qy`,
-/// `qz`, `qw` are an orientation, `gripper` an opening. Commas, semicolons or tabs separate; empty
+/// `qz`, `qw` are an orientation, or such by ROS's names (pose.orientation.x), or else `roll`,
+/// `pitch`, `yaw` about the fixed axes x, y, z, in radians unless their names say degrees
+/// (roll_deg); `gripper` is an opening. Commas, semicolons or tabs separate; empty
 /// lines and lines that begin with # are passed over. Where `options` name the columns, blanks
 /// separate, too, rows have as many values as there are names, and # and % begin comments. "-" is
 /// standard input.
