@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "io/containers.hpp"
 #include "io/formats.hpp"
 #include "io/input.hpp"
 #include "io/text_scanner.hpp"
@@ -46,7 +47,7 @@ constexpr Refused kRefused[] = {
      "Unpack it first: \"xz -dk FILE\", or pipe it: \"xz -dc FILE | palpate ... -\""},
     {"(\xb5/\xfd", "compressed with zstd", "Unpack it first: zstd -d FILE"},
     {"BZh", "compressed with bzip2", "Unpack it first: bunzip2 -k FILE"},
-    {"PK\x03\x04", "a ZIP archive", "Unpack it first and give the cloud inside"},
+    {"PK\x03\x04", "a ZIP archive", "Unpack it first and give the cloud inside: unzip FILE"},
     {"\xff\xd8\xff", "a JPEG picture", kReadable},
     {"GIF8", "a GIF picture", kReadable},
     {"BM", "a BMP picture", kReadable},
@@ -151,11 +152,17 @@ FileKind kind_of(const Input& input) {
   refuse_splats(input);
   const std::string ending = extension(input.name);
   if (ending == ".splat") return FileKind::splat;
+  if (lower_case(input.name).ends_with("points3d.bin")) {
+    fail(input, "this is COLMAP's list of points in bytes",
+         "Make text of it, and give its points3D.txt: colmap model_converter --input_path FOLDER "
+         "--output_path FOLDER --output_type TXT");
+  }
   if (ending == ".bin" && !looks_like_text(input.text())) return FileKind::npy;
   for (const Signature& entry : kSignatures) {
     if (input.text().starts_with(entry.start)) return entry.kind;
   }
   if (is_stl(input)) return FileKind::stl;
+  refuse_containers(input);
   if (is_gltf_json(input)) return FileKind::gltf;
   refuse_unsupported(input);
   // The comment that begins a PCD may be missing, and its points may be no text.

@@ -62,6 +62,26 @@ TEST(FileKind, SaysWhatToDoAboutKindsThatAreNotRead) {
   EXPECT_THAT(refusal("version https://git-lfs.github.com/spec/v1\n"), HasSubstr("git lfs pull"));
 }
 
+TEST(FileKind, SaysWhatArchivesAndDocumentsAre) {
+  using namespace std::string_view_literals;
+  const auto zip = [](const std::string& member) {
+    return "PK\x03\x04" + std::string(26, 'x') + member;
+  };
+  EXPECT_THAT(refusal(zip("scan.usdc"), "room.zip"), HasSubstr("USDZ"));
+  EXPECT_THAT(refusal("PK\x03\x04", "room.USDZ"), HasSubstr("as GLB, OBJ or PLY"));
+  EXPECT_THAT(refusal(zip("3D/3dmodel.model")), HasSubstr("3MF"));
+  EXPECT_THAT(refusal(zip("points.npy")), HasSubstr("np.load('IN.npz')"));
+  EXPECT_THAT(refusal(zip("a.ply")), HasSubstr("unzip"));
+  EXPECT_THAT(refusal("<?xml version=\"1.0\"?>\n<COLLADA>"), HasSubstr("COLLADA"));
+  EXPECT_THAT(refusal("<VTKFile type=\"PolyData\">", "a.vtp"), HasSubstr("VTK"));
+  EXPECT_THAT(refusal("{\"hierarchyType\": \"json\"}", "ept.json"), HasSubstr("Entwine"));
+  EXPECT_THAT(refusal("{\"version\": \"1.7\", \"octreeDir\": \"data\"}"), HasSubstr("Potree 1"));
+  EXPECT_THAT(refusal("{\"asset\": {\"version\": \"1.0\"}, \"geometricError\": 1}"),
+              HasSubstr("3D Tiles"));
+  EXPECT_THAT(refusal("\x01\0\0\0\0\0\0\0"sv, "sparse/0/points3D.bin"), HasSubstr("COLMAP"));
+  EXPECT_THAT(refusal("PXR-USDC"), HasSubstr("USD"));
+}
+
 TEST(FileKind, ShowsTheFirstBytesOfWhatItDoesNotKnow) {
   EXPECT_THAT(refusal(std::string("\x01\x02\x00\xff", 4), "a.dat"),
               HasSubstr("a.dat: unknown file type (it starts with 01 02 00 ff)"));

@@ -64,6 +64,19 @@ TEST(Remedies, OfScansWithOtherNumbersOfPoints) {
   }
 }
 
+TEST(Remedies, OfScansOfPtxThatAreCut) {
+  const std::string head = "3\n3\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  std::string points;
+  for (int i = 0; i < 5; ++i) points += fmt::format("{} {} 0.5 1\n", i, 2 * i);
+  for (const std::string cut : {"", "7 8"}) {
+    const std::string refused = refusal(head + points + cut, "a.ptx");
+    EXPECT_EQ(refused.find("remove its last line") == std::string::npos, cut.empty()) << refused;
+    const std::string count = told(refused, "write 1 here and ([0-9]+) in the next line");
+    const CloudFile file = read_text("1\n" + count + head.substr(3) + points, "a.ptx");
+    EXPECT_EQ(file.cloud.size() + file.dropped, 5u);
+  }
+}
+
 TEST(Remedies, OfNumbersThatPandasPutsAboveColumns) {
   std::string text = ",0,1,2\n";
   for (int i = 0; i < 5; ++i) text += fmt::format("{},{},{},0.5\n", i, i, 2 * i);
@@ -71,48 +84,100 @@ TEST(Remedies, OfNumbersThatPandasPutsAboveColumns) {
   expect_points("index,x,y,z" + text.substr(6), "a.csv", 5);
 }
 
-class PythonsRemedies : public testing::Test {
+class CommandRemedies : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!runs("python3 -c 'import numpy' 2> /dev/null")) GTEST_SKIP() << "NumPy is not installed";
-  }
-
   [[nodiscard]] bool runs(const std::string& command) const {
     const std::string in =
         fmt::format("export PATH=/usr/bin:$PATH; cd {}; ", folder_.path().string());
     return std::system((in + command).c_str()) == 0;
   }
 
+  test::Folder folder_;
+};
+
+TEST_F(CommandRemedies, OfFilesThatAreCompressed) {
+  struct Packed {
+    std::string by;
+    std::string name;
+    std::string command;  // in the message
+  };
+  for (const Packed& each :
+       {Packed{"xz a.xyz", "a.xyz.xz", "\"(xz -dk FILE)\""},
+        Packed{"zstd -q --rm a.xyz -o a.xyz.zst", "a.xyz.zst", "(zstd -d FILE)"},
+        Packed{"bzip2 a.xyz", "a.xyz.bz2", "(bunzip2 -k FILE)"},
+        Packed{"python3 -m zipfile -c a.zip a.xyz && rm a.xyz", "a.zip", "(unzip FILE)"}}) {
+    folder_.write("a.xyz", rows(5));
+    if (!runs(each.by + " 2> /dev/null")) continue;  // the program is not installed
+    const std::string told_to = told(refusal(folder_.read(each.name), each.name), each.command);
+    const std::string command = replaced(told_to, "FILE", each.name);
+    if (!runs("which " + command.substr(0, command.find(' ')) + " > /dev/null")) continue;
+    ASSERT_TRUE(runs(command + " > /dev/null 2>&1")) << command;
+    expect_points(folder_.read("a.xyz"), "a.xyz", 5);
+  }
+}
+
+class PythonsRemedies : public CommandRemedies {
+ protected:
+  void SetUp() override {
+    if (!runs("python3 -c 'import numpy' 2> /dev/null")) GTEST_SKIP() << "NumPy is not installed";
+  }
+
   /// Does what the refusal of what is in the file tells.
-  void obey(const std::string& name, const std::string& columns = "") {
-    std::string command = told(refusal(folder_.read(name), name), "(python3 -c \"[^\"]*\")");
-    if (!columns.empty()) command = replaced(command, "N\\)", columns + ")");
+  void obey(const std::string& name) {
+    const std::string command = told(refusal(folder_.read(name), name), "(python3 -c \"[^\"]*\")");
     ASSERT_TRUE(runs(command)) << command;
   }
 
   /// Makes `name` by Python's words, has it refused, does as is told and reads what comes out.
-  void mend(const std::string& name, const std::string& words, const std::string& columns = "") {
+  void mend(const std::string& name, const std::string& words) {
     SCOPED_TRACE(words);
     const std::string make =
         "import numpy as np; i = np.arange(5.); p = np.stack([i, 2 * i, i * 0 + .5], -1); " + words;
     ASSERT_TRUE(runs("python3 -c \"" + make + '"'));
-    obey(name, columns);
+    obey(name);
     expect_points(folder_.read("OUT.npy"), "OUT.npy", 5);
   }
-
-  test::Folder folder_;
 };
 
 TEST_F(PythonsRemedies, OfArrays) {
   for (const std::string made :
-       {"p.astype('f2')", "p.astype('>f8')", "p.reshape(-1)", "p.reshape(1, 5, 3)",
-        "np.array([tuple(q) for q in p], [('x', 'f4'), ('y', 'f4'), ('z', 'f8')])"}) {
+       {"p.astype('f2')", "p.astype('>f8')", "p.reshape(-1)",
+        "np.array([tuple(q) for q in p], [('x', 'f4'), ('y', 'f4'), ('z', 'f8')])",
+        "np.array([tuple(q) for q in p], [('f0', '>f4'), ('f1', 'f4'), ('f2', 'f4')])",
+        "np.array([(7, *q) for q in p], [('id', 'i4'), ('X', 'f4'), ('Y', 'f4'), ('Z', 'f4')])",
+        "np.array([('a', *q[::-1]) for q in p], [('n', 'U4'), ('z', 'f4'), ('y', 'f4'), ('x', "
+        "'f4')])",
+        "np.array([(q, 1) for q in p], [('xyz', 'f4', 3), ('i', 'u1')])",
+        "np.array([[tuple(q)] for q in p], [('x', 'f4'), ('y', 'f4'), ('z', 'f8')])"}) {
     mend("IN.npy", "np.save('IN.npy', " + made + ")");
   }
 }
 
+TEST_F(PythonsRemedies, OfDepthsInArrays) {
+  for (const std::string made :
+       {"np.full((20, 40), .5)", "np.full((80, 60), 500, 'u2')", "np.full((1, 20, 40), .5, 'f2')",
+        "np.full((7, 20, 40), .5, 'f4')"}) {
+    SCOPED_TRACE(made);
+    ASSERT_TRUE(runs("python3 -c \"import numpy as np; np.save('IN.npy', " + made + ")\""));
+    obey("IN.npy");
+    const DepthFrame frame =
+        read_depth_frame(folder_ / "OUT.pgm", {.camera = {0, 0, {9, 9, 1, 1}, {}}});
+    EXPECT_EQ(frame.depth, std::vector<float>(frame.depth.size(), 0.5F));
+    EXPECT_NE(frame.camera.width, frame.camera.height);
+  }
+}
+
+TEST_F(PythonsRemedies, OfArchivesOfArrays) {
+  for (const std::string made : {"np.savez('IN.npz', colors=p[:, :2], points=p)",
+                                 "np.savez_compressed('IN.npz', n=np.arange(99), p=p)"}) {
+    mend("IN.npz", made);
+  }
+}
+
 TEST_F(PythonsRemedies, OfFloatsInOtherGroups) {
-  mend("IN.bin", "np.hstack([p, -1 - p[:, :2]]).astype('f4').tofile('IN.bin')", "5");
+  mend("IN.bin", "np.hstack([p, -1 - p[:, :2]]).astype('f4').tofile('IN.bin')");
+  mend("IN.bin", "np.hstack([p, -9 + 0 * p[:, :1]]).tofile('IN.bin')");
+  mend("IN.bin", "p.astype('f4').tofile('IN.bin')");
 }
 
 TEST_F(PythonsRemedies, OfPicturesOfFloats) {
