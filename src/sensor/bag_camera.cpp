@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "message/transforms.hpp"
@@ -68,12 +69,14 @@ class BagRecording final : public Recording {
   void take(const bag::Message& message);
   void keep(const Channel& channel, const bag::Message& message);
   [[nodiscard]] bool is_ready(const BagImage& image) const;
-  [[nodiscard]] Status show(const BagImage& image, DepthFrame& frame, std::string& why) const;
+  [[nodiscard]] Status show(const BagImage& image, DepthFrame& frame, std::string& why);
 
   std::string file_;
   SplitBag reader_;
   RosFrames frames_;
   std::string frame_;
+  std::optional<std::string>
+      first_frame_;  // of the first image, which others share without `frame_`
   BagRate rate_;
   message::Transforms still_;  // wherever in the file they are recorded
   message::Transforms transforms_;
@@ -222,7 +225,7 @@ void BagRecording::keep(const Channel& channel, const bag::Message& message) {
   waiting_.push(std::move(image));
 }
 
-Status BagRecording::show(const BagImage& image, DepthFrame& frame, std::string& why) const {
+Status BagRecording::show(const BagImage& image, DepthFrame& frame, std::string& why) {
   try {
     image.fill(frames_, image.data, frame);
   } catch (const Error& error) {
@@ -230,8 +233,16 @@ Status BagRecording::show(const BagImage& image, DepthFrame& frame, std::string&
     return Status::damaged;
   }
   frame.T_world_sensor.reset();
-  if (frame_.empty()) return Status::frame;
   const Header& header = image.header;
+  if (frame_.empty()) {
+    if (!first_frame_) first_frame_ = header.frame_id;
+    if (header.frame_id == *first_frame_) return Status::frame;
+    why = fmt::format(
+        "it is in the frame \"{}\", and the first one in \"{}\"; ,frame=FRAME behind "
+        "the source's name brings both into one, by /tf",
+        header.frame_id, *first_frame_);
+    return Status::unposed;
+  }
   frame.T_world_sensor = transforms_.find(frame_, header.frame_id, to_seconds(header.stamp), &why);
   return frame.T_world_sensor ? Status::frame : Status::unposed;
 }

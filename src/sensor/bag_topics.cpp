@@ -98,13 +98,22 @@ Depths depths_of(SplitBag& reader, const std::string& topic) {
   }
 }
 
-// Topics of depth images, whose first message states that they are, of those that may be, and of
-// clouds.
+// Topics of depth images, whose first message states that they are, of those that may be, of
+// clouds, and of clouds in types that are not read.
 struct Fitting {
   std::vector<std::string> images;
   std::vector<std::string> grey;
   std::vector<std::string> clouds;
+  std::vector<std::string> others;
 };
+
+// Does the name of a type speak of points? "livox_ros_driver2/msg/CustomMsg",
+// "foxglove.PointCloud", "point_cloud_interfaces/msg/CompressedPointCloud2"
+bool is_other_cloud(const Channel& channel) {
+  const std::string& type = channel.schema.name;
+  return !holds<PointCloud2>(channel) &&
+         (type.find("PointCloud") != std::string::npos || type.ends_with("/CustomMsg"));
+}
 
 Fitting fitting_topics(SplitBag& reader) {
   Fitting fitting;
@@ -113,6 +122,10 @@ Fitting fitting_topics(SplitBag& reader) {
   };
   for (const Channel& channel : reader.channels()) {
     if (holds<PointCloud2>(channel)) add(fitting.clouds, channel.topic);
+    if (is_other_cloud(channel)) {
+      add(fitting.others,
+          fmt::format("{} ({}, {})", channel.topic, channel.schema.name, channel.message_encoding));
+    }
     if (!holds<message::Image>(channel) && !holds<CompressedImage>(channel)) continue;
     const Depths depths = depths_of(reader, channel.topic);
     if (depths == Depths::certain) add(fitting.images, channel.topic);
@@ -128,6 +141,12 @@ std::string in_words(const Fitting& fitting) {
     all.push_back(topic + " (grey of 16 bits, if that is depth)");
   }
   if (!all.empty()) return fmt::format("name one that fits: {}", fmt::join(all, ", "));
+  if (!fitting.others.empty()) {
+    return fmt::format(
+        "of clouds it reads sensor_msgs PointCloud2 in ROS 2's encoding alone, and {} "
+        "{} not; record that, or convert it",
+        fmt::join(fitting.others, ", "), fitting.others.size() > 1 ? "are" : "is");
+  }
   return "it has neither depth images (sensor_msgs Image or CompressedImage, 16UC1 or 32FC1) nor "
          "clouds (PointCloud2) in ROS 2's encoding; 'palpate bag info' lists what it has";
 }

@@ -4,14 +4,13 @@
 
 #include <filesystem>
 
-#include "bag/bags.hpp"
 #include "message/depth_images.hpp"
 #include "message/point_clouds.hpp"
 #include "message/transforms.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/sensor/depth_camera.hpp"
+#include "sensor/bag_recorder.hpp"
 #include "sensor/fake_camera.hpp"
-#include "support/folder.hpp"
 
 namespace palpate::sensor {
 namespace {
@@ -22,73 +21,6 @@ using bag::McapWriter;
 using testing::AllOf;
 using testing::HasSubstr;
 using Status = DepthCamera::Status;
-
-constexpr std::uint64_t kMillisecond = kSecond / 1000;
-
-message::Header header_at(std::uint64_t time) {
-  return {{static_cast<std::int32_t>(time / kSecond), static_cast<std::uint32_t>(time % kSecond)},
-          "camera"};
-}
-
-// Writes what a camera and its surroundings publish. Times are ns since noon.
-struct Recorder {
-  explicit Recorder(const std::string& path) : writer(path) {}
-
-  template <class T>
-  void put(std::uint16_t topic, const T& message, std::uint64_t log) {
-    writer.write(topic, {kNoon + log, kNoon + log}, message);
-  }
-  // An image whose depths are `metres` everywhere.
-  void image(std::uint64_t log, float metres, std::uint64_t stamp) {
-    message::Image image = message::image_of(frame_at(0, metres));
-    image.header = header_at(kNoon + stamp);
-    put(images, image, log);
-  }
-  void image(std::uint64_t log, float metres) { image(log, metres, log); }
-  void info(std::uint64_t log, const std::string& model = "plumb_bob") {
-    message::CameraInfo info = message::info_of(frame_at(0).camera);
-    info.distortion_model = model;
-    if (model != "plumb_bob") info.d = {0.1, 0, 0, 0};
-    put(infos, info, log);
-  }
-  void transform(std::uint16_t topic, std::uint64_t log, std::uint64_t stamp, const char* parent,
-                 const char* child, double x) {
-    put(topic,
-        message::TFMessage{{{{header_at(kNoon + stamp).stamp, parent}, child, {{x, 0, 0}, {}}}}},
-        log);
-  }
-
-  McapWriter writer;
-  std::uint16_t images = writer.add_topic<message::Image>("/cam/image");
-  std::uint16_t infos = writer.add_topic<message::CameraInfo>("/cam/camera_info");
-  std::uint16_t tf = writer.add_topic<message::TFMessage>("/tf");
-  std::uint16_t still = writer.add_topic<message::TFMessage>("/tf_static");
-};
-
-class BagCamera : public testing::Test {
- protected:
-  // `count` images at 10 Hz, 1, 2, ... m deep.
-  void record(int count) const {
-    Recorder recorder(path_);
-    for (int i = 0; i < count; ++i) {
-      recorder.image(static_cast<std::uint64_t>(i) * 100 * kMillisecond, 1 + static_cast<float>(i));
-      recorder.info(static_cast<std::uint64_t>(i) * 100 * kMillisecond + 5 * kMillisecond);
-    }
-  }
-
-  [[nodiscard]] std::string refusal(const std::string& name) const {
-    try {
-      (void)open_camera(name);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  test::Folder folder_;
-  std::string path_ = folder_ / "run.mcap";
-  std::string name_ = "bag:" + path_;
-};
 
 TEST_F(BagCamera, GivesImagesInMetresByTheirStamps) {
   record(3);
@@ -139,7 +71,7 @@ TEST_F(BagCamera, KeepsTheRecordingsPace) {
 
 TEST_F(BagCamera, TakesTheTimeOfRecordingWhereStampsStandStillOrJump) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     recorder.info(0);
     const std::array<std::uint64_t, 5> stamps = {5, 5, 3600 * kSecond, 0, 100 * kMillisecond};
     for (std::size_t i = 0; i < stamps.size(); ++i)
@@ -155,7 +87,7 @@ TEST_F(BagCamera, TakesTheTimeOfRecordingWhereStampsStandStillOrJump) {
 
 TEST_F(BagCamera, PlacesImagesByTransformsThatComeAfterThem) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     for (std::uint64_t i = 0; i < 10; ++i) {
       const std::uint64_t time = i * 100 * kMillisecond;
       recorder.image(time, 1);
@@ -180,9 +112,30 @@ TEST_F(BagCamera, PlacesImagesByTransformsThatComeAfterThem) {
   }
 }
 
+TEST_F(BagCamera, LeavesOutImagesInAnotherFrameThanTheFirst) {
+  {
+    BagRecorder recorder(path_);
+    recorder.info(0);
+    recorder.image(0, 1);
+    message::Image other = message::image_of(frame_at(0, 2));
+    other.header = header_at(kNoon + 100 * kMillisecond);
+    other.header.frame_id = "gripper";
+    recorder.put(recorder.images, other, 100 * kMillisecond);
+    recorder.image(200 * kMillisecond, 3);
+  }
+  const auto camera = open_camera(name_);
+  DepthFrame frame;
+  EXPECT_EQ(camera->read(frame, 0), Status::frame);
+  EXPECT_EQ(camera->read(frame, 0), Status::unposed);
+  EXPECT_THAT(camera->reason(),
+              AllOf(HasSubstr("\"gripper\""), HasSubstr("\"camera\""), HasSubstr(",frame=FRAME")));
+  EXPECT_EQ(camera->read(frame, 0), Status::frame);
+  EXPECT_EQ(frame.depth.front(), 3);
+}
+
 TEST_F(BagCamera, FindsTheOneTopicOfDepthAmongOthers) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     const auto colors = recorder.writer.add_topic<message::Image>("/cam/color");
     message::Image color;
     color.encoding = "rgb8";
@@ -209,7 +162,7 @@ TEST_F(BagCamera, FindsTheOneTopicOfDepthAmongOthers) {
 
 TEST_F(BagCamera, AsksWhichOfSeveralTopics) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     const auto second = recorder.writer.add_topic<message::Image>("/other/image");
     recorder.image(0, 2);
     recorder.put(second, message::image_of(frame_at(0)), 0);
@@ -222,12 +175,18 @@ TEST_F(BagCamera, SaysWhatABagLacks) {
   { McapWriter writer(path_); }
   EXPECT_THAT(refusal(name_), AllOf(HasSubstr(path_), HasSubstr("neither depth images")));
   {
-    Recorder recorder(path_);
+    McapWriter writer(path_);
+    (void)writer.add_channel({"/livox/lidar", {"livox_ros_driver2/msg/CustomMsg", "ros2msg", ""}});
+  }
+  EXPECT_THAT(refusal(name_),
+              HasSubstr("/livox/lidar (livox_ros_driver2/msg/CustomMsg, cdr) is not"));
+  {
+    BagRecorder recorder(path_);
     recorder.image(0, 1);
   }
   EXPECT_THAT(refusal(name_), AllOf(HasSubstr("/cam/camera_info"), HasSubstr("no CameraInfo")));
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     recorder.image(0, 1);
     recorder.info(0, "equidistant");
   }
@@ -237,7 +196,7 @@ TEST_F(BagCamera, SaysWhatABagLacks) {
 
 TEST_F(BagCamera, LeavesOutWhatIsDamaged) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     recorder.info(0);
     recorder.image(0, 1);
     recorder.writer.write(recorder.images, {kNoon + 1, kNoon + 1}, bag::Bytes{0, 1, 0, 0, 7});
@@ -256,7 +215,7 @@ TEST_F(BagCamera, LeavesOutWhatIsDamaged) {
 
 TEST_F(BagCamera, PlaysWhatIsThereOfAFileThatWasCut) {
   {
-    Recorder recorder(path_);
+    BagRecorder recorder(path_);
     recorder.info(0);
     for (std::uint64_t i = 0; i < 20; ++i) {
       recorder.image(i * 100 * kMillisecond, 1);
