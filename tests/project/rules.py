@@ -73,6 +73,13 @@ LONGEST_FILE = 300  # lines
 LARGEST_MODULE = 250  # lines of a header and its sources, about
 
 
+# Floors that read files, and what a message of theirs tells people to type or to write.
+REMEDY_FLOORS = ("io", "bag", "sensor", "python")
+REMEDY = re.compile(r"python3 -c|\bpalpate (?:touch|info|tile|bag|align|replay) |'palpate bag|"
+                    r"\b(?:xz|zstd|bunzip2|gunzip|unzip|npx|colmap|pdal|chmod|mcap|rosbags-convert|git lfs|ulimit|modprobe) "
+                    r"|(?<!to )\bwrite (?:1|\{\}|\\\"|[a-z_]+,)")
+
+
 def sources(root, folders=SOURCE_FOLDERS):
     for folder in folders:
         for path in sorted((root / folder).rglob("*")):
@@ -378,6 +385,30 @@ def changelog(root):
         yield f"CMakeLists.txt: the version is not {newest}, the newest release of CHANGELOG.md"
 
 
+def remedies(root):
+    """What messages about files tell people to do is done by a test: tests/project/remedies.txt says by which."""
+    listed = root / "tests" / "project" / "remedies.txt"
+    rows = [[cell.strip() for cell in line.split("|")] for line in (lines(listed) if listed.exists() else [])
+            if line.strip() and not line.startswith("#")]
+    told = [(path.relative_to(root).as_posix(), number, line)
+            for path in sources(root, ("src", "python")) if set(REMEDY_FLOORS) & set(path.relative_to(root).parts[:2])
+            for number, line in enumerate(lines(path), 1)
+            if REMEDY.search(line) and '"' in line and not line.lstrip().startswith("//")]
+    for name, number, line in told:
+        if not any(row[0] == name and row[1] in line for row in rows):
+            yield f"{name}:{number}: a remedy that no line of tests/project/remedies.txt names: {line.strip()}"
+    cases = None
+    for name, words, test in rows:
+        if not any(name == each and words in line for each, _, line in told):
+            yield f"tests/project/remedies.txt: {name} tells nobody to {words}"
+        if test.startswith("not run: "):
+            continue
+        cases = cases or {".".join(case) for path in sources(root, ("tests",))
+                          for case in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", path.read_text("utf-8"), re.M)}
+        if test not in cases:
+            yield f"tests/project/remedies.txt: there is no test {test}"
+
+
 def text_lines(root):
     """All lines of what is written by hand, but of the tests of these rules."""
     for folder in (*SOURCE_FOLDERS, "cmake", "scripts", "web"):
@@ -392,7 +423,7 @@ def text_lines(root):
 RULES = {rule.__name__: rule
          for rule in (floors, drawn, steps, rooms, public_headers, macros, marks, size, functions, purpose, riddles,
                       reasons, classes, readers, proving,
-                      public_face, readme, links, images, documents, refinements, changelog)}
+                      public_face, readme, links, images, documents, refinements, remedies, changelog)}
 
 
 def main():

@@ -91,6 +91,15 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(self.found(rules.macros, {"src/io/a.cpp": "#ifdef A\n#endif\n"})), 1)
         self.assertEqual(self.found(rules.macros, {"src/base/cpu.hpp": "#if A\n#endif\n"}), [])
 
+    def test_a_remedy_without_a_test_is_found(self):
+        told = {"src/io/a.cpp": 'fail("Unpack it: xz -dk FILE");\n', "tests/io/a_test.cpp": "TEST(A, IsUnpacked) {\n"}
+        rows = "tests/project/remedies.txt"
+        self.assertEqual(len(self.found(rules.remedies, told)), 1)
+        self.assertEqual(self.found(rules.remedies, told | {rows: "src/io/a.cpp | xz -dk | A.IsUnpacked\n"}), [])
+        self.assertEqual(self.found(rules.remedies, told | {rows: "src/io/a.cpp | xz -dk | not run: no xz\n"}), [])
+        self.assertEqual(len(self.found(rules.remedies, told | {rows: "src/io/a.cpp | xz -dk | A.IsGone\n"})), 1)
+        self.assertEqual(len(self.found(rules.remedies, {rows: "src/io/a.cpp | xz -dk | A.IsUnpacked\n"} | {"tests/io/a_test.cpp": told["tests/io/a_test.cpp"]})), 1)
+
     def test_marks_are_found(self):
         mark = "// TO" + "DO: later\n"
         self.assertEqual(len(self.found(rules.marks, {"src/io/a.cpp": mark})), 1)
