@@ -77,6 +77,15 @@ TEST(Remedies, OfScansOfPtxThatAreCut) {
   }
 }
 
+TEST(Remedies, OfMeshesOfTextThatAreCut) {
+  const std::string face =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+      "vertex 0 1 0\nendloop\nendfacet\n";
+  const std::string cut = "solid a\n" + face;
+  const std::string line = told(refusal(cut, "a.stl"), "write (endsolid) below them");
+  EXPECT_EQ(read_text(cut + line + "\n", "a.stl").mesh->triangles, 1u);
+}
+
 TEST(Remedies, OfNumbersThatPandasPutsAboveColumns) {
   std::string text = ",0,1,2\n";
   for (int i = 0; i < 5; ++i) text += fmt::format("{},{},{},0.5\n", i, i, 2 * i);

@@ -77,7 +77,7 @@ LARGEST_MODULE = 250  # lines of a header and its sources, about
 REMEDY_FLOORS = ("io", "bag", "sensor", "python")
 REMEDY = re.compile(r"python3 -c|\bpalpate (?:touch|info|tile|bag|align|replay) |'palpate bag|"
                     r"\b(?:xz|zstd|bunzip2|gunzip|unzip|npx|colmap|pdal|chmod|mcap|rosbags-convert|git lfs|ulimit|modprobe) "
-                    r"|(?<!to )\bwrite (?:1|\{\}|\\\"|[a-z_]+,)")
+                    r"|(?<!to )\bwrite (?:1|\{\}|\\\"|endsolid|[a-z_]+,)")
 
 
 def sources(root, folders=SOURCE_FOLDERS):

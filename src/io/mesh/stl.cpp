@@ -77,6 +77,12 @@ class StlTextReader {
     if (open_ > 0) {
       fail(input_, "the file ends inside a face", "Download or export it again");
     }
+    if (!ended_) {
+      fail(input_,
+           fmt::format("the file ends without \"endsolid\" after {} faces", mesh_.ends.size()),
+           "Download or export it again; to use the faces that are present, write endsolid below "
+           "them");
+    }
     return sample_faces(input_, mesh_, "STL, ascii");
   }
 
@@ -84,6 +90,7 @@ class StlTextReader {
   void take(const std::string& word, std::string_view line) {
     if (word == "vertex") return add_vertex(line);
     if (word == "endloop") return close_loop();
+    if (word == "solid" || word == "endsolid") ended_ = word == "endsolid";
     const auto ignored = {"", "solid", "facet", "outer", "endfacet", "endsolid", "color"};
     if (std::ranges::find(ignored, word) != ignored.end()) return;
     wrong(fmt::format("unknown word \"{}\" in an STL file", excerpt(word)));
@@ -116,6 +123,7 @@ class StlTextReader {
   TextScanner scanner_;
   std::size_t begin_ = 0;  // of the line
   std::size_t open_ = 0;   // corners of the face that has not ended yet
+  bool ended_ = false;     // the solid
   Mesh mesh_{.has_unit = false};
 };
 
