@@ -36,14 +36,15 @@ class PlayedTrajectory {
     return true;
   }
 
-  /// The press in progress, if the hand, `pull` m from its target, has lost what it pressed; the
-  /// trajectory goes on behind it. Otherwise null.
+  /// The press in progress, if the hand, `pull` m from its target, has lost what it pressed or is
+  /// caught; the trajectory goes on behind it. Otherwise null.
   [[nodiscard]] const Press* lost(double pull) noexcept {
     while (next_press_ < presses_.size() && presses_[next_press_].end < time_) ++next_press_;
     if (next_press_ == presses_.size()) return nullptr;
     const Press& press = presses_[next_press_];
     if (pull > press.pull || time_ < press.begin) held_at_ = time_;
-    if (time_ - held_at_ < kSettled) return nullptr;
+    const bool caught = time_ >= press.begin && pull > kCaught * press.pull;
+    if (!caught && time_ - held_at_ < kSettled) return nullptr;
     time_ = press.resume;
     return &press;
   }
@@ -59,6 +60,10 @@ class PlayedTrajectory {
   // s in which a hand that nothing holds is at its target: five time constants of 10 ms, the usual
   // hand's damping over its stiffness (SimulatedDeviceOptions::Hand)
   static constexpr double kSettled = 0.05;
+
+  // times the pull of the shallowest press that is held at all: the deepest has 4 of it, and what
+  // stays farther behind is caught by an edge, and would be thrown once that lets go
+  static constexpr double kCaught = 8;
 
   Playback rows_;
   std::vector<Press> presses_;

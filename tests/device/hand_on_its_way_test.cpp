@@ -28,7 +28,7 @@ Trajectory one_press() {
 
 TEST(HandOnItsWay, LiftsWhereNothingHoldsItsPress) {
   RemoteTarget remote;
-  const Press press{0.1, 1, 1.2, 0.004, {{0, 0, 0.05}, {0.05, 0, 0.05}, {0.1, 0, 0.05}}};
+  const Press press{0.1, 1, 1.2, 0.008, {{0, 0, 0.05}, {0.05, 0, 0.05}, {0.1, 0, 0.05}}};
   TeleoperatedHand hand(remote, one_press(), {.travel_speed = 0.2, .presses = {press}});
   Asker held(hand, {0, 0, 0});
   EXPECT_NEAR(held.ask_until(0.501).position.z(), -0.01, 1e-12);
@@ -52,6 +52,19 @@ TEST(HandOnItsWay, LiftsWhereNothingHoldsItsPress) {
   last = held.follow_until(held.now() + 0.1);
   EXPECT_EQ(last.position, Vector3d(0.1, 0, 0.05));
   EXPECT_TRUE(std::isinf(last.maximum_force)) << "it has caught up";
+}
+
+// An edge that holds a hand back lets go of it some time: with all of its pull it would be thrown.
+TEST(HandOnItsWay, LiftsWhereAnEdgeCaughtIt) {
+  RemoteTarget remote;
+  const Press press{0.1, 1, 1.2, 0.004, {{0, 0, 0.05}, {0.1, 0, 0.05}}};
+  TeleoperatedHand hand(remote, one_press(), {.presses = {press}});
+  Asker caught(hand, {0, 0, -0.006});
+  EXPECT_NEAR(caught.ask_until(0.35).position.x(), 0.25 / 0.9 * 0.1, 1e-3);
+  const TargetSource::Target last = caught.ask_until(0.42);
+  EXPECT_LT(last.position.x(), 1e-3) << "32 mm away it is no press any more";
+  EXPECT_GT(last.position.z(), -0.006);
+  EXPECT_EQ(last.maximum_force, 1);
 }
 
 TEST(HandOnItsWay, GoesTheWayThatACommandNamesFromWhereItIs) {

@@ -254,7 +254,8 @@ struct TeleoperatedHandOptions {
 ///  - To the trajectory's beginning, and back to where it was interrupted or, if that was a press,
 ///    to the press's `resume`, the target moves at `travel_speed` from where the hand is, and the
 ///    hand pulls with 1 N at most until it has caught up. The trajectory waits for it.
-///  - A hand that nothing held back for 50 ms of a press has lost what it pressed (a rim, a hole):
+///  - A hand that nothing held back for 50 ms of a press has lost what it pressed (a rim, a hole),
+///    and one that is 8 times its `pull` behind is caught by an edge:
 ///    it lifts to the nearest place of the press's `over`, and goes along that and on from there.
 ///  - Commands are interpolated between their irregular times, and followed no faster than `speed`
 ///    and than comes to rest there by `braking`.
