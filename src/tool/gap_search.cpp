@@ -28,17 +28,11 @@ constexpr int kBisections = 12;      // of one of these: to 3e-5 R
 constexpr double kLongestWay = 1e3;  // m, after which bounds would lose 0.1 pm to rounding
 constexpr double kLeastMargin = 0.02;  // of R, that an overfull list leaves
 
-// The gap of a ball of that radius (m) at x over the surface with its relief, which is carved into
-// `here` below the ball; empty where there is no surface to speak of.
-std::optional<double> gap_over(const Texture& texture, const Eigen::Vector3d& x, double radius,
-                               Sample& here) {
-  if (texture.amplitude > 0) {
-    here.value -= radius * here.gradient.norm();
-    carve(texture, x, here);
-    return first_order_distance(here);
-  }
-  const std::optional<double> distance = first_order_distance(here);
-  return distance ? std::optional(*distance - radius) : distance;
+// The gap between x and the surface with its relief, which is carved into `here`; empty where there
+// is no surface to speak of.
+std::optional<double> gap_over(const Texture& texture, const Eigen::Vector3d& x, Sample& here) {
+  carve(texture, x, here);
+  return first_order_distance(here);
 }
 
 }  // namespace
@@ -60,6 +54,7 @@ void GapSearch::begin(const ToolSurface& surface, const Texture& texture,
                       const Pose& pose) noexcept {
   evaluations_ = 0;
   texture_ = texture;
+  pushed_out_ = surface.pushed_out();
   nearest_.fill({});
   if (odometer_ > kLongestWay) forget();
   if (radius_known_) return;
@@ -81,7 +76,8 @@ bool GapSearch::is_free_at(const Field& field, const Pose& pose) noexcept {
 
 bool GapSearch::is_free_below(const Field& field, const Pose& pose, std::int32_t index) noexcept {
   const Tool::Node& node = tool_->nodes()[static_cast<std::size_t>(index)];
-  if (is_free(field, {tool_->in_world(node.center, node.side, pose), node.radius})) return true;
+  const Eigen::Vector3d center = tool_->in_world(node.center, node.side, pose);
+  if (is_free(field, {center, node.radius - pushed_out_})) return true;
   return node.left >= 0 && is_free_below(field, pose, node.left) &&
          is_free_below(field, pose, node.right);
 }
@@ -91,14 +87,16 @@ double GapSearch::gap(const Field& field, const Tool::Point& sample,
   ++evaluations_;
   Sample here = field.sample(x);
   const bool free = here.value > 0 || is_nothing(here.value, here.support);
-  return gap_over(texture_, x, sample.radius, here).value_or(free ? 1 : -1);
+  here.value -= sample.radius - pushed_out_;
+  return gap_over(texture_, x, here).value_or(free ? 1 : -1);
 }
 
 bool GapSearch::sees_still(const Field& field, const Tool::Point& sample, const Eigen::Vector3d& x,
                            const Eigen::Vector3d& normal) noexcept {
   ++evaluations_;
   Sample here = field.sample(x);
-  const std::optional<double> gap = gap_over(texture_, x, sample.radius, here);
+  here.value -= sample.radius - pushed_out_;
+  const std::optional<double> gap = gap_over(texture_, x, here);
   return gap && *gap > -kPush * radius_ && here.gradient.normalized().dot(normal) > kSameFace;
 }
 
@@ -169,7 +167,8 @@ bool GapSearch::passes(Walk& walk, std::int32_t index) noexcept {
   const Tool::Node& node = tool_->nodes()[at];
   const double free = walk.found.margin + kExtra * radius_;
   const Eigen::Vector3d center = tool_->in_world(node.center, node.side, walk.pose);
-  const bool is = is_free(field_of(walk.surface, node), {center, node.radius + free});
+  const Ball ball{center, node.radius - pushed_out_ + free};
+  const bool is = is_free(field_of(walk.surface, node), ball);
   if (is) {
     node_bounds_[at] = odometer_ + free;
   } else {
@@ -190,25 +189,26 @@ void GapSearch::look_at(Walk& walk, std::uint32_t index) noexcept {
   }
   const double unseen = std::max(0.0, kUnseen * radius_ - sample.radius);
   sample_bounds_[index] = odometer_ + kTrusted * unseen;
-  const std::optional<double> distance = first_order_distance(here);
+  const bool free = here.value > 0 || is_nothing(here.value, here.support);
+  here.value -= sample.radius - pushed_out_;
+  const std::optional<double> gap = first_order_distance(here);
   const Eigen::Vector3d normal = here.gradient.normalized();
-  const bool finite = std::isfinite(distance.value_or(0)) && normal.allFinite();
-  if (!distance || !finite) {  // a field that is not finite is wrong, and solid
-    if (finite && (here.value > 0 || is_nothing(here.value, here.support))) return;
+  const bool finite = std::isfinite(gap.value_or(0)) && normal.allFinite();
+  if (!gap || !finite) {  // a field that is not finite is wrong, and solid
+    if (finite && free) return;
     walk.found.unknown = true;
     sample_bounds_[index] = kNothing;
     return;
   }
   if (here.averted) return;
-  const double gap = *distance - sample.radius;
   // Where weights begin the field is flat, and says no distance: 14 mm were trusted of 3. A relief
   // is carved, and no nearer than that.
-  const double trusted = here.support < 1 ? std::min(gap, unseen) : gap;
+  const double trusted = here.support < 1 ? std::min(*gap, unseen) : *gap;
   sample_bounds_[index] = odometer_ + kTrusted * trusted;
-  Nearest found{gap, x, normal};
+  Nearest found{*gap, x, normal};
   if (texture_.amplitude > 0) {
     // Where a relief is so steep that the surface has no slope, the smooth one serves.
-    if (const std::optional<double> carved = gap_over(texture_, x, sample.radius, here)) {
+    if (const std::optional<double> carved = gap_over(texture_, x, here)) {
       found = {*carved, x, here.gradient.normalized()};
     }
   }

@@ -100,6 +100,9 @@ class GapSearch {
   double odometer_ = 0;             // m
   double radius_ = 0;
   bool radius_known_ = false;  // said by the surface
+  // ToolSurface::pushed_out(). A ball is held where the value is what it stands out by beyond that:
+  // the first-order distance has another gradient where the normal turns.
+  double pushed_out_ = 0;
   Texture texture_;
   int evaluations_ = 0;
   std::array<Nearest, ToolSurface::kMostGroups> nearest_;

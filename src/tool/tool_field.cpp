@@ -36,6 +36,15 @@ const FieldOptions& checked(const FieldOptions& options) {
   return options;
 }
 
+// The surface as a point meets it whose ball is the least that a sample of the tool has.
+FieldOptions with_balls(const FieldOptions& options, const Tool& tool) noexcept {
+  FieldOptions pushed = options;
+  if (options.raw_weights) return pushed;  // a level of these says no length
+  const auto least = std::ranges::min_element(tool.samples(), {}, &Tool::Point::radius);
+  pushed.tool_radius = least->radius;
+  return pushed;
+}
+
 // Groups, at most, whose balls are no larger than `radius` (m) or of one leaf.
 int groups_within(const Tool& tool, double radius) noexcept {
   int count = 0;
@@ -56,7 +65,7 @@ bool is_finite(const Pose& pose) {
 ToolField::Inside::Inside(Scene& scene, std::shared_ptr<const Tool> tool,
                           const FieldOptions& options, const std::string& name, double scale)
     : tool_(held(std::move(tool))),
-      scene_(scene, *tool_, checked(options), name, scale),
+      scene_(scene, *tool_, with_balls(checked(options), *tool_), name, scale),
       group_of_(tool_->samples().size(), 0) {
   const std::size_t most = std::min<std::size_t>(kMostGroups, tool_->nodes().size());
   groups_.reserve(most);
@@ -96,9 +105,10 @@ void ToolField::Inside::update(double now, const Pose& hand, const Pose& proxy) 
 }
 
 void ToolField::Inside::take(const FieldOptions& checked) noexcept {
-  if (checked == scene_.surface.options) return;  // nothing to gather again
-  scene_.surface.change(checked);
-  scene_.followed.list(checked);
+  const FieldOptions taken = with_balls(checked, *tool_);
+  if (taken == scene_.surface.options) return;  // nothing to gather again
+  scene_.surface.change(taken);
+  scene_.followed.list(taken);
   for (SampleGroup& each : used()) each.release();
   change(kAnyDistance);
 }
@@ -219,6 +229,9 @@ int ToolField::group_of(int sample) const noexcept {
 }
 const Field& ToolField::group(int number) const noexcept {
   return inside_->group(number);
+}
+double ToolField::pushed_out() const noexcept {
+  return inside_->scene().surface.options.tool_radius;
 }
 void ToolField::place(const Pose& tool) const noexcept {
   inside_->scene().place(tool);

@@ -52,6 +52,7 @@ class ToolField final : public ToolSurface {
   [[nodiscard]] const Field& whole() const noexcept override;
   [[nodiscard]] int group_of(int sample) const noexcept override;
   [[nodiscard]] const Field& group(int number) const noexcept override;
+  [[nodiscard]] double pushed_out() const noexcept override;
   void place(const Pose& tool) const noexcept override;
   void forget_sides() const noexcept override;
   [[nodiscard]] bool is_across(double deeper) const noexcept override;

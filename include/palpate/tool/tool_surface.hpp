@@ -28,6 +28,9 @@ class ToolSurface {
   [[nodiscard]] virtual int group_of(int /*sample*/) const noexcept { return 0; }
   /// The surface near a group.
   [[nodiscard]] virtual const Field& group(int /*number*/) const noexcept { return whole(); }
+  /// How far all fields are pushed out of what is touched, m: no more than any sample has of a
+  /// radius, and what a sample has beyond that is its own.
+  [[nodiscard]] virtual double pushed_out() const noexcept { return 0; }
   /// The tool is held like this when samples are looked at next.
   virtual void place(const Pose& /*tool*/) const noexcept {}
   /// The tool was put where it is: on which side of a surface it was before says nothing.
