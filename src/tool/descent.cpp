@@ -1,4 +1,4 @@
-// The iterations of a tool's step, and how it follows a surface that has changed.
+// The iterations of a tool's step.
 #include "tool/descent.hpp"
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kSolved = 1e-11;  // m, that the solver leaves open: 5e-9 N at 500 N/m
 // A share of a motion that may be left open where normals are opposed: ten times the least that the
 // solver tells them apart by, as long levers make them longer than 1.
 constexpr double kOpposed = 1e-5;
@@ -20,13 +19,11 @@ constexpr double kWidest = 0.375;  // of R: margin within which a surface is nea
 constexpr double kNarrowest = 0.06;  // of R: the margin of a hand that rests (judgement)
 constexpr int kRounds = 3;       // that find the contacts on which friction tips a tool (judgement)
 constexpr double kWithin = 1.5;  // margins are so much wider than the motion that they are for
-constexpr double kLongest = 0.25;   // of R, that a sample moves between two looks
 constexpr double kSlowest = 0.05;   // of a pull, as for a point
 constexpr double kArrived = 2e-7;   // of R: nothing is left to be done (nanometres)
 constexpr double kRestored = 2e-3;  // of R: the same, while only leading out of the surface
 constexpr double kUnproved = 0.02;  // of R: a motion so short needs no look at where it led
 constexpr double kDeep = 5e-3;      // of R: a sample deeper than this keeps a step from ending
-constexpr double kRisen = 1e-3;     // of R: less is left to the iterations
 
 // The share of a pull that ends on the closest pose, by the secant of the last motion, which was a
 // share of the pull before: less than 1 where the tool swings.
@@ -34,6 +31,14 @@ double pace_of(const Motion& pull, const Motion& pull_before, const Motion& moti
   const double turned_back = motion.dot(pull_before - pull);
   const double length = motion.squaredNorm();
   return turned_back > length ? std::max(kSlowest, length / turned_back) : 1;
+}
+
+// How far from the hand (m) a step may end whose first look is at a pose that is outside: no
+// farther than it began, but by twice what that look asks for, which leaves open the square of a
+// motion.
+double farthest_end(const Motion& wanted, const Motion& pull) {
+  const double length = wanted.norm();
+  return length + 2 * std::max(0.0, (wanted - pull).norm() - length);
 }
 
 // Is the tool inside of what contradicts itself, or of what the solver did not come through? It may
@@ -113,13 +118,23 @@ bool Descent::follow(const ToolSurface& surface, const Pose& hand, double moved,
         step.settles || look + kRestores >= kMostLooks || step.shortened >= kShortened;
     if (restores && !step.settles && !step.whole) contact.notes |= ContactNote::sweep_truncated;
     goes_on = iterate(surface, hand, restores, step, contact) && step.finite;
+    if (look > 0 || !outside_ || outside_->is_old) continue;
+    const Motion wanted = metric_.between(outside_->pose, hand);
+    step.first = {outside_->pose, touches_, farthest_end(wanted, step.pull)};
   }
   if (!step.finite) contact.notes |= ContactNote::fault;
   // What friction took on the way of a motion that was shortened is not known.
   const bool rubbed = friction_.any() && step.shortened == 0;
   if (rubbed) touches_.dissipated = friction_.dissipated(metric_, pose_);
   if (goes_on) contact.notes |= ContactNote::not_converged;
-  if (goes_on && !step.proved && outside_) move_to(outside_->pose);
+  const bool ends = step.finite && !has(contact.notes, ContactNote::sweep_truncated);
+  if (ends && metric_.between(pose_, hand).norm() > step.first.farthest) {
+    move_to(step.first.pose);
+    touches_ = step.first.touches;
+    outside_ = {pose_};
+  } else if (goes_on && !step.proved && outside_) {
+    move_to(outside_->pose);
+  }
   return outside_.has_value();
 }
 
@@ -270,31 +285,6 @@ void Descent::remember_touches(const LeastMotion& least, bool rubs) noexcept {
     touches_.all[static_cast<std::size_t>(touches_.count++)] = {
         held.sample, held.normal.head<3>(), active.multiplier, Eigen::Vector3d::Zero()};
   }
-}
-
-void Descent::lift(const ToolSurface& surface, double reach, ToolContact& contact) noexcept {
-  const double high = std::max(reach, kLongest * 2 * gaps_.radius());
-  constraints_.clear();
-  surface.place(pose_);
-  for (const Touches::Touch& touch : touches_.span()) {
-    const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
-    const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose_);
-    const Field& field = surface.group(surface.group_of(touch.sample));
-    // Where surfaces are not expected farther above, one that a sample still sees is where looks
-    // lead.
-    const bool near = reach <= kLongest * gaps_.radius();
-    if (near && gaps_.sees_still(field, sample, x, touch.normal)) continue;
-    const double rise = gaps_.rise(field, sample, x, high * touch.normal) * high;
-    if (rise < kRisen * gaps_.radius()) continue;
-    Constraint constraint = constraint_on(*tool_, touch.sample, x, touch.normal, pose_, metric_);
-    constraint.bound = rise;
-    constraints_.add(constraint);
-  }
-  if (constraints_.all().empty()) return;
-  const LeastMotion least = least_motion(constraints_.all(), Motion::Zero(), kSolved);
-  if (least.end != LeastMotion::End::solved || !least.motion.allFinite()) return;
-  move_to(metric_.moved(pose_, least.motion));
-  contact.notes |= ContactNote::reanchored;
 }
 
 }  // namespace palpate

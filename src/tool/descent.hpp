@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -62,12 +63,20 @@ class Descent {
   [[nodiscard]] static int most_evaluations(const Tool& tool) noexcept;
 
  private:
+  static constexpr double kSolved = 1e-11;  // m, that the solver leaves open: 5e-9 N at 500 N/m
+  static constexpr double kLongest = 0.25;  // of R, that a sample moves between two looks
   static constexpr int kMostLooks = 10;  // six towards the hand, four out of what was not foreseen
 
   // A pose that was looked at without a sample in the surface.
   struct Outside {
     Pose pose;
     bool is_old = false;  // seen before this step
+  };
+  // A step's first pose, if no sample was in the surface there.
+  struct First {
+    Pose pose;
+    Touches touches;
+    double farthest = std::numeric_limits<double>::infinity();  // m from the hand that it may end
   };
   // What a step has seen so far.
   struct Progress {
@@ -82,6 +91,7 @@ class Descent {
     bool whole = true;     // the last motion was not shortened
     bool proved = true;    // nor so long that what it leads to has to be looked at
     bool creased = false;  // it led into a face that the look before did not show
+    First first = {};
   };
 
   [[nodiscard]] bool iterate(const ToolSurface& surface, const Pose& hand, bool restores,
