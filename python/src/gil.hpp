@@ -7,6 +7,11 @@
 
 namespace palpate::python {
 
+/// Stays here where the interpreter has ended: its threads' states are gone, too.
+inline void stay_if_ended() {
+  while (Py_IsInitialized() == 0) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
 /// Lets other threads of Python go on until its end, where it waits for the GIL. A thread that
 /// comes back after the interpreter has ended stays here: Python itself keeps such threads from
 /// 3.14 on, and ends them before by an exception that no destructor lets pass.
@@ -14,6 +19,7 @@ class Released {
  public:
   Released() : thread_(PyEval_SaveThread()) {}
   ~Released() {
+    stay_if_ended();
     try {
       PyEval_RestoreThread(thread_);
     } catch (...) {

@@ -54,6 +54,7 @@ struct Rows {
 
 // Ctrl-C ends a long one.
 void look_for_signals() {
+  stay_if_ended();
   const py::gil_scoped_acquire acquire;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
