@@ -163,6 +163,15 @@ bool is_prose(const Roles& roles) {
 
 }  // namespace
 
+bool has_columns_of_one_width(std::string_view line) {
+  const std::size_t width = line.find(',');
+  for (std::size_t at = width; at < line.size(); at += width + 1) {
+    const std::size_t next = std::min(line.find(',', at + 1), line.size());
+    if (line[at] != ',' || next != at + width + 1) return false;
+  }
+  return true;
+}
+
 std::optional<ColumnNames> find_names(std::string_view line, std::size_t columns) {
   const std::size_t begin = std::min(line.find_first_not_of("/#% "), line.size());
   line.remove_prefix(begin);

@@ -66,6 +66,9 @@ class TableRows {
 
 inline constexpr std::size_t kMostTextColumns = 4096;  ///< no honest table has more (judgement)
 
+/// Do commas divide the line into cells of one width?
+[[nodiscard]] bool has_columns_of_one_width(std::string_view line);
+
 /// In the order in which they are tried: commas may be within numbers, blanks around all else.
 inline constexpr std::string_view kSeparators[] = {";", "\t", ", ", ",", " "};
 

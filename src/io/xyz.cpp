@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/colmap.hpp"
 #include "io/formats.hpp"
 #include "io/table.hpp"
 #include "io/units/file_unit.hpp"
@@ -38,9 +39,6 @@ bool begins_with_number(std::string_view line) {
 constexpr std::string_view kRemedy =
     "A text cloud has one point per line, x y z first, or a header line that names the columns x, "
     "y, z";
-
-// What COLMAP writes above its points, where somebody left that out.
-constexpr std::string_view kPoints3d = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[]";
 
 class XyzReader {
  public:
@@ -76,24 +74,14 @@ class XyzReader {
   }
 
  private:
-  // Lists that COLMAP writes beside its points begin with such a comment.
-  void refuse_others_of_colmap(std::string_view line) const {
-    for (const auto& [names, what] :
-         {std::pair("CAMERA_ID, MODEL", "cameras"), std::pair("IMAGE_ID, QW, QX", "pictures")}) {
-      if (line.find(names) == std::string_view::npos) continue;
-      fail(input_, fmt::format("this is COLMAP's list of {}, not of points", what),
-           "Give points3D.txt, which lies beside it");
-    }
-  }
-
   // Up to the first row, or to the number of a scan's points.
   void find_rows() {
-    if (lower_case(input_.name).ends_with("points3d.txt")) comment_ = kPoints3d;
+    if (lower_case(input_.name).ends_with("points3d.txt")) comment_ = colmap::kPoints;
     TextScanner scanner(input_);
     for (begin_ = scanner.offset(); !scanner.at_end(); begin_ = scanner.offset()) {
       const std::string_view line = scanner.next_line();
       if (is_blank_or_comment(line)) {
-        refuse_others_of_colmap(line);
+        colmap::refuse_others(input_, line);
         if (find_names(line, 0)) comment_ = line;  // CloudCompare: "//X Y Z"
         input_.unit = in_unit_of_comments(input_, line, "").unit;
       } else if (!header_.empty() || begins_with_number(line)) {
@@ -167,15 +155,6 @@ class XyzReader {
     StatedUnits stated{.plan = x ? x : y, .height = z};
     if (!stated.plan && !table_.degrees) stated.plan = z;
     input_.unit = in_stated_unit(input_, stated, fmt::format("\"{}\"", excerpt(names))).unit;
-  }
-
-  static bool has_columns_of_one_width(std::string_view line) {
-    const std::size_t width = line.find(',');
-    for (std::size_t at = width; at < line.size(); at += width + 1) {
-      const std::size_t next = std::min(line.find(',', at + 1), line.size());
-      if (line[at] != ',' || next != at + width + 1) return false;
-    }
-    return true;
   }
 
   static bool fits(std::string_view line, const TextTable& table) {

@@ -176,8 +176,8 @@ std::optional<double> unit_in_sentence(std::string_view text) {
     }
     if (!unit && (at == i + 1 || words[at - 1] != "in")) continue;  // "points in mm"
     const std::optional<double> length = length_at(words, at);
-    const std::optional<double> units = unit && i > 0 ? parse_number(words[i - 1]) : std::nullopt;
-    if (length) return units && *units > 0 ? *length / *units : *length;
+    const double units = unit && i > 0 ? parse_number(words[i - 1]).value_or(1) : 1;
+    if (length) return units > 0 ? *length / units : *length;
   }
   return {};
 }
