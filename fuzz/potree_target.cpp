@@ -64,7 +64,7 @@ void check_layout(const PointStore& store) {
 CloudFile read_potree(std::span<const std::byte> bytes) {
   const test::Folder folder;
   write_store(folder, bytes);
-  check_layout(*io::open_potree(folder.path(), 1));
+  check_layout(*io::open_potree(folder.path(), {.scale = 1}));
   return read_cloud_file(folder.path());
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& path) {
+std::string file_bytes(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -62,7 +62,7 @@ TEST_F(LazPeer, ReadsTheRealFilesAsWeDo) {
   if (data == nullptr) GTEST_SKIP() << "PALPATE_DATA names no folder with the real data";
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(fs::path(data) / "pdal_small")) {
-    if (entry.path().extension() == ".laz") files.push_back(bytes_of(entry.path()));
+    if (entry.path().extension() == ".laz") files.push_back(file_bytes(entry.path()));
   }
   ASSERT_GE(files.size(), 3u);
   const std::vector<std::string> records = records_of(files);

@@ -15,13 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct PeerPoint {
+struct PotreePeerPoint {
   Eigen::Vector3d place;  // m
   Eigen::Vector3d color;
   double intensity = 0;
 };
 
-using PeerNodes = std::map<std::string, std::vector<PeerPoint>>;
+using PeerNodes = std::map<std::string, std::vector<PotreePeerPoint>>;
 
 class PotreePeer : public testing::Test {
  protected:
@@ -44,9 +44,9 @@ class PotreePeer : public testing::Test {
     std::string name;
     std::size_t count = 0;
     while (file >> name >> count) {
-      std::vector<PeerPoint>& points = nodes[name];
+      std::vector<PotreePeerPoint>& points = nodes[name];
       points.resize(count);
-      for (PeerPoint& p : points) {
+      for (PotreePeerPoint& p : points) {
         for (double& x : p.place) file >> x;
         for (double& c : p.color) file >> c;
         file >> p.intensity;
@@ -67,13 +67,13 @@ TEST_F(PotreePeer, ReadsTheSameNodesAsWeDo) {
     for (const int levels : {2, 4}) {
       SCOPED_TRACE(fmt::format("packed {}, {} levels a chunk", packed, levels));
       potree_of(points, {.packed = packed, .levels = levels}).write(folder_);
-      const auto store = io::open_potree(folder_.path(), 1);
+      const auto store = io::open_potree(folder_.path(), {.scale = 1});
       const PeerNodes nodes = nodes_of_peer();
       ASSERT_EQ(nodes.size(), store->layout().nodes.size());
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         const std::string name = io::potree::name_of(store->layout().nodes[i]);
         ASSERT_TRUE(nodes.contains(name)) << name;
-        const std::vector<PeerPoint>& expected = nodes.at(name);
+        const std::vector<PotreePeerPoint>& expected = nodes.at(name);
         const PointCloud cloud = store->read(i);
         ASSERT_EQ(cloud.size(), expected.size()) << name;
         for (std::size_t k = 0; k < expected.size(); ++k) {

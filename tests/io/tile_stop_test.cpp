@@ -99,7 +99,7 @@ TEST(TileStop, GoingOnWithOtherInputsOrOptionsIsRefused) {
   EXPECT_THAT(tile_refusal({folder / "b.las"}, folder / "out"),
               HasSubstr("was begun with other inputs: " + (folder / "a.las")));
   options = small_options();
-  options.scale = 2;
+  options.reading.scale = 2;
   EXPECT_THAT(tile_refusal({folder / "a.las"}, folder / "out", options),
               HasSubstr("other options, or its inputs have changed"));
   fs::last_write_time(folder / "a.las", fs::file_time_type::clock::now() + std::chrono::hours(1));
