@@ -24,8 +24,12 @@ class Flight {
     }
   }
 
-  /// The corners ahead are those of `corners` now, which is as the way before but for its end.
-  void lead(std::span<const Eigen::Vector3d> corners) noexcept { corners_ = corners; }
+  /// The corners ahead are those of `corners` now, which is as the way before but for its end. Also
+  /// a flight that was over goes on to that.
+  void lead(std::span<const Eigen::Vector3d> corners) noexcept {
+    corners_ = corners;
+    if (over() && !corners.empty()) next_ = corners.size() - 1;
+  }
 
   [[nodiscard]] bool over() const noexcept { return next_ >= corners_.size(); }
 
