@@ -44,7 +44,8 @@ TEST(LengthNames, SentencesStateAUnit) {
   }
   for (const char* none :
        {"# Unit: none", "# 12 vertices", "# unit test of m", "# united in 1 m", "# Points: 200 in",
-        "# made in 2 m of snow", "# Unit: ", "# units = -1 mm", "# community = 5 m"}) {
+        "# made in 2 m of snow", "# Unit: ", "# units = -1 mm", "# community = 5 m",
+        "# points in 3 ft around", "# inf units = 1 mm", "# 1e300 units = 1e-300 mm"}) {
     EXPECT_EQ(unit_in_sentence(none), std::nullopt) << none;
   }
 }

@@ -175,9 +175,12 @@ std::optional<double> unit_in_sentence(std::string_view text) {
       ++at;
     }
     if (!unit && (at == i + 1 || words[at - 1] != "in")) continue;  // "points in mm"
+    if (!unit && at < words.size() && parse_number(words[at])) continue;  // "points in 2 m around"
     const std::optional<double> length = length_at(words, at);
-    const double units = unit && i > 0 ? parse_number(words[i - 1]).value_or(1) : 1;
-    if (length) return units > 0 ? *length / units : *length;
+    if (!length) continue;
+    const double before = unit && i > 0 ? parse_number(words[i - 1]).value_or(1) : 1;
+    const double metres = *length / (before > 0 ? before : 1);
+    if (std::isfinite(metres) && metres > 0) return metres;
   }
   return {};
 }
