@@ -48,7 +48,8 @@ TEST(UnitsProgram, TheRemedyForHeightsWithoutAUnitWorks) {
   EXPECT_EQ(shell.run("touch --setup run.toml --duration 0.1").code, 0);
   EXPECT_THAT(shell.run("info feet.csv --scale 1,2,3").err, HasSubstr("more than 2 numbers"));
   EXPECT_THAT(shell.run("info feet.csv --scale 1,-2").err, HasSubstr("not a number above 0"));
-  EXPECT_THAT(shell.run("info feet.csv --scale 1").out, HasSubstr("the file says that it is in feet"));
+  EXPECT_THAT(shell.run("info feet.csv --scale 1").out,
+              HasSubstr("the file says that it is in feet"));
 }
 
 TEST(UnitsProgram, AStoreHasTheUnitThatItsFilesState) {

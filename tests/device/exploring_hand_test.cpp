@@ -12,7 +12,7 @@
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
-#include "tests/support/effort.hpp"
+#include "support/effort.hpp"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
-#include "tests/device/asker.hpp"
+#include "device/asker.hpp"
 
 namespace palpate {
 namespace {

@@ -16,7 +16,7 @@
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
 #include "session/page_hand.hpp"
-#include "tests/support/effort.hpp"
+#include "support/effort.hpp"
 
 namespace palpate::session {
 namespace {

@@ -84,7 +84,7 @@ class ToolInACorner : public testing::TestWithParam<int> {
     Contact contact;
     for (int i = 0; i < 1200; ++i) {
       const Vector3d hand = std::max(-deep, 0.035 - 1e-4 * i) * out;
-      field.update(1e-3 * i, hand, proxy.position());
+      field.update(1e-3 * i, hand, proxy);
       contact = proxy.step(field, hand, kTick);
     }
     return contact.force.norm();

@@ -76,7 +76,8 @@ Input in_stated_unit(Input input, const StatedUnits& stated, std::string words) 
     input.unit = std::move(unit);
   } else if (!is_same_unit(unit.plan, given.plan) ||
              (unit.height_stated && !is_same_unit(unit.height, given.height))) {
-    input.unit.words = fmt::format("the file says that it is{}, by {}", words_of(unit).substr(1), unit.words);
+    input.unit.words =
+        fmt::format("the file says that it is{}, by {}", words_of(unit).substr(1), unit.words);
   }
   return input;
 }
