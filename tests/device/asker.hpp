@@ -7,7 +7,7 @@
 
 namespace palpate::test {
 
-inline constexpr double kStep = 1e-3;  // s
+inline constexpr double kAskedEvery = 1e-3;  // s
 
 // Asks a guided hand every millisecond and remembers its fastest step.
 class Asker {
@@ -16,19 +16,20 @@ class Asker {
 
   TargetSource::Target ask() {
     const TargetSource::Target wish = hand_.target(now_, device_);
-    if (step_ > 0) fastest_ = std::max(fastest_, (wish.position - last_.position).norm() / kStep);
+    if (step_ > 0)
+      fastest_ = std::max(fastest_, (wish.position - last_.position).norm() / kAskedEvery);
     last_ = wish;
-    now_ = ++step_ * kStep;
+    now_ = ++step_ * kAskedEvery;
     return wish;
   }
   TargetSource::Target ask_until(double time) {
-    while (now_ < time - 0.5 * kStep) ask();
+    while (now_ < time - 0.5 * kAskedEvery) ask();
     return last_;
   }
 
   // The device is where it is wanted.
   TargetSource::Target follow_until(double time) {
-    while (now_ < time - 0.5 * kStep) device_ = ask().position;
+    while (now_ < time - 0.5 * kAskedEvery) device_ = ask().position;
     return last_;
   }
 

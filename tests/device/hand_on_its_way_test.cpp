@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include "device/asker.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
-#include "device/asker.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
 using test::Asker;
-using test::kStep;
+using test::kAskedEvery;
 
 // Down at 0.1 s, a press from there to 1 s, and off again at 1.2 s.
 Trajectory one_press() {
@@ -44,7 +44,7 @@ TEST(HandOnItsWay, LiftsWhereNothingHoldsItsPress) {
     ASSERT_LT(held.now(), 2);
     held.device_at(at);
     last = held.ask();
-    EXPECT_LE((last.position - at).norm(), 0.2 * kStep + 1e-12);
+    EXPECT_LE((last.position - at).norm(), 0.2 * kAskedEvery + 1e-12);
     EXPECT_EQ(last.maximum_force, 1);
     if (last.position.x() > 0.06) lowest = std::min(lowest, last.position.z());
   }
@@ -80,19 +80,20 @@ TEST(HandOnItsWay, GoesTheWayThatACommandNamesFromWhereItIs) {
   way.speed = 0.25;
   ASSERT_TRUE(remote.fly({.maximum_force = 2}, way, true, 0.09));
   TargetSource::Target last = asker.ask();
-  EXPECT_LT(last.position.norm(), 0.25 * kStep) << "from where it is";
+  EXPECT_LT(last.position.norm(), 0.25 * kAskedEvery) << "from where it is";
   bool over_the_corner = false;
   for (Vector3d at(0, 0, 0); asker.now() < 2; at = last.position) {
     asker.device_at(at);
     remote.keep_alive();
     last = asker.ask();
-    EXPECT_LE((last.position - at).norm(), 0.25 * kStep + 1e-12);
+    EXPECT_LE((last.position - at).norm(), 0.25 * kAskedEvery + 1e-12);
     over_the_corner = over_the_corner || last.position == way.corners[1];
   }
   EXPECT_EQ(last.position, way.corners[2]);
   way.corners[2].z() = 0;
   ASSERT_TRUE(remote.fly({.maximum_force = 2}, way, false, 2));
-  EXPECT_NEAR(asker.ask().position.z(), 0.01, 0.25 * kStep) << "goes on to the end, which moved";
+  EXPECT_NEAR(asker.ask().position.z(), 0.01, 0.25 * kAskedEvery)
+      << "goes on to the end, which moved";
   static_cast<void>(remote.move({.position = {0.1, 0, -0.05}, .maximum_force = 1}, 2.016));
   EXPECT_LT(asker.ask().maximum_force, 0.2) << "presses softly first";
   remote.keep_alive();

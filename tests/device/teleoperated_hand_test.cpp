@@ -5,16 +5,16 @@
 #include <limits>
 #include <vector>
 
+#include "device/asker.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/device/simulated.hpp"
-#include "device/asker.hpp"
 
 namespace palpate {
 namespace {
 
 using Eigen::Vector3d;
 using test::Asker;
-using test::kStep;
+using test::kAskedEvery;
 
 // A second along x at 5 cm/s and back.
 Trajectory there_and_back() {
@@ -27,7 +27,7 @@ TEST(TeleoperatedHand, PlaysItsTrajectoryAgainAndAgain) {
   Asker asker(hand, Vector3d::Zero());
   EXPECT_NEAR(asker.ask_until(0.501).position.x(), 0.025, 1e-9);
   EXPECT_NEAR(asker.ask_until(1.501).position.x(), 0.025, 1e-9);
-  EXPECT_NEAR(asker.ask_until(2.501).position.x(), 0.025, 0.05 * 2.5 * kStep);
+  EXPECT_NEAR(asker.ask_until(2.501).position.x(), 0.025, 0.05 * 2.5 * kAskedEvery);
   EXPECT_EQ(asker.ask().buttons, 0u);
   EXPECT_NEAR(asker.fastest(), 0.05, 1e-9);
 }
@@ -36,9 +36,10 @@ TEST(TeleoperatedHand, ReturnsToTheStartOfAWayThatEndsElsewhere) {
   RemoteTarget remote;
   TeleoperatedHand hand(remote, {{3, {0, 0, 0}}, {4, {0.05, 0, 0}}}, {.travel_speed = 0.1});
   Asker asker(hand, Vector3d::Zero());
-  EXPECT_NEAR(asker.follow_until(1.251).position.x(), 0.025, 0.1 * 3 * kStep) << "on its way back";
+  EXPECT_NEAR(asker.follow_until(1.251).position.x(), 0.025, 0.1 * 3 * kAskedEvery)
+      << "on its way back";
   const double stopping = 0.1 / (2 * TeleoperatedHandOptions().braking);  // s that it takes longer
-  EXPECT_NEAR(asker.follow_until(2.001 + stopping).position.x(), 0.025, 0.05 * 4 * kStep)
+  EXPECT_NEAR(asker.follow_until(2.001 + stopping).position.x(), 0.025, 0.05 * 4 * kAskedEvery)
       << "again";
 }
 
@@ -77,7 +78,7 @@ TEST(TeleoperatedHand, TurnsAndOpensAfterTheCommandsAndBackWhereItExploresAgain)
   while (asker.now() < 0.5) {
     static_cast<void>(remote.move({.orientation = turned, .opening = 0.04}, asker.now()));
     const TargetSource::Target wish = asker.ask();
-    fastest = std::max(fastest, last.angularDistance(wish.orientation) / kStep);
+    fastest = std::max(fastest, last.angularDistance(wish.orientation) / kAskedEvery);
     ASSERT_LE(wish.opening, 0.4 * asker.now() + 1e-12);
     last = wish.orientation;
   }
@@ -143,7 +144,7 @@ TEST(TeleoperatedHand, ASurfaceHoldsBackTheDeviceThatAMousePullsIntoIt) {
   options.position = {0, 0, 0.01};
   SimulatedDevice device(options, hand);
   for (int i = 0; i < 3000; ++i) {
-    if (i % 16 == 0) static_cast<void>(remote.move({{0, 0, -8e-3}, 1}, i * kStep));
+    if (i % 16 == 0) static_cast<void>(remote.move({{0, 0, -8e-3}, 1}, i * kAskedEvery));
     device.write(wall(device.read()));
   }
   EXPECT_NEAR(device.true_position().z(), -8e-3 * 300 / 800, 1e-6);
@@ -162,7 +163,7 @@ TEST(TeleoperatedHand, SameWordsAtTheSameTimesSameBits) {
     SimulatedDevice device({}, hand);
     for (int i = 0; i < 3000; ++i) {
       if (i > 700 && i < 1500 && i % 13 == 0) {
-        static_cast<void>(remote.move({{0.01, 1e-5 * i, -4e-3}, 0}, i * kStep));
+        static_cast<void>(remote.move({{0.01, 1e-5 * i, -4e-3}, 0}, i * kAskedEvery));
       }
       device.write(wall(device.read()));
     }
