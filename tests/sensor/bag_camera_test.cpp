@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 
 #include "message/depth_images.hpp"
@@ -176,7 +178,10 @@ TEST_F(BagCamera, SaysWhatABagLacks) {
   EXPECT_THAT(refusal(name_), AllOf(HasSubstr(path_), HasSubstr("neither depth images")));
   {
     McapWriter writer(path_);
-    (void)writer.add_channel({"/livox/lidar", {"livox_ros_driver2/msg/CustomMsg", "ros2msg", ""}});
+    const auto lidar =
+        writer.add_channel({"/livox/lidar", {"livox_ros_driver2/msg/CustomMsg", "ros2msg", ""}});
+    constexpr std::array<std::uint8_t, 4> kPoints{};
+    writer.write(lidar, {0, 0}, bag::View(kPoints));
   }
   EXPECT_THAT(refusal(name_),
               HasSubstr("/livox/lidar (livox_ros_driver2/msg/CustomMsg, cdr) is not"));
