@@ -18,7 +18,7 @@ struct SweepScene {
   std::vector<TestPoint> (*make)(const Sampling& sampling);
   double extent;  // of the points in x and y, m
   double height;  // within which the middles of ways lie, m
-  int least_contacts;
+  int least_contacts;  // that are compared; ways from close behind a known side begin inside of it
 };
 
 std::vector<TestPoint> noisy_sheet(Sampling sampling) {
@@ -40,8 +40,8 @@ std::vector<TestPoint> two_sheets(const Sampling& sampling) {
 }
 
 const SweepScene kScenes[] = {
-    {"sheet", [](const Sampling& s) { return sheet(s, 0.05); }, 0.05, 0.008, 2500},
-    {"noisy_sheet", [](const Sampling& s) { return noisy_sheet(s); }, 0.05, 0.008, 2500},
+    {"sheet", [](const Sampling& s) { return sheet(s, 0.05); }, 0.05, 0.008, 2200},
+    {"noisy_sheet", [](const Sampling& s) { return noisy_sheet(s); }, 0.05, 0.008, 2000},
     {"line", [](const Sampling& s) { return line(s, 0.05); }, 0.05, 0.007, 1000},
     {"single_point", single, 0.008, 0.007, 1200},
     {"two_sheets", two_sheets, 0.05, 0.014, 2200},
