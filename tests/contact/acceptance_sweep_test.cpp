@@ -16,8 +16,8 @@ const Vector3d kFarAway(0, 0, 1);
 struct SweepScene {
   const char* name;
   std::vector<TestPoint> (*make)(const Sampling& sampling);
-  double extent;  // of the points in x and y, m
-  double height;  // within which the middles of ways lie, m
+  double extent;       // of the points in x and y, m
+  double height;       // within which the middles of ways lie, m
   int least_contacts;  // that are compared; ways from close behind a known side begin inside of it
 };
 
