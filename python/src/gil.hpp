@@ -17,9 +17,9 @@ inline void stay_if_ended() {
 /// 3.14 on, and ends them before by an exception that no destructor lets pass.
 class Released {
  public:
-  Released() : thread_(PyEval_SaveThread()) {}
+  Released() : ends_(Py_IsInitialized() == 0), thread_(PyEval_SaveThread()) {}
   ~Released() {
-    stay_if_ended();
+    if (!ends_) stay_if_ended();
     try {
       PyEval_RestoreThread(thread_);
     } catch (...) {
@@ -30,6 +30,7 @@ class Released {
   Released& operator=(const Released&) = delete;
 
  private:
+  bool ends_;  // the interpreter, which destroys what is left on this thread
   PyThreadState* thread_;
 };
 

@@ -59,7 +59,6 @@ TEST(OpenedPlan, AnotherUnitIsOfItsFileAndNotOfTheNext) {
   EXPECT_FALSE(inches.sources[0].reading.length);
   EXPECT_EQ(inches.surface.proxy.friction.dynamic_coefficient, 0.4);
   const TouchPlan next = plan_of_file(inches, shell.path("b.xyz"));
-  EXPECT_EQ(next.sources[0].reading.scale, 1);
   EXPECT_FALSE(next.sources[0].reading.scale);
 }
 
@@ -69,7 +68,7 @@ TEST(OpenedPlan, AnExampleIsPreparedAsByDefault) {
   ASSERT_EQ(plan.sources.size(), 1U);
   EXPECT_EQ(plan.sources[0].kind, SourceKind::stream);
   EXPECT_EQ(plan.sources[0].argument.name, "desk");
-  EXPECT_EQ(plan.sources[0].reading.scale, 1);
+  EXPECT_FALSE(plan.sources[0].reading.scale);
   EXPECT_FALSE(plan.sources[0].options.prepare.voxel);
 }
 

@@ -37,7 +37,7 @@ TEST(Stores, ThatAreLargerThanTheCacheAreReadAroundTheTool) {
   EXPECT_THAT(run.out, HasSubstr("200 000 points on disk"));
   const nlohmann::json source = nlohmann::json::parse(site.shell.read("run.json"))["sources"][0];
   EXPECT_EQ(source["points_stored"], 200'000);
-  EXPECT_EQ(source["format"], "Potree 2.0, DEFAULT");
+  EXPECT_EQ(source["format"], "Potree 2.0, DEFAULT, in metres");
   EXPECT_GT(source["points_felt"], 1000);
   EXPECT_FALSE(source.contains("prepared_share"));
   if (test::is_slow_build()) return;  // the second run is of the same code
