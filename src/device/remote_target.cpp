@@ -45,7 +45,7 @@ bool RemoteTarget::fly(const TargetSource::Target& target, const Way& way, bool 
                        double stamp) noexcept {
   if (!is_valid(target) || !is_valid(way) || !std::isfinite(stamp)) return false;
   Command& newest = inside_->newest;
-  const bool first = begins || newest.way.size == 0;
+  const bool first = begins || newest.way.size != way.size;
   newest = {target, stamp, true, newest.moves + 1, way, newest.ways + (first ? 1 : 0)};
   newest.target.position = way.corners[way.size - 1];
   inside_->shared.set(newest);

@@ -100,6 +100,41 @@ TEST(HandOnItsWay, GoesTheWayThatACommandNamesFromWhereItIs) {
   EXPECT_LT(asker.ask_until(2.05).maximum_force, 0.7);
 }
 
+// A page that hovers says a new end again and again, also after the hand has arrived.
+TEST(HandOnItsWay, FollowsTheEndOfItsWayAfterItHasArrived) {
+  RemoteTarget remote;
+  TeleoperatedHand hand(remote, {}, {.speed = 2});
+  Asker asker(hand, {0, 0, 0});
+  asker.ask();
+  Way way;
+  way.corners = {{Vector3d(0, 0, 0.005), Vector3d(0.005, 0, 0.005)}};
+  way.size = 2;
+  way.speed = 0.25;
+  ASSERT_TRUE(remote.fly({}, way, true, 0));
+  for (int i = 0; i < 500; ++i) {
+    remote.keep_alive();
+    asker.ask();
+  }
+  EXPECT_EQ(asker.ask().position, way.corners[1]);
+  way.corners[1].y() = 1e-3;
+  ASSERT_TRUE(remote.fly({}, way, false, 0.6));
+  EXPECT_NEAR(asker.follow_until(asker.now() + 0.08).position.y(), 1e-3, 1e-12);
+}
+
+TEST(HandOnItsWay, BeginsAWayThatHasAnotherNumberOfCorners) {
+  RemoteTarget remote;
+  Way way;
+  way.corners.fill(Vector3d::Zero());
+  way.size = 3;
+  way.speed = 1;
+  ASSERT_TRUE(remote.fly({}, way, true, 0));
+  ASSERT_TRUE(remote.fly({}, way, false, 0.1));
+  EXPECT_EQ(remote.command()->ways, 1u);
+  way.size = 2;
+  ASSERT_TRUE(remote.fly({}, way, false, 0.2));
+  EXPECT_EQ(remote.command()->ways, 2u);
+}
+
 TEST(HandOnItsWay, RefusesWaysThatLeadNowhere) {
   RemoteTarget remote;
   Way way;

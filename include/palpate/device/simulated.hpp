@@ -204,8 +204,8 @@ class RemoteTarget {
 
   /// Takes the tool as move() does. It goes to the last corner of `way`, which takes the place of
   /// the target's position. `begins`: the hand begins it where it is; otherwise `way` is the one
-  /// before, but for its end. False: ignored, also where there is no way, a corner is not finite,
-  /// or the speed is not above 0.
+  /// before, but for its end; one with another number of corners begins all the same. False:
+  /// ignored, also where there is no way, a corner is not finite, or the speed is not above 0.
   bool fly(const TargetSource::Target& target, const Way& way, bool begins, double stamp) noexcept;
 
   /// The user of the tool is still connected and keeps it still: a mouse that rests sends
