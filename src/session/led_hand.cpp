@@ -26,8 +26,8 @@ constexpr double kTouchSpeed = 0.1;   // m/s: 0.1 kg on 500 N/m make 0.7 N of it
 constexpr double kLeastSpeed = 0.25;  // m/s of the hand, as of one that explores ...
 constexpr double kMostSpeed = 1;      // ... and at most (judgement)
 constexpr double kWayForce = 4;       // N; that takes 3.6 of the usual hand and device
-// N that a hand pulls with at most where nothing shows a free way. Against a wall it reaches
-// 0.13 m/s with it (3.5 N s/m), which 0.1 kg and 500 N/m turn into 0.9 N.
+// N that a hand pulls with at most where nothing shows a free way, or none for all of its tool.
+// Against a wall it reaches 0.13 m/s with it (3.5 N s/m), which 0.1 kg and 500 N/m turn into 0.9 N.
 constexpr double kGropingForce = 0.5;
 
 // All points of a scene.
@@ -172,9 +172,12 @@ void LedHand::move(const TargetSource::Target& wish, const std::optional<Vector3
   const bool begins = !same || (!clear_ && stamp - planned_ > kPatience);
   if (begins) plan(wish.position, *eye, touches, servo.state());
   if (begins) planned_ = stamp;
+  // With so little force a hand does not stay behind.
+  if (servo.options().tool) way_.speed = kTouchSpeed;
   touches_ = touches;
   way_.corners[way_.size - 1] = target.position;
-  target.maximum_force = std::min(target.maximum_force, clear_ ? kWayForce : kGropingForce);
+  const bool gropes = !clear_ || servo.options().tool;  // ways are looked at for a point
+  target.maximum_force = std::min(target.maximum_force, gropes ? kGropingForce : kWayForce);
   remote_.fly(target, way_, begins, stamp);
 }
 

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "palpate/io/synthetic.hpp"
 #include "palpate/scene/scene.hpp"
 #include "palpate/servo/servo.hpp"
+#include "palpate/tool/tool.hpp"
 #include "session/page_hand.hpp"
 #include "support/effort.hpp"
 
@@ -162,6 +165,46 @@ TEST(LedHand, WhereNoWayIsFreeItPushesNoHarderThanHalfANewton) {
   }
   EXPECT_LT(page.largest, 1.2);
   EXPECT_LT(farthest, 0.2);
+}
+
+// So small a move of the pointer begins no new way.
+TEST(LedHand, FollowsAGoalThatMovesAfterItHasArrived) {
+  const PointCloud cloud = synthetic_cloud("table");
+  Scene scene;
+  scene.add("table", cloud);
+  Pressing page(cloud, scene);
+  Random random(7);
+  const Place place = page.look.any(random);
+  const Vector3d above = place.position + 2 * place.reach * place.normal;
+  const double aside = 0.4 * scene.source(0).points()->radius;
+  const Vector3d beside = above + aside * place.normal.unitOrthogonal();
+  for (int i = 0; i < 600; ++i) page.say({.position = above}, page.look.eye);
+  ASSERT_LT((page.servo.state().hip - above).norm(), 0.2 * aside);
+  const std::uint64_t ways = page.remote.command()->ways;
+  for (int i = 0; i < 60; ++i) page.say({.position = beside}, page.look.eye);
+  EXPECT_EQ(page.remote.command()->ways, ways);
+  EXPECT_LT((page.servo.state().hip - beside).norm(), 0.2 * aside);
+}
+
+// Ways are looked at for a point: what the tool's body meets on them is not known.
+TEST(LedHand, PushesABodyNoHarderThanHalfANewton) {
+  Scene scene;
+  scene.add("table", synthetic_cloud("table"));
+  RemoteTarget remote;
+  const Workspace workspace;
+  LedHand led(remote, workspace, scene);
+  TeleoperatedHand guide(remote);
+  SimulatedDevice device({.position = {0, 0, 2}}, guide);
+  for (const bool body : {false, true}) {
+    ServoOptions options;
+    if (body) options.tool = std::make_shared<const Tool>(Tool::from_text("box:20x20x20", 4e-3));
+    Servo servo(device, scene, options);
+    servo.tick();
+    led.release();
+    led.move({.position = {0, 0.3, 2}}, Vector3d(0, 0, 9), servo, body ? 1 : 0);
+    EXPECT_EQ(remote.command()->target.maximum_force, body ? 0.5 : 4);
+    EXPECT_LE(remote.command()->way.speed, body ? 0.1 : 1);
+  }
 }
 
 TEST(LedHand, IsFollowedAtOnceWhereThePageNamesNoEye) {
