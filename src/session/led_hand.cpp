@@ -192,7 +192,8 @@ void LedHand::plan(const Vector3d& goal, const Vector3d& eye, bool touches,
   Obstacles obstacles(scene_);
   const double radius = obstacles.radius();
   std::vector<Vector3d> corners = {goal};
-  const bool begun = state.step > 0;  // before, nobody knows where the hand is
+  // Before, and in a fault, nobody knows where the hand is.
+  const bool begun = state.step > 0 && state.hip.allFinite() && state.contact.proxy.allFinite();
   if (radius == 0 || touches || !begun) {
     near_ = touches ? std::numeric_limits<double>::infinity() : 0;
     clear_ = begun;

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/numbers.hpp"
@@ -184,6 +186,41 @@ TEST(LedHand, FollowsAGoalThatMovesAfterItHasArrived) {
   for (int i = 0; i < 60; ++i) page.say({.position = beside}, page.look.eye);
   EXPECT_EQ(page.remote.command()->ways, ways);
   EXPECT_LT((page.servo.state().hip - beside).norm(), 0.2 * aside);
+}
+
+// A device that reports no number.
+class Broken final : public Device {
+ public:
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] DeviceState read() noexcept override {
+    DeviceState state;
+    state.time = 1e-3 * ++steps_;
+    state.position.x() = std::nan("");
+    return state;
+  }
+  void write(const Vector3d&) noexcept override {}
+  [[nodiscard]] std::string reason() const override { return {}; }
+
+ private:
+  DeviceInfo info_;
+  int steps_ = 0;
+};
+
+TEST(LedHand, PlansNoWayFromNowhere) {
+  Scene scene;
+  scene.add("table", synthetic_cloud("table"));
+  RemoteTarget remote;
+  const Workspace workspace;
+  LedHand led(remote, workspace, scene);
+  Broken device;
+  Servo servo(device, scene);
+  servo.tick();
+  ASSERT_FALSE(servo.state().hip.allFinite());
+  led.move({.position = {0, 0.3, 2}}, Vector3d(0, 0, 9), servo, 0);
+  ASSERT_TRUE(remote.command());
+  EXPECT_EQ(remote.command()->moves, 1u);
+  EXPECT_EQ(remote.command()->way.size, 1u);
+  EXPECT_EQ(remote.command()->target.maximum_force, 0.5);
 }
 
 // Ways are looked at for a point: what the tool's body meets on them is not known.
