@@ -71,7 +71,10 @@ StatedUnits units_in_keys(const Input& input, const LasHeader& header) {
   if (key(kModelType) == kGeocentric) found.plan = metres_of_epsg_unit(key(kGeographicUnit));
   if (!found.plan) found.plan = metres_of_epsg_system(key(kProjectedSystem));
   found.height = metres_of_epsg_unit(key(kVerticalUnit));
-  if (!found.height) found.height = metres_of_epsg_system(key(kVerticalSystem));
+  const unsigned vertical = key(kVerticalSystem);
+  // GeoTIFF's own numbers of heights, 5001 to 5192, state no unit.
+  const bool own = vertical > 5000 && vertical <= 5192;
+  if (!found.height && !own) found.height = metres_of_epsg_system(vertical);
   return found;
 }
 

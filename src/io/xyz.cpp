@@ -46,6 +46,7 @@ class XyzReader {
 
   CloudFile run() {
     find_rows();
+    input_.unit = in_unit_of_comments(input_, input_.text().substr(0, begin_), "").unit;
     take_sample();
     for (const std::string_view separator : kSeparators) {
       for (const char decimal : {'.', ','}) try_dialect(separator, decimal);
@@ -83,7 +84,6 @@ class XyzReader {
       if (is_blank_or_comment(line)) {
         colmap::refuse_others(input_, line);
         if (find_names(line, 0)) comment_ = line;  // CloudCompare: "//X Y Z"
-        input_.unit = in_unit_of_comments(input_, line, "").unit;
       } else if (!header_.empty() || begins_with_number(line)) {
         return;
       } else if (find_names(line, 0)) {

@@ -146,6 +146,11 @@ TEST(FileUnit, HeadersOfColumnsStateIt) {
     EXPECT_EQ(file.unit.height, 1e-3) << header;
     EXPECT_LT((file.cloud.point(0) - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-6) << header;
   }
+  for (const char* comments :
+       {"# units: mm\n# made with Polycam\n", "# made with Polycam\n# units: mm\n"}) {
+    EXPECT_EQ(unit_of(comments + rows, "a.csv").plan, 1e-3) << comments;
+  }
+  EXPECT_EQ(unit_of("# LiDAR of a wood\n" + rows, "a.csv").source, FileUnit::Source::assumed);
   const FileUnit mixed = unit_of("Easting (ft),Northing (ft),Height (m)\n" + rows, "a.csv");
   EXPECT_EQ(mixed.plan, 0.3048);
   EXPECT_EQ(mixed.height, 1);

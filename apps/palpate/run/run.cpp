@@ -21,8 +21,6 @@
 namespace palpate::app {
 namespace {
 
-// A day: longer ones are times in another unit, or broken.
-
 // Guard's watchdog for simulated devices, s; judgement: PacedDevice catches up after a late step.
 constexpr double kSimulatedSilence = 0.05;
 

@@ -95,6 +95,8 @@ std::optional<double> metres_of_epsg_system(unsigned code) {
   const bool feet = std::ranges::any_of(kInFeet, [code](const CodeRange& range) {
     return code >= range.first && code <= range.last && (code - range.first) % range.step == 0;
   });
+  // Most systems in degrees have numbers of 4000 to 4999; what is unknown there states nothing.
+  if (!feet && code >= 4000 && code < 5000) return {};
   return feet ? kFoot : 1;
 }
 

@@ -13,9 +13,9 @@ namespace palpate::io {
 namespace {
 
 // Programs that write what was scanned or surveyed in metres alone, in small letters.
-constexpr std::string_view kInMetres[] = {
-    "scaniverse", "polycam", "record3d", "sitescape",    "3d scanner", "scandy",       "matterport",
-    "arkit",      "arcore",  "rtab-map", "opendronemap", "lidar",      "captured with"};
+constexpr std::string_view kInMetres[] = {"scaniverse", "polycam",  "record3d",    "sitescape",
+                                          "3d scanner", "scandy",   "matterport",  "arkit",
+                                          "arcore",     "rtab-map", "opendronemap"};
 
 double farthest(const Box& box) {
   return std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
