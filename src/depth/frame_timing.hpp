@@ -149,7 +149,7 @@ class FrameLifetime {
   static constexpr std::size_t kFrames = 16;
 
   std::array<Frame, kFrames> frames_;
-  std::size_t count_ = 0;  // of all that came
+  std::size_t count_ = 0;                                      // of all that came
   double quickest_ = std::numeric_limits<double>::infinity();  // delay, s
 };
 

@@ -86,8 +86,8 @@ struct StrokeOptions {
 /// the points until they end or the stroke is long enough. Moves begin and end at rest. Clouds
 /// larger than `region` are explored around their median point. Same input, same trajectory; no
 /// clock and no thread.
-/// `presses` (nullable) gets the times at which the hand slides, with the target's depth as pull and
-/// the way above each stroke, which is free.
+/// `presses` (nullable) gets the times at which the hand slides, with the target's depth as pull
+/// and the way above each stroke, which is free.
 /// @throws Error when there are no points or an option is out of range.
 [[nodiscard]] Trajectory explore(const ExploredSurface& surface, const StrokeOptions& options = {},
                                  std::vector<Press>* presses = nullptr);

@@ -183,7 +183,8 @@ TEST(Mesh, FacesThatNeedFarMoreSamplesThanTheirAreasSayAreRefused) {
         fmt::format("v 0 0 {}\nv 1 1 {}\nv 1 0 {}\nv 0 1.000001 {}\nf -4 -3 -2 -1\n", z, z, z, z);
   }
   EXPECT_THAT(refusal(ties), HasSubstr("more than 4 million points where their areas ask for"));
-  EXPECT_THAT(refusal(ties, "a", {.scale = 1, .mesh_spacing = 2e-5}), HasSubstr("more than 4 million points"));
+  EXPECT_THAT(refusal(ties, "a", {.scale = 1, .mesh_spacing = 2e-5}),
+              HasSubstr("more than 4 million points"));
 }
 
 TEST(Mesh, AFaceThatZigzagsWithoutEndIsRefused) {

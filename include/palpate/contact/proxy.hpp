@@ -115,7 +115,8 @@ class Proxy {
   /// The first step after construction puts the proxy where the hand is. A field that is solid
   /// there pushes the proxy to its nearest front at once, with the full stiffness: Guard softens
   /// that. The surface of a cloud, but for a metaball, is not solid there: its outside is where the
-  /// hand begins, but for surfaces within 0.1 R whose outside is known, which keep it. Spends at most max_evaluations() evaluations of the field.
+  /// hand begins, but for surfaces within 0.1 R whose outside is known, which keep it. Spends at
+  /// most max_evaluations() evaluations of the field.
   [[nodiscard]] Contact step(const Field& field, const Eigen::Vector3d& hip, double dt) noexcept;
 
   /// Is the proxy somewhere? It is nowhere until the first step or reset(), and while a fault

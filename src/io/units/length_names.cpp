@@ -174,7 +174,7 @@ std::optional<double> unit_in_sentence(std::string_view text) {
                                  "type", "name", "for", "coordinates", "vertices", "to"})) {
       ++at;
     }
-    if (!unit && (at == i + 1 || words[at - 1] != "in")) continue;  // "points in mm"
+    if (!unit && (at == i + 1 || words[at - 1] != "in")) continue;        // "points in mm"
     if (!unit && at < words.size() && parse_number(words[at])) continue;  // "points in 2 m around"
     const std::optional<double> length = length_at(words, at);
     if (!length) continue;
