@@ -93,6 +93,7 @@ TEST(GltfScene, JointsPlaceASkinWhereverItsNodeIs) {
   // Joint 2 is 3 m high, and as its parent it is 100 times as large.
   expect_box(plate(nodes, kBound, shares(0), skins), {0, 0, 3}, {4, 2, 3});
   expect_box(plate(nodes, kBound, shares(1), skins), {0, 0, 0}, {200, 100, 0});
+  expect_box(plate(nodes, kPositions, {}, skins), {0, 0, 0}, {2, 1, 0});  // no vertex names a joint
   std::vector<Numbers> numbers = shares(0);
   numbers.push_back(floats("MAT4", 2, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  //
                                        1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}));

@@ -25,6 +25,13 @@ Affine3d composed(const std::array<double, 3>& t, const std::array<double, 4>& q
   return transform;
 }
 
+// Lengths are metres and y is up; here z is.
+Affine3d upright() {
+  Affine3d transform = Affine3d::Identity();
+  transform.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return transform;
+}
+
 Affine3d transform_of(const GltfFile& file, const json& node) {
   std::array<double, 16> m{};
   if (file.fill(node, "matrix", m)) {
@@ -80,11 +87,9 @@ std::optional<std::vector<Affine3d>> repeated(GltfFile& file, const json& node) 
 
 }  // namespace
 
-// Every node once. Lengths are metres and y is up; here z is.
+// Every node once.
 GltfScene::GltfScene(GltfFile& file, const ReadOptions& options)
     : file_(file), places_(file.list("nodes").size(), Affine3d::Identity()) {
-  Affine3d upright = Affine3d::Identity();
-  upright.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   std::vector<bool> seen(places_.size());
   std::vector<std::pair<std::size_t, Affine3d>> open;
   const auto enter = [&](std::size_t node, const Affine3d& transform) {
@@ -93,7 +98,7 @@ GltfScene::GltfScene(GltfFile& file, const ReadOptions& options)
     seen[node] = true;
     open.emplace_back(node, transform);
   };
-  for (const std::size_t root : roots()) enter(root, upright);
+  for (const std::size_t root : roots()) enter(root, upright());
   Progress progress(options, seen.size());
   for (std::size_t done = 0; !open.empty(); ++done) {
     const auto [node, parent] = open.back();
@@ -114,13 +119,14 @@ void GltfScene::place(std::size_t index, const Affine3d& transform) {
   const auto mesh = file_.whole(node, "mesh");
   if (!mesh) return;
   const auto skin = file_.whole(node, "skin");
+  const Affine3d own = skin ? upright() : transform;
   const auto copies = repeated(file_, node);
   if (!copies) {
-    instances_.push_back({*mesh, &node, transform, skin});
+    instances_.push_back({*mesh, &node, own, skin});
     return;
   }
   for (const Affine3d& copy : *copies) {
-    instances_.push_back({*mesh, &node, transform * copy, skin});
+    instances_.push_back({*mesh, &node, own * copy, skin});
   }
 }
 
