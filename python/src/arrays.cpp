@@ -6,6 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <vector>
 
 #include "geometry/rotation.hpp"
 #include "palpate/base/error.hpp"
@@ -51,13 +55,39 @@ const NumberType* type_for(const py::dtype& given, std::initializer_list<NumberT
   return found == types.end() ? nullptr : found;
 }
 
-// An example of how `array` gets the shape that is wanted.
+// How rows of `wide` numbers are made of `array`: they lie along its last axis, or along the only
+// other one of so many, or are the first ones of the last. Empty: nothing tells where they are.
+std::string rows_of(const std::string& what, const py::array& array, py::ssize_t wide) {
+  constexpr py::ssize_t kPoint = 9;  // numbers of a point with a normal and a colour
+  const std::vector<py::ssize_t> sizes(array.shape(), array.shape() + array.ndim());
+  if (sizes.size() < 2) {
+    return array.size() % wide == 0 ? fmt::format("{}.reshape(-1, {})", what, wide) : "";
+  }
+  const bool flat = sizes.size() == 2;
+  const py::ssize_t last = sizes.back();
+  if (last == wide) return fmt::format("{}.reshape(-1, {})", what, wide);
+  const auto axis = std::ranges::find(sizes, wide);
+  const bool only = std::ranges::count(sizes, wide) == 1;
+  if (flat && only) return what + ".T";
+  if (only) {
+    return fmt::format("np.moveaxis({}, {}, -1).reshape(-1, {})", what, axis - sizes.begin(), wide);
+  }
+  if (last <= wide || last > kPoint) return {};
+  return flat ? fmt::format("{}[:, :{}]", what, wide)
+              : fmt::format("{}.reshape(-1, {})[:, :{}]", what, last, wide);
+}
+
+// An example of how `array` gets the shape that is wanted; empty: there is none.
 std::string reshaped(const std::string& what, const py::array& array,
                      const std::vector<py::ssize_t>& shape) {
-  if (shape.size() == 2 && array.ndim() == 2) {
-    if (array.shape(0) == shape[1]) return what + ".T";
-    if (shape[0] < 0 && array.shape(1) > shape[1]) return fmt::format("{}[:, :{}]", what, shape[1]);
+  if (shape.size() == 2 && shape[0] < 0) return rows_of(what, array, shape[1]);
+  if (shape.size() == 2 && array.ndim() == 2 && array.shape(0) == shape[1] &&
+      array.shape(1) == shape[0]) {
+    return what + ".T";
   }
+  const bool any = std::ranges::count(shape, -1) > 0;
+  const auto size = std::accumulate(shape.begin(), shape.end(), py::ssize_t{1}, std::multiplies());
+  if (!any && size != array.size()) return {};
   return fmt::format("{}.reshape({})", what, fmt::join(shape, ", "));
 }
 
@@ -88,11 +118,11 @@ py::array readable(const py::object& given, const std::string& what,
   const auto array = py::reinterpret_borrow<py::array>(given);
   const NumberType* const type = type_for(array.dtype(), types);
   if (type == nullptr && !array.dtype().attr("names").is_none()) {
-    refuse(
-        what, fmt::format("has the fields {}", words(array.dtype().attr("names"))),
-        fmt::format("numpy.lib.recfunctions.structured_to_unstructured({}[[...]]) with the names "
-                    "of those that it is made of",
-                    what));
+    const bool all = shape.size() == 2 &&
+                     py::len(array.dtype().attr("names")) == static_cast<std::size_t>(shape[1]);
+    refuse(what, fmt::format("has the fields {}", words(array.dtype().attr("names"))),
+           fmt::format("numpy.lib.recfunctions.structured_to_unstructured({}{}", what,
+                       all ? ")" : "[[...]]) with the names of those that it is made of"));
   }
   if (type == nullptr) {
     refuse(what, fmt::format("holds {}", words(array.dtype())),
@@ -104,8 +134,10 @@ py::array readable(const py::object& given, const std::string& what,
            fmt::format(fmt::runtime(rows ? "np.ma.compress_rows({})" : "{}.filled(0)"), what));
   }
   if (!fits(array, shape)) {
-    refuse(what, fmt::format("has shape {}", words(array.attr("shape"))),
-           fmt::format("shape {}, such as {}", in_words(shape), reshaped(what, array, shape)));
+    const std::string example = reshaped(what, array, shape);
+    refuse(
+        what, fmt::format("has shape {}", words(array.attr("shape"))),
+        fmt::format("shape {}{}{}", in_words(shape), example.empty() ? "" : ", such as ", example));
   }
   return py::module_::import("numpy").attr("require")(array, type->name,
                                                       py::make_tuple("C", "ALIGNED"));
