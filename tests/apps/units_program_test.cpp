@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/program.hpp"
+#include "support/effort.hpp"
 #include "support/mesh_files.hpp"
 
 namespace palpate::app {
@@ -64,6 +65,7 @@ TEST(UnitsProgram, AStoreHasTheUnitThatItsFilesState) {
 }
 
 TEST(UnitsProgram, MeshesOfOneSceneHaveOneUnit) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   shell.write("small.stl", test::as_stl(test::box_mesh({0.15, 0.05, 0.05})));
   shell.write("large.stl", test::as_stl(test::box_mesh({0.6, 0.05, 0.05})));
