@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/palpate/touch/touch.hpp"
@@ -69,6 +70,32 @@ TEST(LiveRun, ADeviceThatFailsEndsItsOwnHandAlone) {
   EXPECT_EQ(left(hands[1]), 0) << "went on to its own end";
   EXPECT_LE(steps[0], 21u);
   EXPECT_GT(steps[1], 0u);
+}
+
+// A slow disk or a busy machine may write steps down more slowly than they are made.
+TEST(LiveRun, EndsInTimeWhereStepsAreMadeFasterThanWritten) {
+  TouchPlan plan = planned("synthetic:sheet");
+  plan.time.realtime.realtime_priority = false;
+  plan.time.realtime.lock_memory = false;
+  LoadedScene loaded = load_sources(plan.sources, {});
+  std::vector<Hand> hands;
+  constexpr int kReads = 100'000;  // what it never comes to
+  hands.push_back(hand_with("hand 1", kReads, DeviceState::Status::finished));
+  hands.front().duration = 0.05;
+  app::Run run{
+      plan.time, plan.page, plan.ros, loaded, hands, {}, plan.surface.proxy_of(kStiffness)};
+  SteadyClock clock;
+  const Interruption interruption;
+  double written = 0;  // s
+  const auto each = [&](std::size_t, const ServoState& state) {
+    written = std::max(written, state.time);
+    for (const double end = clock.now() + 3e-3; clock.now() < end;) {
+    }
+  };
+  const LiveOutcome outcome = run_live(run, clock, interruption, each);
+  EXPECT_EQ(outcome.hands.front().failure, "");
+  EXPECT_GE(written, 0.04) << "what was made is written";
+  EXPECT_GT(left(hands.front()), 0) << "the hand's end, not its device's";
 }
 
 }  // namespace

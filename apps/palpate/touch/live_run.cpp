@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -54,9 +55,9 @@ class LiveHand {
   // The run's time 0, s on the clock. What came before is left out.
   void begin(double start);
 
-  // Hands its new steps to `each`, with times from 0.
-  // Reports in `status` what `each` throws, and goes on.
-  void take_steps(const EachStep& each, LiveStatus& status);
+  // Hands its steps up to the time `until` (s on the clock), and at most one after it, to `each`,
+  // with times from 0. Reports in `status` what `each` throws, and goes on.
+  void take_steps(double until, const EachStep& each, LiveStatus& status);
 
   // Has it come to its end, whatever ended it?
   [[nodiscard]] bool over(double now) const;
@@ -100,8 +101,11 @@ void LiveHand::begin(double start) {
   looked_ = start;
 }
 
-void LiveHand::take_steps(const EachStep& each, LiveStatus& status) {
-  while (std::optional<ServoState> step = steps_.pop()) {
+void LiveHand::take_steps(double until, const EachStep& each, LiveStatus& status) {
+  for (bool more = true; more;) {
+    std::optional<ServoState> step = steps_.pop();
+    if (!step) return;
+    more = step->time <= until;
     if (step->time < start_) continue;
     step->time -= start_;
     force_ = std::max(force_, step->force.norm());
@@ -158,6 +162,12 @@ double start_hands(Run& run, WaitingClock& clock, LiveHands& hands) {
   const double start = clock.now();
   for (LiveHand& hand : hands) hand.begin(start);
   return start;
+}
+
+// `until`: now, while they go on: where writing a step takes longer than the step itself, there is
+// always a next one.
+void take_steps(LiveHands& hands, double until, const EachStep& each, LiveStatus& status) {
+  for (LiveHand& hand : hands) hand.take_steps(until, each, status);
 }
 
 std::vector<Servo*> servos_of(LiveHands& hands) {
@@ -240,7 +250,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   if (run.page.served) view.emplace(run, servos_of(hands), feed, bridge ? &*bridge : nullptr);
   while (any_goes_on(hands, clock.now()) && !interruption.requested() && !outcome.next_page) {
     std::this_thread::sleep_for(kLook);
-    for (LiveHand& hand : hands) hand.take_steps(each, status);
+    take_steps(hands, clock.now(), each, status);
     if (view) outcome.next_page = view->look();
     const double now = clock.now();
     failures.look(hands, feed, now, status);
@@ -250,7 +260,7 @@ LiveOutcome run_live(Run& run, WaitingClock& clock, const Interruption& interrup
   }
   outcome.robot = robot();  // before its hand stands still
   for (LiveHand& hand : hands) hand.stop();
-  for (LiveHand& hand : hands) hand.take_steps(each, status);
+  take_steps(hands, std::numeric_limits<double>::infinity(), each, status);
   for (const LiveHand& hand : hands) outcome.hands.push_back(hand.report());
   outcome.interrupted = interruption.requested();
   failures.look(hands, feed, clock.now(), status);
