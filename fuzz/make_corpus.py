@@ -106,7 +106,14 @@ def las_header(minor, point_format, record, count, offset=None):
 
 
 LAS_RECORDS = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
+# Well-known text: plan in metres, heights in feet.
+LAS_SYSTEM = (b'COMPD_CS["a",PROJCS["b",GEOGCS["c",UNIT["degree",0.0174532925]],UNIT["metre",1],'
+              b'AUTHORITY["EPSG","26910"]],VERT_CS["d",UNIT["US survey foot",0.3048006096]]]\0')
 LAS_COLORS = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}
+
+
+def las_record(user, number, data):
+    return struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + data
 
 
 def las():
@@ -121,6 +128,11 @@ def las():
                 struct.pack_into("<3H", row, LAS_COLORS[fmt], *[257 * c for c in COLORS[i]])
             rows += row
         seed("las", f"format_{fmt}", las_header(minor, fmt, record, len(POINTS)) + rows)
+        if fmt == 0:
+            text = las_record(b"LASF_Projection", 2112, LAS_SYSTEM)
+            head = bytearray(las_header(minor, fmt, record, len(POINTS), 227 + len(text)))
+            struct.pack_into("<I", head, 100, 1)
+            seed("las", "heights_in_feet", bytes(head) + text + rows)
 
 
 # LAZ: format, extra bytes, points and bytes of each chunk, and the chunks with the table of their
@@ -150,10 +162,6 @@ LAZ_CHUNKS = (
 )
 LAZ_ITEMS = {1: [(6, 20), (7, 8)], 3: [(6, 20), (7, 8), (8, 6), (0, 2)], 6: [(10, 30)],
              8: [(10, 30), (12, 8), (14, 2)]}
-
-
-def las_record(user, number, data):
-    return struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + data
 
 
 def laz_file(fmt, extra, sizes, chunks, before=b""):
@@ -226,6 +234,7 @@ def text():
     seed("xyz", "tabs", "\t".join("xyz") + "\n" + "".join(f"{x}\t\t{z}\n{x}\t{y}\t{z}\n" for x, y, z in POINTS))
     seed("xyz", "decimal_commas", "sep=;\n" + "".join(f'"{x}";{y};{z}\n'.replace(".", ",") for x, y, z in POINTS))
     seed("xyz", "commas_and_blanks", "".join(f"{x}, {y}, {z}\n".replace(".", ",") for x, y, z in POINTS))
+    seed("xyz", "units", "# units: mm\nX [ft],Y [ft],Z (NAVD88 ft)\n" + "".join(f"{x},{y},{z}\n" for x, y, z in POINTS))
     seed("xyz", "counted", "".join(f"{i} {x} {y} {z}D0\n" for i, (x, y, z) in enumerate(POINTS)))
     seed("xyz", "degrees", "lat,lon,alt\n" + "".join(f"{x + 60},{y + 9},{z}\n" for x, y, z in POINTS))
     seed("xyz", "scans", "".join(f"2\n{x} {y} {z} 1\n{y} {x} {z} 2\n" for x, y, z in POINTS))

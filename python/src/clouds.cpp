@@ -12,6 +12,7 @@
 
 #include "arrays.hpp"
 #include "io/cloud_builder.hpp"
+#include "io/units/file_unit.hpp"
 #include "module.hpp"
 #include "palpate/io/files.hpp"
 
@@ -229,22 +230,33 @@ std::shared_ptr<const PointCloud> cloud_of(const py::object& given, Keywords& ke
   return std::make_shared<PointCloud>(read_with_warning(path, {}));
 }
 
+// What a user should know of the unit that was taken; nothing where the file states it.
+std::string remark_on(const FileUnit& unit) {
+  if (unit.source == FileUnit::Source::likely) {
+    return fmt::format("taken as {}: {}; give scale={} if that is wrong",
+                       unit.plan == 1 ? "metres" : "millimetres", unit.words,
+                       unit.plan == 1 ? "0.001" : "1");
+  }
+  if (unit.source != FileUnit::Source::stated) return {};
+  if (io::states_heights_alone(unit)) {
+    return fmt::format(
+        "the file says by {} that heights are in units of {:.12g} m, and nothing of x and y, which "
+        "are taken to be in units of {:.12g} m; give scale=({:.12g}, {:.12g}) if they are in "
+        "others",
+        unit.words, unit.height, unit.plan, io::other_plan(unit), unit.height);
+  }
+  if (unit.height_stated || unit.plan == 1) return {};
+  return fmt::format(
+      "the file says by {} that x and y are in units of {:.12g} m, and nothing of heights, which "
+      "are taken to be, too; give scale=({:.12g}, 1) if they are in metres",
+      unit.words, unit.plan, unit.plan);
+}
+
 PointCloud read_with_warning(const std::filesystem::path& path, const ReadOptions& options) {
   CloudFile file = read_cloud_file(path, options);
-  const FileUnit& unit = file.unit;
-  const bool likely = unit.source == FileUnit::Source::likely;
-  const bool half_stated =
-      unit.source == FileUnit::Source::stated && !unit.height_stated && unit.plan != 1;
-  if (!likely && !half_stated) return std::move(file.cloud);
-  const std::string text =
-      likely ? fmt::format("{}: taken as {}: {}; give scale={} if that is wrong", path.string(),
-                           unit.plan == 1 ? "metres" : "millimetres", unit.words,
-                           unit.plan == 1 ? "0.001" : "1")
-             : fmt::format(
-                   "{}: the file says by {} that x and y are in units of {:.12g} m, and "
-                   "nothing of heights, which are taken to be, too; give scale=({:.12g}, 1) "
-                   "if they are in metres",
-                   path.string(), unit.words, unit.plan, unit.plan);
+  const std::string remark = remark_on(file.unit);
+  if (remark.empty()) return std::move(file.cloud);
+  const std::string text = path.string() + ": " + remark;
   const py::gil_scoped_acquire held;
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
   return std::move(file.cloud);

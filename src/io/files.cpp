@@ -116,8 +116,8 @@ CloudFile read_input(const Input& given) {
   try {
     const FileKind kind = kind_of(input);
     CloudFile file = kind == FileKind::gz ? read_packed(input) : read_kind(input, kind);
-    file.format += words_of(file.unit);
     fit_length(input, file);
+    file.format += words_of(file.unit);  // none where a length is given
     if (input.options.progress) input.options.progress(1.0);
     return file;
   } catch (const std::bad_alloc&) {

@@ -1,7 +1,6 @@
 // Reads in what a LAS file's coordinates are: its GeoTIFF keys and its well-known text (WKT).
 #include "io/las_coordinates.hpp"
 
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -57,9 +56,7 @@ std::optional<double> real_key(const Input& input, const LasHeader& header, unsi
   if (!key || key->place != kGeoDoubles || !record) return {};
   const std::size_t at = key->value * sizeof(double);
   if (at + sizeof(double) > record->size) return {};
-  const double value = load_as<double>(input.bytes.data() + record->offset + at);
-  if (!std::isfinite(value) || !(value > 0)) return {};
-  return value;
+  return load_as<double>(input.bytes.data() + record->offset + at);
 }
 
 StatedUnits units_in_keys(const Input& input, const LasHeader& header) {
@@ -106,7 +103,8 @@ Input in_las_unit(const Input& input, const LasHeader& header) {
   StatedUnits found = prefers_text(input) ? text : keys;
   const StatedUnits& other = prefers_text(input) ? keys : text;
   if (found.degrees || (other.degrees && !found.plan)) fail_as_degrees(input);
-  const bool by_text = found.plan ? prefers_text(input) : !prefers_text(input);
+  const bool first = found.plan || (!other.plan && found.height);
+  const bool by_text = first == prefers_text(input);
   if (!found.plan) found.plan = other.plan;
   if (!found.height) found.height = other.height;
   return in_stated_unit(input, found, by_text ? "its well-known text (WKT)" : "its GeoTIFF keys");

@@ -152,8 +152,8 @@ class XyzReader {
       fail(input_, fmt::format("x and y have two units: \"{}\"", excerpt(names)),
            "Bring them to one unit");
     }
-    StatedUnits stated{.plan = x ? x : y, .height = z};
-    if (!stated.plan && !table_.degrees) stated.plan = z;
+    StatedUnits stated{.plan = x ? x : y, .height = z, .assumed = z.value_or(1)};
+    if (table_.degrees && z) stated.plan = 1;  // to_metres() makes metres of them
     input_.unit = in_stated_unit(input_, stated, fmt::format("\"{}\"", excerpt(names))).unit;
   }
 

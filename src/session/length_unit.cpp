@@ -56,6 +56,12 @@ UnitsGuess stated_units(const FileUnit& unit) {
   UnitsGuess stated{name, fmt::format("the file says so by {}", unit.words), ""};
   if (!io::is_same_unit(unit.plan, unit.height)) {
     stated.units += ", heights in " + io::name_of_length(unit.height);
+  }
+  if (io::states_heights_alone(unit)) {
+    stated.advice = fmt::format(
+        "it says none of x and y, which are taken to be in {}: if they are in others, give "
+        "--scale {:.12g},{:.12g}",
+        name, io::other_plan(unit), unit.height);
   } else if (!unit.height_stated && !io::is_same_unit(unit.plan, 1)) {
     stated.advice = fmt::format(
         "it says none of heights, which are taken to be in {}, too: if they are in metres, give "
@@ -68,7 +74,7 @@ UnitsGuess stated_units(const FileUnit& unit) {
 // What is to be said of a unit that the size of a mesh makes likely.
 UnitsGuess likely_units(const FileUnit& unit) {
   const bool metres = unit.plan == 1;
-  return {metres ? "metres" : "millimetres", unit.words,
+  return {io::name_of_length(unit.plan), unit.words,
           metres ? "if they are millimetres, give --scale 0.001"
                  : "if they are others, give --scale: 1 for metres, 0.01 for centimetres, 0.0254 "
                    "for inches, 0.3048 for feet",

@@ -41,6 +41,13 @@ std::string made_points3d() {
   return text;
 }
 
+// What states a unit, before rows of points.
+std::string made_table(const std::string& head) {
+  std::string text = head;
+  for (int i = 0; i < 20; ++i) text += fmt::format("{},{},{}\n", i, 2 * i, 0.5 * i);
+  return text;
+}
+
 std::string made_npy(const std::string& type, const std::string& shape) {
   std::string header =
       fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': {}, }}\n", type, shape);
@@ -69,6 +76,8 @@ TEST(DamagedText, IsReadOrRefused) {
   std::mt19937 random(78);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same in every run
   for (const Case& each :
        {Case{"a.ptx", made_ptx(), true}, Case{"points3D.txt", made_points3d()},
+        Case{"a.csv", made_table("# Units: US survey feet\nX [ft],Y [ft],Z (NAVD88 ft)\n")},
+        Case{"a.obj", "# 1 unit = 25.4 mm\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 2 3 4\n"},
         Case{"a.npy", made_npy("'<f4'", "(3, 4, 5)"), true},
         Case{"a.npy", made_npy("[('x', '<f4'), ('y', '<f4'), ('z', '<f4')]", "(20,)"), true},
         Case{"a.npy", made_npy("'<f4'", "(60,)"), true},

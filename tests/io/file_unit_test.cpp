@@ -37,6 +37,13 @@ TEST(LengthNames, SentencesStateAUnit) {
                                {"# length unit is the metre", 1},
                                {"# unit m", 1},
                                {"# Vertices are in m", 1},
+                               {"# LiDAR data in US survey feet", 1200 / 3937.0},
+                               {"# Units: in", 0.0254},
+                               {"# This file uses centimeters as units for coordinates", 0.01},
+                               {"# Units for the model vertex data itself: meters", 1},
+                               {"# measured in units, where 1 unit = 1000.000000 mm", 1},
+                               {"# unit = 1 in", 0.0254},
+                               {"# Units: in inches", 0.0254},
                                {"comment unit um", 1e-6}}) {
     const auto metres = unit_in_sentence(each.text);
     ASSERT_TRUE(metres) << each.text;
@@ -45,13 +52,16 @@ TEST(LengthNames, SentencesStateAUnit) {
   for (const char* none :
        {"# Unit: none", "# 12 vertices", "# unit test of m", "# united in 1 m", "# Points: 200 in",
         "# made in 2 m of snow", "# Unit: ", "# units = -1 mm", "# community = 5 m",
-        "# points in 3 ft around", "# inf units = 1 mm", "# 1e300 units = 1e-300 mm"}) {
+        "# unit tests: 12 m", "# Unit 3 in block B", "# Unit 3 in 2", "# 1 unit = 1e12 km",
+        "# 1 unit = 0 m", "# points in 3 ft around", "# inf units = 1 mm",
+        "# 1e300 units = 1e-300 mm"}) {
     EXPECT_EQ(unit_in_sentence(none), std::nullopt) << none;
   }
 }
 
 TEST(LengthNames, NamesOfUnitsAreThoseThatPeopleWrite) {
-  for (const char* foot : {"ft", "Foot", "FEET", "foot_us", "US survey feet", "ftUS", "us-ft"}) {
+  for (const char* foot :
+       {"US survey ft", "ft", "Foot", "FEET", "foot_us", "US survey feet", "ftUS", "us-ft"}) {
     ASSERT_TRUE(metres_of(foot)) << foot;
     EXPECT_TRUE(is_same_unit(*metres_of(foot), 0.3048)) << foot;
   }
@@ -162,6 +172,26 @@ TEST(FileUnit, HeadersOfColumnsStateIt) {
       read_text("longitude,latitude,elevation (ft)\n8,47,100\n8.001,47,200\n", "a.csv", {});
   EXPECT_EQ(degrees.unit.plan, 1);
   EXPECT_EQ(degrees.unit.height, 0.3048);
+  EXPECT_FALSE(states_heights_alone(degrees.unit));
+}
+
+TEST(FileUnit, AUnitOfHeightsAloneIsThatOfAllAndIsSaidToBe) {
+  const std::string rows = "10,20,30\n40,50,60\n70,80,95\n";
+  for (const char* header : {"Easting, Northing, Height (ft)", "X,Y,Elevation [NAVD88 ft]",
+                             "x,y,z_ft", "X,Y,Z (US survey ft)"}) {
+    const FileUnit unit = unit_of(std::string(header) + "\n" + rows, "a.csv");
+    EXPECT_TRUE(states_heights_alone(unit)) << header;
+    EXPECT_TRUE(is_same_unit(unit.plan, 0.3048)) << header;
+    EXPECT_TRUE(is_same_unit(unit.height, 0.3048)) << header;
+    EXPECT_EQ(other_plan(unit), 1);
+  }
+  EXPECT_FALSE(states_heights_alone(unit_of("X (ft),Y,Z (ft)\n" + rows, "a.csv")));
+}
+
+TEST(FileUnit, AGivenLengthLeavesNoUnitToSay) {
+  const CloudFile file = read_text("X [ft],Y [ft],Z [ft]\n1,2,3\n4,5,9\n", "a.csv", {.length = 2});
+  EXPECT_EQ(file.unit.source, FileUnit::Source::given);
+  EXPECT_EQ(file.format, "text, columns named");
 }
 
 }  // namespace

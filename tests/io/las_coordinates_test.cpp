@@ -114,6 +114,19 @@ TEST(LasCoordinates, HeightsHaveAUnitOfTheirOwn) {
   EXPECT_THAT(refusal(bytes, "a.las", {.height_scale = 2}), HasSubstr("heights alone"));
 }
 
+TEST(LasCoordinates, SaysThatOnlyHeightsHaveAUnit) {
+  const CloudFile file = read_text(las_with(geo_keys({{4099, 9002}})), "a.las", {});
+  EXPECT_EQ(file.unit.plan, 1);
+  EXPECT_EQ(file.unit.height, 0.3048);
+  EXPECT_THAT(file.unit.words, HasSubstr("its GeoTIFF keys for heights alone"));
+}
+
+TEST(LasCoordinates, AUnitThatIsNoneIsRefusedUnlessOneIsGiven) {
+  const std::string bytes = las_with(wkt(R"(PROJCS["a",UNIT["foot",0]])"));
+  EXPECT_THAT(refusal(bytes, "a.las", {}), HasSubstr("a unit of 0 m, which is none"));
+  EXPECT_EQ(read_text(bytes, "a.las", {.scale = 1}).cloud.size(), 2u);
+}
+
 TEST(LasCoordinates, ReadKeysThatAreCutOff) {
   std::string record = geo_keys({{3076, 9001}});
   record.resize(record.size() - 1);

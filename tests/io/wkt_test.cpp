@@ -10,8 +10,10 @@
 #include "base/numbers.hpp"
 #include "io/input.hpp"
 #include "io/units/epsg.hpp"
+#include "io/units/file_unit.hpp"
 #include "io/units/length_names.hpp"
 #include "io/units/stated_units.hpp"
+#include "palpate/base/error.hpp"
 #include "support/effort.hpp"
 
 namespace palpate::io {
@@ -149,12 +151,50 @@ TEST(Wkt, ACodeAloneStatesTheUnitOfItsSystem) {
   EXPECT_EQ(units_in_projection(R"(PROJCRS["a",ID["EPSG",2225]])").plan, 0.3048);
   EXPECT_EQ(units_in_projection(R"(PROJCS["a",AUTHORITY["EPSG","26910"]])").plan, 1);
   EXPECT_EQ(units_in_projection("EPSG:2263").plan, 0.3048);
+  for (const char* text : {"epsg:2263", "urn:ogc:def:crs:EPSG::2263",
+                           "URN:OGC:DEF:CRS:EPSG:9.8:2263", "EPSG:2263+5703"}) {
+    EXPECT_EQ(units_in_projection(text).plan, 0.3048) << text;
+  }
+  EXPECT_EQ(units_in_projection("EPSG:26910+6360").height, 0.3048);
   EXPECT_EQ(units_in_projection("+proj=lcc +units=us-ft +vunits=m").height, 1);
   EXPECT_EQ(units_in_projection("+proj=lcc +to_meter=0.9144").plan, 0.9144);
   EXPECT_EQ(metres_of_epsg_system(6360), 0.3048);
   EXPECT_EQ(metres_of_epsg_system(5703), 1);
   EXPECT_EQ(metres_of_epsg_system(32767), std::nullopt);
   EXPECT_EQ(metres_of_epsg_unit(9003), 1200 / 3937.0);
+}
+
+TEST(Wkt, CodesOfGeographicSystemsAreDegreesWhereverTheyAre) {
+  for (const unsigned code :
+       {3819U, 4258U, 4269U, 4326U, 4979U, 5132U, 6318U, 6706U, 7844U, 9057U}) {
+    EXPECT_TRUE(is_epsg_system_in_degrees(code)) << code;
+    EXPECT_EQ(metres_of_epsg_system(code), std::nullopt) << code;
+    EXPECT_TRUE(units_in_projection(fmt::format("EPSG:{}", code)).degrees) << code;
+  }
+  for (const unsigned code : {3857U, 4087U, 4647U, 4978U, 5514U, 6677U, 7856U, 26910U, 32633U}) {
+    EXPECT_FALSE(is_epsg_system_in_degrees(code)) << code;
+    EXPECT_EQ(metres_of_epsg_system(code), 1) << code;
+  }
+}
+
+TEST(Wkt, AFactorThatIsNoUnitIsRefusedByName) {
+  const ReadOptions options;
+  const auto refusal_of = [&](const char* factor) {
+    const std::string text = fmt::format(R"(PROJCS["a",UNIT["foot",{}]])", factor);
+    try {
+      (void)in_stated_unit({{}, "a.las", options}, units_in_projection(text), "its text");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const char* factor : {"0", "-1", "nan", "inf", "1e-10", "2e9", "1e300"}) {
+    EXPECT_NE(refusal_of(factor).find("a.las: it states by its text a unit of"), std::string::npos)
+        << factor;
+  }
+  for (const char* factor : {"1e-9", "0.3048", "1e9"}) EXPECT_EQ(refusal_of(factor), "") << factor;
+  const ReadOptions given{.scale = 1};
+  EXPECT_EQ(in_stated_unit({{}, "a", given}, {.plan = 0}, "its text").unit.plan, 1) << "the remedy";
 }
 
 TEST(Wkt, WhatIsCutOrDamagedIsNoTree) {
@@ -173,8 +213,14 @@ TEST(Wkt, WhatIsCutOrDamagedIsNoTree) {
   for (int i = 0; i < test::effort(2000); ++i) {
     std::string flipped = text;
     flipped[writer.below(text.size())] = static_cast<char>(writer.below(256));
-    const StatedUnits stated = units_in_projection(flipped);
-    EXPECT_GT(stated.plan.value_or(1), 0);
+    const ReadOptions options;
+    try {
+      const FileUnit unit =
+          in_stated_unit({{}, "flipped", options}, units_in_projection(flipped), "text").unit;
+      ASSERT_TRUE(is_unit_of_length(unit.plan) && is_unit_of_length(unit.height)) << flipped;
+    } catch (const Error& error) {
+      ASSERT_NE(std::string(error.what()).find("which is none"), std::string::npos) << flipped;
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 #include "io/units/epsg.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace palpate::io {
 namespace {
@@ -88,15 +89,13 @@ std::optional<double> metres_of_epsg_system(unsigned code) {
   constexpr unsigned kFirst = 2000;      // projected systems begin there (register)
   constexpr unsigned kUsersOwn = 32767;  // GeoTIFF
   constexpr double kFoot = 0.3048;       // m (definition)
-  if (code < kFirst || code >= kUsersOwn) return {};
+  if (code < kFirst || code >= kUsersOwn || is_epsg_system_in_degrees(code)) return {};
   for (const OtherUnit& each : kOthers) {
     if (code >= each.first && code <= each.last) return each.metres;
   }
   const bool feet = std::ranges::any_of(kInFeet, [code](const CodeRange& range) {
     return code >= range.first && code <= range.last && (code - range.first) % range.step == 0;
   });
-  // Most systems in degrees have numbers of 4000 to 4999; what is unknown there states nothing.
-  if (!feet && code >= 4000 && code < 5000) return {};
   return feet ? kFoot : 1;
 }
 

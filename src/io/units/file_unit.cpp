@@ -17,6 +17,9 @@ constexpr std::string_view kInMetres[] = {"scaniverse", "polycam",  "record3d", 
                                           "3d scanner", "scandy",   "matterport",  "arkit",
                                           "arcore",     "rtab-map", "opendronemap"};
 
+// What the words for a unit end with where a file states that of heights alone.
+constexpr std::string_view kNoPlan = " for heights alone";
+
 double farthest(const Box& box) {
   return std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
 }
@@ -66,15 +69,32 @@ class Comments {
 
 }  // namespace
 
+namespace {
+
+void check_unit(const Input& input, const FileUnit& unit) {
+  for (const double metres : {unit.plan, unit.height}) {
+    if (is_unit_of_length(metres)) continue;
+    fail(input, fmt::format("it states by {} a unit of {:g} m, which is none", unit.words, metres),
+         "Give the metres a unit, for example a scale of 1");
+  }
+}
+
+}  // namespace
+
 Input in_stated_unit(Input input, const StatedUnits& stated, std::string words) {
   if (!stated.plan && !stated.height) return input;
-  const double plan = stated.plan.value_or(1);
-  FileUnit unit{plan, stated.height.value_or(plan), FileUnit::Source::stated,
-                stated.height.has_value(), std::move(words)};
+  const double plan = stated.plan.value_or(stated.assumed);
+  if (!stated.plan) words += kNoPlan;
+  FileUnit unit{.plan = plan,
+                .height = stated.height.value_or(plan),
+                .source = FileUnit::Source::stated,
+                .height_stated = stated.height.has_value(),
+                .words = std::move(words)};
   const FileUnit& given = input.unit;
   if (given.source != FileUnit::Source::given) {
+    check_unit(input, unit);
     input.unit = std::move(unit);
-  } else if (!is_same_unit(unit.plan, given.plan) ||
+  } else if ((stated.plan && !is_same_unit(unit.plan, given.plan)) ||
              (unit.height_stated && !is_same_unit(unit.height, given.height))) {
     input.unit.words =
         fmt::format("the file says that it is{}, by {}", words_of(unit).substr(1), unit.words);
@@ -115,8 +135,20 @@ FileUnit likely_unit(const Box& box) {
     why = "parts in millimetres are shorter";
     metres = 1;
   }
-  return {metres, metres, FileUnit::Source::likely, true,
-          fmt::format("the longest side is {:.4g}, the file states no unit, and {}", length, why)};
+  return {.plan = metres,
+          .height = metres,
+          .source = FileUnit::Source::likely,
+          .words = fmt::format("the longest side is {:.4g}, the file states no unit, and {}",
+                               length, why)};
+}
+
+bool states_heights_alone(const FileUnit& unit) {
+  return unit.source == FileUnit::Source::stated && unit.words.ends_with(kNoPlan);
+}
+
+double other_plan(const FileUnit& unit) {
+  if (!is_same_unit(unit.plan, 1)) return 1;
+  return is_same_unit(unit.height, 1) ? 0.3048 : unit.height;  // feet, in which surveys are
 }
 
 std::string words_of(const FileUnit& unit) {

@@ -25,6 +25,12 @@ namespace palpate::io {
 /// Do coordinates lie as far from their origin as those of surveys do?
 [[nodiscard]] bool is_survey(const Box& box);
 
+/// Does the file state the unit of z alone? That of x and y is assumed then.
+[[nodiscard]] bool states_heights_alone(const FileUnit& unit);
+
+/// m, the next unit of x and y to try then.
+[[nodiscard]] double other_plan(const FileUnit& unit);
+
 /// What a unit adds to the description of a format: ", in feet", ", taken as millimetres".
 [[nodiscard]] std::string words_of(const FileUnit& unit);
 

@@ -72,6 +72,8 @@ constexpr LengthName kLengthNames[] = {
     {"usfoot", kSurveyFoot},
     {"usfeet", kSurveyFoot},
     {"usft", kSurveyFoot},
+    {"ussurveyft", kSurveyFoot},
+    {"surveyft", kSurveyFoot},
     {"ftus", kSurveyFoot},
     {"sft", kSurveyFoot},
     {"usfootsurvey", kSurveyFoot},
@@ -92,14 +94,14 @@ std::string only_letters(std::string_view name) {
   return result;
 }
 
-// Words and numbers, small; an equals sign is a word.
+// Words and numbers, small; an equals sign is a word, and a colon is one.
 std::vector<std::string> words_in(std::string_view text) {
   std::vector<std::string> words;
   bool in_word = false;
   for (const char c : lower_case(text)) {
     const auto letter = static_cast<unsigned char>(c);
     const bool belongs = std::isalnum(letter) != 0 || letter >= 0x80 || c == '.' || c == '-';
-    if (c == '=') words.emplace_back("=");
+    if (c == '=' || c == ':') words.emplace_back("=");
     if (belongs && !in_word) words.emplace_back();
     if (belongs) words.back() += c;
     in_word = belongs;
@@ -114,6 +116,11 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
   return std::ranges::find(words, word) != words.end();
 }
 
+// "in" is inches where nothing follows: "units: in", but not "unit 3 in block B".
+bool is_inch(const std::vector<std::string>& words, std::size_t at) {
+  return words[at] == "in" && at + 1 == words.size();
+}
+
 // A number, if there is one, and the name of a length: "1000 mm", "us survey foot".
 std::optional<double> length_at(const std::vector<std::string>& words, std::size_t at) {
   constexpr std::size_t kLongestName = 3;  // words: US survey foot
@@ -125,10 +132,22 @@ std::optional<double> length_at(const std::vector<std::string>& words, std::size
   std::optional<double> metres;
   for (std::size_t k = at; k < std::min(at + kLongestName, words.size()); ++k) {
     name += words[k];
+    if (name == "in" && !is_inch(words, k)) break;
     if (const auto longer = metres_of(name)) metres = longer;
   }
   if (!metres) return {};
   return number.value_or(1) * *metres;
+}
+
+// A unit that its word at `unit` does not lead to: "centimeters as units for coordinates",
+// "units for the vertices of this model: meters".
+std::optional<double> length_far_from(const std::vector<std::string>& words, std::size_t unit) {
+  if (unit > 1 && words[unit - 1] == "as") return metres_of(words[unit - 2]);
+  const auto from = words.begin() + static_cast<std::ptrdiff_t>(unit);
+  const auto mark = std::find(from, words.end(), "=");
+  const std::size_t at = static_cast<std::size_t>(mark - words.begin()) + 1;
+  if (at >= words.size() || parse_number(words[at])) return {};
+  return length_at(words, at);
 }
 
 }  // namespace
@@ -144,6 +163,10 @@ std::optional<double> metres_of(std::string_view name) {
   const auto* found = find();
   if (found == std::end(kLengthNames)) return {};
   return found->metres;
+}
+
+bool is_unit_of_length(double metres) {
+  return metres >= 1e-9 && metres <= 1e9;
 }
 
 bool is_same_unit(double metres, double other) {
@@ -165,32 +188,47 @@ std::optional<double> unit_in_sentence(std::string_view text) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool unit = is_one_of(words[i], {"unit", "units", "unitname", "lengthunit"});
     if (!unit && !is_one_of(words[i], {"coordinates", "lengths", "dimensions", "vertices", "values",
-                                       "measurements", "distances", "points"})) {
+                                       "measurements", "distances", "points", "data"})) {
       continue;
     }
     std::size_t at = i + 1;
-    while (at < words.size() &&
+    while (at < words.size() && !is_inch(words, at) &&
            is_one_of(words[at], {"=", "is", "are", "in", "of", "the", "length", "equals", "system",
                                  "type", "name", "for", "coordinates", "vertices", "to"})) {
       ++at;
     }
     if (!unit && (at == i + 1 || words[at - 1] != "in")) continue;        // "points in mm"
     if (!unit && at < words.size() && parse_number(words[at])) continue;  // "points in 2 m around"
-    const std::optional<double> length = length_at(words, at);
+    std::optional<double> length = length_at(words, at);
+    if (!length && unit) length = length_far_from(words, i);
     if (!length) continue;
     const double before = unit && i > 0 ? parse_number(words[i - 1]).value_or(1) : 1;
     const double metres = *length / (before > 0 ? before : 1);
-    if (std::isfinite(metres) && metres > 0) return metres;
+    if (is_unit_of_length(metres)) return metres;
   }
   return {};
 }
+
+namespace {
+
+// "ft", "US survey feet", "NAVD88 ft": as many of the last words as name a unit.
+std::optional<double> unit_at_end(std::string_view words) {
+  for (words = trim(words); !words.empty();) {
+    if (const auto metres = metres_of(words)) return metres;
+    words.remove_prefix(std::min(words.find(' '), words.size()));
+    words = trim(words);
+  }
+  return {};
+}
+
+}  // namespace
 
 std::optional<double> unit_behind_name(std::string_view name) {
   name = trim(name);
   const std::size_t open = name.find_first_of("[({");
   if (open != std::string_view::npos) {
-    const std::string_view inside = name.substr(open + 1);
-    return metres_of(inside.substr(0, inside.find_first_of("])}")));
+    name.remove_prefix(open + 1);
+    return unit_at_end(name.substr(0, name.find_first_of("])}")));
   }
   const std::size_t mark = name.find_last_of("_/ ");
   if (mark == std::string_view::npos) return {};

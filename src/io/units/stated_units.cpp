@@ -2,9 +2,10 @@
 #include "io/units/stated_units.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
+#include <string>
 
+#include "io/input.hpp"
 #include "io/text_scanner.hpp"
 #include "io/units/epsg.hpp"
 #include "io/units/length_names.hpp"
@@ -38,7 +39,7 @@ unsigned epsg_code(const WktNode& node) {
 std::optional<double> metres_in(const WktNode& unit) {
   if (unit.values.size() > 1) {
     const std::optional<double> factor = parse_number(trim(unit.values[1]));
-    if (factor && std::isfinite(*factor) && *factor > 0) return factor;
+    if (factor) return factor;
   }
   if (const auto known = metres_of_epsg_unit(epsg_code(unit))) return known;
   return unit.values.empty() ? std::nullopt : metres_of(unit.values[0]);
@@ -77,8 +78,7 @@ std::string_view proj_value(std::string_view text, std::string_view key) {
 std::optional<double> proj_unit(std::string_view text, std::string_view factor,
                                 std::string_view unit) {
   const std::optional<double> metres = parse_number(proj_value(text, factor));
-  if (metres && std::isfinite(*metres) && *metres > 0) return metres;
-  return metres_of(proj_value(text, unit));
+  return metres ? metres : metres_of(proj_value(text, unit));
 }
 
 StatedUnits units_in_proj(std::string_view text) {
@@ -86,6 +86,27 @@ StatedUnits units_in_proj(std::string_view text) {
   if (kind == "longlat" || kind == "latlong") return {.degrees = true};
   return {.plan = proj_unit(text, "+to_meter=", "+units=").value_or(1),
           .height = proj_unit(text, "+vto_meter=", "+vunits=")};
+}
+
+// What follows "EPSG:", "epsg:" or "urn:ogc:def:crs:EPSG::" and perhaps a version of the register.
+std::optional<std::string_view> code_in(std::string_view text) {
+  const std::string small = lower_case(text.substr(0, text.find('[')));
+  if (!small.starts_with("epsg:") && !small.starts_with("urn:ogc:def:crs:epsg:")) return {};
+  return text.substr(text.rfind(':') + 1);
+}
+
+// "2225", or "26910+6360" with a system of heights.
+StatedUnits units_of_code(std::string_view text) {
+  const auto number = [](std::string_view digits) {
+    constexpr std::size_t kMostCode = 99999;  // codes have five digits
+    return static_cast<unsigned>(std::min(parse_count(trim(digits)).value_or(0), kMostCode));
+  };
+  const std::size_t plus = std::min(text.find('+'), text.size());
+  const unsigned plan = number(text.substr(0, plus));
+  StatedUnits found{.plan = metres_of_epsg_system(plan),
+                    .degrees = is_epsg_system_in_degrees(plan)};
+  if (plus < text.size()) found.height = metres_of_epsg_system(number(text.substr(plus + 1)));
+  return found;
 }
 
 StatedUnits units_in(const WktNode& system) {
@@ -119,14 +140,9 @@ StatedUnits units_in(const WktNode& system) {
 }  // namespace
 
 StatedUnits units_in_projection(std::string_view text) {
-  constexpr std::string_view kEpsg = "EPSG:";
   text = trim(text.substr(0, text.find('\0')));
   if (text.find("+proj=") != std::string_view::npos) return units_in_proj(text);
-  if (text.starts_with(kEpsg)) {
-    const std::size_t code = parse_count(text.substr(kEpsg.size())).value_or(0);
-    return {.plan =
-                metres_of_epsg_system(static_cast<unsigned>(std::min<std::size_t>(code, 99999)))};
-  }
+  if (const auto code = code_in(text)) return units_of_code(*code);
   const std::optional<WktNode> system = parse_wkt(text);
   return system ? units_in(*system) : StatedUnits();
 }

@@ -9,6 +9,7 @@ namespace palpate::io {
 struct StatedUnits {
   std::optional<double> plan{};    ///< m a unit of x and y
   std::optional<double> height{};  ///< m a unit of z
+  double assumed = 1;              ///< of x and y where only that of z is stated
   bool degrees = false;            ///< x and y are longitude and latitude
 };
 
