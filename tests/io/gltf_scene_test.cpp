@@ -101,6 +101,22 @@ TEST(GltfScene, JointsPlaceASkinWhereverItsNodeIs) {
   expect_box(plate(nodes, kBound, numbers, bound), {10, 0, 3}, {14, 2, 3});
 }
 
+TEST(GltfScene, JointsBesideTheSceneHaveTheirPlaces) {
+  const std::string nodes =
+      R"({"mesh":0,"skin":0},{"children":[2],"scale":[2,2,2]},{"translation":[1,0,0]})";
+  // The scene has the first node alone.
+  expect_box(plate(nodes, kBound, shares(0), R"(,"skins":[{"joints":[1,2]}])"), {2, 0, 0},
+             {6, 2, 0});
+}
+
+TEST(GltfScene, InstancesAreLimited) {
+  const Numbers rows{"SCALAR", 5121, 4'000'000, std::string(4'000'000, '\1')};
+  const std::string node = R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":)"
+                           R"({"attributes":{"TRANSLATION":2}}}})";
+  EXPECT_THAT(refusal(plate(node, kPositions, {rows}), "a.glb"),
+              HasSubstr("more than 3 million instances"));
+}
+
 TEST(GltfScene, MorphTargetsShiftByTheirWeights) {
   const Numbers up = floats("VEC3", 4, {0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
   const std::string targets = kPositions + R"(,"targets":[{"POSITION":2},{"NORMAL":2}])";

@@ -22,7 +22,8 @@ struct GltfInstance {
 /// What the nodes of a glTF file place, and where.
 class GltfScene {
  public:
-  /// @throws Error for nodes that are not there or have two parents. `file` must outlive it.
+  /// @throws Error for nodes that are not there or have two parents, and for more than three
+  /// million instances. `file` must outlive it.
   GltfScene(GltfFile& file, const ReadOptions& options);
 
   /// Meshes in the order of the nodes; those of EXT_mesh_gpu_instancing as often as it says.
@@ -33,10 +34,13 @@ class GltfScene {
 
  private:
   [[nodiscard]] std::vector<std::size_t> roots() const;
-  void place(std::size_t node, const Eigen::Affine3d& transform);
+  [[nodiscard]] std::vector<std::size_t> nobodys_children() const;
+  void walk(const std::vector<std::size_t>& from, bool in_scene, const ReadOptions& options);
+  void place(std::size_t node);
 
   GltfFile& file_;
   std::vector<Eigen::Affine3d> places_;  // of nodes
+  std::vector<bool> seen_;               // nodes
   std::vector<GltfInstance> instances_;
   std::map<std::size_t, std::vector<Eigen::Affine3d>> joints_;  // of skins that were asked for
 };
