@@ -101,6 +101,8 @@ FoundColumns angles_in(std::span<const std::string_view> names) {
   HeldColumns held{.angles = true};
   enum class Found { no, prefixed, plainly };  // "hand_roll", "roll"
   std::array<Found, 3> found{};
+  std::array<bool, 3> in_degrees{};
+  std::array<bool, 3> in_radians{};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string name = lower_case(names[i]);
     const std::vector<std::string_view> words = parts_of(name);
@@ -118,11 +120,19 @@ FoundColumns angles_in(std::span<const std::string_view> names) {
       }
       found[k] = how;
       held.slots[k] = i;
-      if (degrees) held.unit = std::numbers::pi / 180;
-      held.stated = held.stated || degrees || radians;
+      in_degrees[k] = degrees;
+      in_radians[k] = radians;
     }
   }
   if (std::ranges::count(found, Found::no) > 0) return {};
+  const bool degrees = std::ranges::count(in_degrees, true) > 0;
+  const bool radians = std::ranges::count(in_radians, true) > 0;
+  if (degrees && radians) {
+    return {{},
+            "roll, pitch and yaw are partly in radians and partly in degrees: bring them to one"};
+  }
+  if (degrees) held.unit = std::numbers::pi / 180;
+  held.stated = degrees || radians;
   held.words = fmt::format("roll, pitch and yaw {} {}", held.stated ? "in" : "taken as",
                            held.unit == 1 ? "radians" : "degrees");
   return {held, {}};

@@ -187,9 +187,12 @@ double product(std::span<const std::size_t> sizes) {
   return result;
 }
 
-std::string format_of(std::size_t columns, bool last) {
+std::string format_of(std::span<const std::size_t> shape, std::size_t axis) {
+  const std::size_t columns = shape[axis];
   std::string format = "NumPy array";
-  if (!last) format += fmt::format(", its axis of {} taken for x y z", columns);
+  const bool either = shape.size() == 2 && shape[0] == 3 && holds_point(shape[1]);
+  if (axis + 1 < shape.size()) format += fmt::format(", its axis of {} taken for x y z", columns);
+  if (either) format += ", its rows taken for points: save a.T if they are its columns";
   const bool known = columns != 5 && columns != 8 && columns <= FirstNumbers{}.size();
   if (!known) format += fmt::format(", the first 3 of {} columns", columns);
   return format;
@@ -265,7 +268,7 @@ CloudFile read_npy(const Input& input) {
                          .points = points,
                          .columns = columns,
                          .inner = std::max<std::size_t>(static_cast<std::size_t>(inner), 1)},
-                        format_of(columns, *axis + 1 == shape.size()) + unused(present - points));
+                        format_of(shape, *axis) + unused(present - points));
 }
 
 }  // namespace palpate::io

@@ -52,6 +52,15 @@ TEST(Npy, ReadsRowsOfPoints) {
   EXPECT_THAT(read_text(npy(header("<f4", "(1, 3)"), kSix)).format, HasSubstr("1 more"));
 }
 
+TEST(Npy, SaysThatRowsOfNineMayAsWellBeColumns) {
+  std::string data;
+  for (int i = 0; i < 27; ++i) append(data, static_cast<float>(i));
+  const CloudFile file = read_text(npy(header("<f4", "(3, 9)"), data), "a.npy");
+  EXPECT_EQ(file.cloud.size(), 3u);
+  EXPECT_THAT(file.format, HasSubstr("its rows taken for points: save a.T if"));
+  EXPECT_EQ(read_text(npy(header("<f4", "(9, 3)"), data), "a.npy").format, "NumPy array");
+}
+
 TEST(Npy, FindsTheAxisOfThePoint) {
   const auto second = [](const std::string& shape) {
     return Eigen::Vector3d(read_text(npy(header("<f4", shape), kSix), "a.npy").cloud.point(1));

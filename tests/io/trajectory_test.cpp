@@ -108,6 +108,9 @@ TEST(Trajectory, SaysWhichOrientationItCannotChoose) {
             std::string::npos);
   EXPECT_NE(message(begin + "a_roll,b_roll,pitch,yaw\n").find("two columns of roll"),
             std::string::npos);
+  EXPECT_NE(message(begin + "roll_rad,pitch_deg,yaw_rad\n").find("partly in radians"),
+            std::string::npos);
+  EXPECT_EQ(message(begin + "roll,pitch,yaw_deg\n0,1,2,3,90,0,0\n"), "no error");
   const std::string degrees = begin + "roll,pitch,yaw\n0,1,2,3,90,0,0\n";
   const std::string refused = message(degrees);
   EXPECT_NE(
