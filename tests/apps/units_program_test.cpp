@@ -71,11 +71,31 @@ TEST(UnitsProgram, MeshesOfOneSceneHaveOneUnit) {
   shell.write("large.stl", test::as_stl(test::box_mesh({0.6, 0.05, 0.05})));
   const Outcome both = shell.run("touch small=small.stl large=large.stl --duration 0.05");
   ASSERT_EQ(both.code, 0) << both.err;
-  EXPECT_THAT(both.out, HasSubstr("small is in metres by its size"));
+  EXPECT_THAT(both.out, HasSubstr("small is by its size in metres"));
   EXPECT_THAT(both.out, Not(HasSubstr("taken as millimetres")));
   const Outcome alone = shell.run("touch large.stl --duration 0.05");
   EXPECT_THAT(alone.out, HasSubstr("taken as millimetres"));
   EXPECT_THAT(alone.out, HasSubstr("give --scale: 1 for metres"));
+}
+
+TEST(UnitsProgram, ALongPartPullsNoOthersToMetres) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
+  Shell shell;
+  const auto plate = [](double size) {
+    return fmt::format("v 0 0 0\nv {0} 0 0\nv {0} {0} 0\nv 0 {0} 0\nf 1 2 3 4\n", size);
+  };
+  shell.write("small.obj", plate(150));
+  shell.write("large.obj", plate(2100));
+  const std::string run = "touch small=small.obj large=large.obj --duration 0.02";
+  const Outcome both = shell.run(run);
+  ASSERT_EQ(both.code, 0) << both.err;
+  EXPECT_THAT(both.out, Not(HasSubstr("taken as metres")));
+  EXPECT_THAT(both.out, HasSubstr("small is by its size in millimetres"));
+  EXPECT_THAT(both.out, HasSubstr("give --scale: 1 for metres"));
+  shell.write("small.obj", "# Unit: inch\n" + plate(15));
+  const Outcome stated = shell.run(run);
+  ASSERT_EQ(stated.code, 0) << stated.err;
+  EXPECT_THAT(stated.out, HasSubstr("it states no unit, and small states inches"));
 }
 
 }  // namespace
