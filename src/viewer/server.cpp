@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -65,6 +66,16 @@ Listening name_of(const Tcp::acceptor& acceptor) {
   return {here.address().to_string(), here.port(), here.address().is_unspecified()};
 }
 
+// ", such as 8421": the next port that is free; empty: none near it is.
+std::string free_port_behind(Tcp::acceptor& acceptor, const net::ip::address& address, int first) {
+  for (int port = first + 1; port <= std::min(first + kPortsTried, 65535); ++port) {
+    if (listen(acceptor, {address, static_cast<std::uint16_t>(port)})) continue;
+    acceptor.close();
+    return fmt::format(", such as {}", port);
+  }
+  return {};
+}
+
 Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
   const net::ip::address address = address_of(options.address);
   const int tries = options.port ? 1 : kPortsTried;
@@ -77,8 +88,10 @@ Listening listen(Tcp::acceptor& acceptor, const ViewerOptions& options) {
   }
   const std::string ports = tries == 1 ? fmt::format("port {}", first)
                                        : fmt::format("any port {}-{}", first, first + tries - 1);
-  throw Error(fmt::format("viewer: cannot listen on {} at {}: {}; give another address or port",
-                          ports, options.address, error.message()));
+  const bool taken = tries == 1 && error == net::error::address_in_use;
+  throw Error(fmt::format("viewer: cannot listen on {} at {}: {}; give another address or port{}",
+                          ports, options.address, error.message(),
+                          taken ? free_port_behind(acceptor, address, first) : ""));
 }
 
 }  // namespace

@@ -186,7 +186,7 @@ TEST_F(PotreeDamage, OfEveryCutIsFound) {
 }
 
 TEST_F(PotreeDamage, OfAbsentFilesIsNamed) {
-  EXPECT_THAT(refusal(), HasSubstr("holds no metadata.json"));
+  EXPECT_THAT(refusal(), HasSubstr("no Potree store"));
   folder_.write("metadata.json", files_.metadata);
   EXPECT_THAT(refusal(), HasSubstr("hierarchy.bin: no such file"));
   folder_.write("hierarchy.bin", files_.hierarchy);

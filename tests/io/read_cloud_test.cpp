@@ -55,7 +55,10 @@ TEST_F(ReadCloud, SaysWhyAPathCannotBeRead) {
 }
 
 TEST_F(ReadCloud, SaysWhatAFolderHolds) {
-  EXPECT_THAT(refusal_of(folder_), HasSubstr("Give a file in it."));
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("Give a file, or a folder that holds"));
+  write("b.ply", "");
+  write("a.PLY", "");
+  EXPECT_THAT(refusal_of(folder_), HasSubstr("such as " + (folder_ / "a.PLY").string()));
   write("run.mcap", "");
   EXPECT_THAT(refusal_of(folder_), HasSubstr("bag:" + folder_.string()));
   write("sequence.json", "{}");

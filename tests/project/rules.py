@@ -74,7 +74,7 @@ LARGEST_MODULE = 250  # lines of a header and its sources, about
 
 
 # Floors that read files, and what a message of theirs tells people to type or to write.
-REMEDY_FLOORS = ("io", "bag", "sensor", "python")
+REMEDY_FLOORS = ("io", "bag", "sensor", "python", "palpate")
 REMEDY = re.compile(r"python3 -c|\bpalpate (?:touch|info|tile|bag|align|replay) |'palpate bag|"
                     r"\b(?:xz|zstd|bunzip2|gunzip|unzip|npx|colmap|pdal|chmod|mcap|rosbags-convert|git lfs|ulimit|modprobe) "
                     r"|(?<!to )\bwrite (?:1|\{\}|\\\"|endsolid|[a-z_]+,)")
@@ -391,7 +391,7 @@ def remedies(root):
     rows = [[cell.strip() for cell in line.split("|")] for line in (lines(listed) if listed.exists() else [])
             if line.strip() and not line.startswith("#")]
     told = [(path.relative_to(root).as_posix(), number, line)
-            for path in sources(root, ("src", "python")) if set(REMEDY_FLOORS) & set(path.relative_to(root).parts[:2])
+            for path in sources(root, ("src", "python", "apps")) if set(REMEDY_FLOORS) & set(path.relative_to(root).parts[:2])
             for number, line in enumerate(lines(path), 1)
             if REMEDY.search(line) and '"' in line and not line.lstrip().startswith("//")]
     for name, number, line in told:

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,7 +53,7 @@ class PotreeStore final : public PointStore {
     check_nodes(nodes_, metadata_, octree_.name(), octree_.size());
     layout_.unit = input.unit;
     layout_.format = fmt::format("Potree 2.0, {}{}", metadata_.packed ? "BROTLI" : "DEFAULT",
-                                 words_of(input.unit));
+                                 input.options.length ? "" : words_of(input.unit));
     layout_.lower = input.scale().cwiseProduct(metadata_.lower);
     layout_.edge = input.unit.plan * metadata_.edge;
     layout_.flatness = input.unit.height / input.unit.plan;
@@ -130,12 +132,19 @@ std::string instead_of(const fs::path& folder) {
     if (!fs::exists(folder / list, unknown)) continue;
     return fmt::format("Its recorded frames are sequence:{}.", folder.string());
   }
+  fs::path cloud;
   for (const auto& each : fs::directory_iterator(folder, unknown)) {
-    if (each.path().extension() != ".mcap") continue;
-    return fmt::format("What was recorded in it is bag:{}.", folder.string());
+    const std::string type = extension(each.path().string());
+    if (type == ".mcap") return fmt::format("What was recorded in it is bag:{}.", folder.string());
+    constexpr std::array<std::string_view, 9> kClouds{".ply", ".pcd", ".las", ".laz", ".e57",
+                                                      ".obj", ".stl", ".glb", ".xyz"};
+    const bool first = cloud.empty() || each.path() < cloud;
+    if (std::ranges::count(kClouds, type) > 0 && first) cloud = each.path();
   }
   if (unknown) return fmt::format("It cannot be listed: {}.", unknown.message());
-  return "Give a file in it.";
+  if (!cloud.empty()) return fmt::format("Give a file in it, such as {}.", cloud.string());
+  return "Give a file, or a folder that holds such a store, recorded frames (sequence:FOLDER) or a "
+         "ROS 2 bag (bag:FOLDER).";
 }
 
 }  // namespace
@@ -150,9 +159,8 @@ std::shared_ptr<const PointStore> open_potree(const fs::path& path, const ReadOp
   const fs::path folder = path.filename() == kMetadata ? path.parent_path() : path;
   std::error_code unknown;
   if (!fs::is_regular_file(folder / kMetadata, unknown)) {
-    throw Error(
-        fmt::format("{}: is a folder and holds no metadata.json, so it is no Potree store. {}",
-                    folder.string(), instead_of(folder)));
+    throw Error(fmt::format("{}: is a folder, but no Potree store, which holds metadata.json. {}",
+                            folder.string(), instead_of(folder)));
   }
   const auto input_of = [&](const Bytes& bytes, const char* name) {
     return Input{bytes.span(), (folder / name).string(), options};
