@@ -13,10 +13,11 @@ namespace palpate::session {
 
 /// Takes a hand where a page wants it. Where the page says from where it sees the place, the hand
 /// goes there by itself: lifted on its own side of what it touches, and through free space as the
-/// newest surfaces show it. Where they show no free way it goes straight, slowly and with 0.5 N.
-/// So it goes with a tool that has a body, also on a way: that is looked at for a point.
-/// With a limited force it comes down on the place at 0.1 m/s. One thread at a time moves it; not
-/// real-time.
+/// newest surfaces show it, off each point by its own R. Where they show no free way within 2000
+/// searches for a nearest point it goes straight, slowly and with 0.5 N, and with as little where
+/// it touches on its way; then another way is looked for. So it goes with a tool that has a body,
+/// also on a way: that is looked at for a point. With a limited force it comes down on the place at
+/// 0.1 m/s. One thread at a time moves it; not real-time.
 class LedHand {
  public:
   /// All outlive it.
