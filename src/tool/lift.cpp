@@ -7,6 +7,9 @@ namespace palpate {
 namespace {
 
 constexpr double kRisen = 1e-3;  // of R: less is left to the iterations
+// Reaches: rises that throw a tool farther contradict each other, as between two walls; a far end
+// moves more than what touches (judgement).
+constexpr double kThrown = 2;
 
 }  // namespace
 
@@ -18,10 +21,7 @@ void Descent::lift(const ToolSurface& surface, double reach, ToolContact& contac
     const Tool::Point& sample = tool_->samples()[static_cast<std::size_t>(touch.sample)];
     const Eigen::Vector3d x = tool_->in_world(sample.position, sample.side, pose_);
     const Field& field = surface.group(surface.group_of(touch.sample));
-    // Where surfaces are not expected farther above, one that a sample still sees is where looks
-    // lead.
-    const bool near = reach <= kLongest * gaps_.radius();
-    if (near && gaps_.sees_still(field, sample, x, touch.normal)) continue;
+    if (gaps_.sees_still(field, sample, x, touch.normal)) continue;  // looks lead there
     const double rise = gaps_.rise(field, sample, x, high * touch.normal) * high;
     if (rise < kRisen * gaps_.radius()) continue;
     Constraint constraint = constraint_on(*tool_, touch.sample, x, touch.normal, pose_, metric_);
@@ -31,6 +31,7 @@ void Descent::lift(const ToolSurface& surface, double reach, ToolContact& contac
   if (constraints_.all().empty()) return;
   const LeastMotion least = least_motion(constraints_.all(), Motion::Zero(), kSolved);
   if (least.end != LeastMotion::End::solved || !least.motion.allFinite()) return;
+  if (farthest(least.motion) > kThrown * high) return;
   move_to(metric_.moved(pose_, least.motion));
   contact.notes |= ContactNote::reanchored;
 }

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "palpate/contact/proxy.hpp"
@@ -105,6 +107,56 @@ TEST_P(ToolInACorner, ABallFeelsWhatAPointWithItsRadiusFeels) {
       EXPECT_LT(ball.path, 5e-4);
     }
   }
+}
+
+/// Two sheets of 5 mm that meet along y at 60 degrees, another surface in each step.
+class SheetsOfAGroove final : public Field {
+ public:
+  [[nodiscard]] Sample sample(const Vector3d& x) const noexcept override {
+    const Vector3d left(std::cos(kTilt), 0, std::sin(kTilt));
+    const Vector3d right(-left.x(), 0, left.z());
+    const Sample a = sheet_at(left.dot(x), left);
+    const Sample b = sheet_at(right.dot(x), right);
+    return a.value < b.value ? a : b;
+  }
+  [[nodiscard]] bool is_free(const Ball& ball) const noexcept override {
+    return sample(ball.center).value > ball.radius;
+  }
+  [[nodiscard]] Surface surface(const Vector3d&) const noexcept override { return {.source = 0}; }
+  [[nodiscard]] Traits traits() const noexcept override {
+    return {.resolution = 2e-5, .revision = revision, .reanchor_reach = 0.016};
+  }
+
+  std::uint64_t revision = 0;
+
+ private:
+  static constexpr double kTilt = std::numbers::pi / 6;
+  static constexpr double kThick = 5e-3;  // m
+
+  static Sample sheet_at(double over, const Vector3d& normal) {
+    Sample sample{.value = over, .gradient = normal, .support = 1, .radius = 0.01};
+    if (over < -0.5 * kThick) {
+      sample.value = -kThick - over;
+      sample.gradient = -normal;
+    }
+    return sample;
+  }
+};
+
+// Behind the other sheet it is free, and this sheet's normal leads there.
+TEST(ToolInAGroove, NoChangeOfTheSurfaceLiftsItThroughASheet) {
+  SheetsOfAGroove groove;
+  ToolProxy proxy = proxy_of(Tool::ball(1e-3), kOptions);
+  proxy.reset(pose_at({0, 0, 0.03}));
+  ToolContact contact;
+  double highest = 0;  // m, once the tool has come to rest
+  for (int i = 0; i < 600; ++i) {
+    ++groove.revision;
+    contact = proxy.step(groove, pose_at({0, 0, std::max(-2e-3, 0.03 - 1e-4 * i)}), kTick);
+    if (i > 400) highest = std::max(highest, contact.proxy.position.z());
+  }
+  EXPECT_NEAR(highest, 2e-3, 1e-5);
+  EXPECT_NEAR(contact.wrench.force.z(), 4e-3 * kStiffness, 1e-2);
 }
 
 TEST_P(ToolInACorner, NoToolSwings) {
