@@ -10,6 +10,10 @@
 namespace palpate {
 namespace {
 
+double energy(double stiffness, const Motion& stretch) {
+  return 0.5 * stiffness * stretch.squaredNorm();
+}
+
 void add(const Motion& stretch, double stiffness, const Metric& metric, ToolContact& contact) {
   contact.wrench.force += stiffness * stretch.head<3>();
   contact.wrench.torque += stiffness * metric.gyration * stretch.segment<3>(3);
@@ -22,7 +26,7 @@ void add(const Motion& stretch, double stiffness, const Metric& metric, ToolCont
 void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& contact) noexcept {
   const Motion stretch = metric.between(step.hand, step.now);
   const double length = stretch.norm();
-  if (step.jumped) leave(step.before, metric);
+  if (step.jumped) leave(step, metric);
   const double wanted = std::max(0.0, away_.left() * step.full - fading_);
   const double share = length > step.moved ? step.moved / length : 1;
   if (step.jumped) {  // it holds no more energy than the hand's motion would give to one at rest
@@ -38,11 +42,15 @@ void ToolSpring::pull(const Step& step, const Metric& metric, ToolContact& conta
   if (fading_ > 0) add_fading(step, metric, contact);
 }
 
-// The spring of the last step stays at the anchor; two pull like one between them.
-void ToolSpring::leave(const Pose& anchor, const Metric& metric) noexcept {
+// The spring of the last step stays where it was. Two pull like one between them, and what they
+// hold beyond it fills the tank.
+void ToolSpring::leave(const Step& step, const Metric& metric) noexcept {
   const double both = fading_ + stiffness();
   if (both > 0) {
-    anchor_ = metric.moved(anchor_, stiffness() / both * metric.between(anchor_, anchor));
+    const double apart = energy(fading_, metric.between(step.hand, anchor_)) +
+                         energy(stiffness(), metric.between(step.hand, step.before));
+    anchor_ = metric.moved(anchor_, stiffness() / both * metric.between(anchor_, step.before));
+    tank_.fill(std::max(0.0, apart - energy(both, metric.between(step.hand, anchor_))));
   }
   fading_ = both;
   gone_ = Limit::kGone * both;

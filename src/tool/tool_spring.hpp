@@ -38,7 +38,7 @@ class ToolSpring {
   [[nodiscard]] double stiffness() const noexcept { return touching_ ? tank_.stiffness() : 0; }
 
  private:
-  void leave(const Pose& anchor, const Metric& metric) noexcept;
+  void leave(const Step& step, const Metric& metric) noexcept;
   void add_fading(const Step& step, const Metric& metric, ToolContact& contact) noexcept;
 
   EnergyTank tank_;

@@ -118,6 +118,31 @@ TEST(ToolEnergy, ASpringThatJumpsBeginsWithWhatTheHandGave) {
   EXPECT_LE(0.5 * contact.stiffness * 0.02 * 0.02, 0.5 * kStiffness * 1e-4 * 1e-4 * (1 + 1e-9));
 }
 
+// A tool that is moved sideways 30 times a second, beside a hand that rests, keeps its stiffness:
+// no jump makes the spring longer.
+TEST(ToolEnergy, JumpsThatStretchNothingCostNothing) {
+  const Metric metric{kGyration};
+  ToolSpring spring;
+  ToolContact contact;
+  double side = 2e-3;  // m
+  for (int i = 0; i < 3200; ++i) {
+    const Pose before = pose_at({side, 0, 0.01});
+    const bool jumps = i > 0 && i < 3000 && i % 33 == 0;
+    if (jumps) side = -side;
+    contact = {};
+    spring.pull({.hand = pose_at({0, 0, i == 0 ? 0.01 : 0}),
+                 .before = before,
+                 .now = pose_at({side, 0, 0.01}),
+                 .full = kStiffness,
+                 .moved = i == 0 ? 1.0 : 0.0,
+                 .dt = kTick,
+                 .touching = true,
+                 .jumped = jumps},
+                metric, contact);
+  }
+  EXPECT_GT(contact.stiffness, 0.95 * kStiffness);
+}
+
 /// What a tool on a floor gives to a hand in a time, J.
 struct Given {
   double by_force = 0;
