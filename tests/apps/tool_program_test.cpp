@@ -202,6 +202,7 @@ TEST(ToolProgram, InfoComparesSamplesWithACloudAndItsAdviceWorks) {
   const Json fits = info("synthetic:torus --tool box:20x30x10");
   EXPECT_LE(fits["spacing_m"].get<double>(), 0.5 * fits["radius_m"].get<double>());
   EXPECT_EQ(fits["warning"], "");
+  EXPECT_DOUBLE_EQ(fits["clearance_m"].get<double>(), 0.6 * fits["radius_m"].get<double>());
   const Json coarse = info("synthetic:torus --tool box:200x300x100");
   const auto warning = coarse["warning"].get<std::string>();
   ASSERT_THAT(warning, HasSubstr("more than half of R"));
