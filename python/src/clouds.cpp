@@ -252,7 +252,8 @@ std::string remark_on(const FileUnit& unit) {
       unit.words, unit.plan, unit.plan);
 }
 
-PointCloud read_with_warning(const std::filesystem::path& path, const ReadOptions& options) {
+PointCloud read_with_warning(const std::filesystem::path& path, ReadOptions options) {
+  options.progress = hearing();
   CloudFile file = read_cloud_file(path, options);
   const std::string remark = remark_on(file.unit);
   if (remark.empty()) return std::move(file.cloud);

@@ -18,10 +18,10 @@ namespace palpate::python {
 [[nodiscard]] std::shared_ptr<const PointCloud> cloud_of(const py::object& given,
                                                          Keywords& keywords);
 
-/// Reads a file. Python is warned where its unit was guessed. Without the interpreter's lock.
+/// Reads a file. Python is warned where its unit was guessed. Without the interpreter's lock;
+/// hears signals.
 /// @throws Error as read_cloud_file() does.
-[[nodiscard]] PointCloud read_with_warning(const std::filesystem::path& path,
-                                           const ReadOptions& options);
+[[nodiscard]] PointCloud read_with_warning(const std::filesystem::path& path, ReadOptions options);
 
 /// Shares the points with Python, read-only.
 [[nodiscard]] py::object shared(const std::shared_ptr<const SurfacePoints>& points);

@@ -65,6 +65,7 @@ void each_sample(AnyField& any, const Vectors& x, const std::optional<Eigen::Vec
   };
   if (viewer) look_from(*viewer);
   for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i % kUninterrupted == kUninterrupted - 1) hear_signals();
     if (!viewer) look_from(x[i]);
     put(i, any.field().sample(x[i]));
   }

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <chrono>
+#include <functional>
 #include <thread>
 
 namespace palpate::python {
@@ -33,5 +34,28 @@ class Released {
   bool ends_;  // the interpreter, which destroys what is left on this thread
   PyThreadState* thread_;
 };
+
+/// Ticks or samples between two looks for signals; judgement.
+inline constexpr std::size_t kUninterrupted = 1 << 16;
+
+/// Lets Python's handlers of signals run, in the main thread: Ctrl-C throws KeyboardInterrupt. For
+/// a thread that is Released.
+inline void hear_signals() {
+  stay_if_ended();
+  const pybind11::gil_scoped_acquire held;
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+}
+
+/// Lets long work hear signals, which calls this with the share that is done. Threads that are none
+/// of Python's do nothing by it.
+[[nodiscard]] inline std::function<void(double share)> hearing() {
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto kPatience = std::chrono::milliseconds(100);  // no wait is felt (judgement)
+  return [next = Clock::now() + kPatience](double /*share*/) mutable {
+    if (Clock::now() < next || PyGILState_GetThisThreadState() == nullptr) return;
+    next = Clock::now() + kPatience;
+    hear_signals();
+  };
+}
 
 }  // namespace palpate::python

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "gil.hpp"
 #include "palpate/base/error.hpp"
 
 namespace palpate::python {
@@ -54,6 +55,11 @@ bool Keywords::take(const char* name, std::optional<NoiseModel>& into) {
     into = NoiseModel{.coefficients = *sigma};
   }
   return taken;
+}
+
+void take(Keywords& keywords, PrepareOptions& options) {
+  take<PrepareOptions>(keywords, options);
+  options.progress = hearing();
 }
 
 void take(Keywords& keywords, FieldOptions& options) {

@@ -89,6 +89,8 @@ void take(Keywords& keywords, Options& options) {
     }
   });
 }
+/// The same; what is prepared hears signals.
+void take(Keywords& keywords, PrepareOptions& options);
 /// The same, and `paper`: paper_field().
 void take(Keywords& keywords, FieldOptions& options);
 

@@ -11,8 +11,6 @@
 namespace palpate::python {
 namespace {
 
-constexpr std::size_t kUninterrupted = 1 << 16;  // ticks between checks for Ctrl-C (judgement)
-
 // Output memory of a rollout: plain pointers, since numpy may be asked for them only with the GIL.
 struct Rows {
   explicit Rows(Rollout& out)
@@ -51,13 +49,6 @@ struct Rows {
   std::int32_t *source, *iterations, *evaluations;
   std::uint32_t *notes, *field_notes;
 };
-
-// Ctrl-C ends a long one.
-void look_for_signals() {
-  stay_if_ended();
-  const py::gil_scoped_acquire acquire;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
 
 // The times of the ticks: given, or `dt` apart from where the proxy has come to.
 class Times {
@@ -134,7 +125,7 @@ std::unique_ptr<Rollout> rollout(AnyField& field, TimedProxy& proxy, const py::o
   const Away away(field.mutex, proxy.mutex);
   times.begin(proxy.time);
   for (std::size_t i = 0; i < hips.size(); ++i) {
-    if (i % kUninterrupted == kUninterrupted - 1) look_for_signals();
+    if (i % kUninterrupted == kUninterrupted - 1) hear_signals();
     const double now = times.at(i);
     const Contact contact = proxy.step(field, hips[i], now, times.step(i));
     rows.put(i, now, hips[i], contact);

@@ -7,9 +7,9 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <stop_token>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "large/blocks.hpp"
 #include "palpate/geometry/point_cloud.hpp"
 #include "palpate/geometry/point_store.hpp"
@@ -77,8 +77,8 @@ class BlockSupply {
   /// Does prepare() prepare all of the cloud together? Then blocks serve until that is done.
   [[nodiscard]] virtual bool comes_together() const { return false; }
 
-  /// @throws PreparationStopped once `stop` is requested.
-  [[nodiscard]] virtual Prepared prepare_together(const std::stop_token& /*stop*/) const {
+  /// Calls `progress` as prepare() does.
+  [[nodiscard]] virtual Prepared prepare_together(const detail::Progress& /*progress*/) const {
     return {};
   }
 };

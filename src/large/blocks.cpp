@@ -11,6 +11,7 @@
 #include "geometry/cell_builder.hpp"
 #include "geometry/elements_at.hpp"
 #include "geometry/parallel.hpp"
+#include "large/shared_progress.hpp"
 #include "prepare/assemble.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/sampling.hpp"
@@ -131,6 +132,7 @@ namespace {
 
 PrepareOptions of_one_block(const Placed& placed, PrepareOptions options) {
   options.clip.reset();
+  options.progress = {};  // it counts all blocks
   // A viewpoint of the file must not become one of the options: that would disable its normals.
   if (options.viewpoint) options.viewpoint = placed.viewpoint;
   if (options.facts) {
@@ -157,11 +159,12 @@ double Blocks::halo(std::size_t block) const {
   return (radius > facts_.radius ? kSparseHalo : kHalo) * radius;
 }
 
-Piece Blocks::prepare(std::size_t number) const {
+Piece Blocks::prepare(std::size_t number, const detail::Progress& progress) const {
   const PointCloud near = select(cloud_, division_.around(number, halo(number)));
   const Placed part{near, {}, viewpoint_};
   PrepareOptions options = options_;
   options.facts->radius = division_.radius(number);
+  options.progress = progress;
   Prepared all = prepare_at_once(part, options, refinements(), {});
   SurfacePoints& points = all.points;
   const auto is_own = [&](std::uint32_t i) {
@@ -193,13 +196,18 @@ Piece Blocks::prepare(std::size_t number) const {
   return piece;
 }
 
-std::vector<Piece> Blocks::prepare_all() const {
+std::vector<Piece> Blocks::prepare_all(const detail::Progress& progress) const {
   Stopwatch watch;
   std::vector<Piece> pieces(size());
+  SharedProgress shared(progress, cloud_.size());
+  // What a body throws would end other blocks in the middle of their loops, and they would go on.
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
-    // A thread that waits for parts of this block is not to begin another one.
-    detail::isolated([&] { pieces[k] = prepare(k); });
+    shared.run(division_.points(k), [&](const detail::Progress& of_block) {
+      // A thread that waits for parts of this block is not to begin another one.
+      detail::isolated([&] { pieces[k] = prepare(k, of_block); });
+    });
   });
+  shared.end();
   double seconds = 0;
   watch.lap(seconds);
   share_out(seconds, pieces);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "large/division.hpp"
 #include "palpate/field/surface_points.hpp"
 #include "palpate/geometry/cell_grid.hpp"
@@ -46,8 +47,8 @@ class Blocks {
   /// How far around that points count for it, m.
   [[nodiscard]] double halo(std::size_t block) const;
 
-  [[nodiscard]] Piece prepare(std::size_t block) const;
-  [[nodiscard]] std::vector<Piece> prepare_all() const;
+  [[nodiscard]] Piece prepare(std::size_t block, const detail::Progress& progress = {}) const;
+  [[nodiscard]] std::vector<Piece> prepare_all(const detail::Progress& progress = {}) const;
 
  private:
   const PointCloud& cloud_;

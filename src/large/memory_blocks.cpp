@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -63,8 +62,10 @@ class MemoryBlocks final : public BlockSupply {
   }
 
   [[nodiscard]] bool comes_together() const override { return together_; }
-  [[nodiscard]] Prepared prepare_together(const std::stop_token& stop) const override {
-    return prepare_at_once(placed_, options_, refinements(), {.points_in = cloud_->size()}, stop);
+  [[nodiscard]] Prepared prepare_together(const detail::Progress& progress) const override {
+    PrepareOptions options = options_;
+    options.progress = progress;
+    return prepare_at_once(placed_, options, refinements(), {.points_in = cloud_->size()});
   }
 
  private:

@@ -36,6 +36,9 @@ constexpr double kRetry = 10;
 
 }  // namespace
 
+/// Thrown by a preparation that was stopped.
+struct Stopped {};
+
 // What was shown last.
 struct ShownLast {
   const Source* source = nullptr;  // to which
@@ -165,8 +168,11 @@ void OnDemand::Inside::prepare_rest(Source& to, std::unique_lock<std::mutex>& lo
   if (supply->comes_together()) {
     lock.unlock();  // cancel() does not wait for seconds
     try {
-      beside_servos([&] { together = supply->prepare_together(stop); });
-    } catch (const PreparationStopped&) {
+      const auto go_on = [&](double /*share*/) {
+        if (stop.stop_requested()) throw Stopped();
+      };
+      beside_servos([&] { together = supply->prepare_together(go_on); });
+    } catch (const Stopped&) {
       return lock.lock();
     } catch (const std::exception&) {
       together.reset();  // the blocks are all that there will be

@@ -20,7 +20,7 @@ template <EitherConst<PrepareOptions> Options>
 void describe(Options& options, const auto& take) {
   using enum Offered;
   auto& [voxel, radius, smoothing, least, error, viewpoint, signs, clip, speckle, normals, material,
-         paper, kernel, facts, without] = options;  // the last is for benches alone
+         paper, kernel, facts, progress, without] = options;  // the last is for benches alone
   take(About{"voxel", "m", kNotNegative, "voxel size of the voxel filter for clouds; 0: no filter"},
        voxel);
   take(About{"radius", "m", kPositive,

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <stop_token>
 #include <string_view>
 #include <vector>
 
@@ -54,15 +53,11 @@ struct Refinement {
   void (*refine)(Surfels& surfels);
 };
 
-/// Thrown by a preparation that was stopped.
-struct PreparationStopped {};
-
 /// Takes all steps of prepare() but place(), with these refinements in their order. `report`: what
 /// has been measured so far.
-/// @throws Error as prepare() does, and PreparationStopped between two steps once `stop` is
-///   requested.
+/// @throws Error as prepare() does. The options' progress is called between two steps.
 [[nodiscard]] Prepared prepare_at_once(const Placed& placed, const PrepareOptions& options,
                                        std::span<const Refinement> refinements,
-                                       Prepared::Report report, const std::stop_token& stop = {});
+                                       Prepared::Report report);
 
 }  // namespace palpate

@@ -93,8 +93,12 @@ void Source::set_pose(const Eigen::Isometry3d& T_world_sensor) {
 }
 
 void Source::set(const PointCloud& cloud) {
-  if (set_as_frame(*this, cloud)) return;
   const SourceOptions wanted = options();
+  {
+    const std::lock_guard lock(inside_->mutex);
+    inside_->options.prepare.progress = {};  // who adds a source waits for its first cloud alone
+  }
+  if (set_as_frame(*this, cloud)) return;
   Prepared prepared = named(inside_->name, [&] { return prepare(cloud, wanted.prepare, pose()); });
   prepared.points.eye = eye_of(cloud, wanted.prepare, pose());
   {

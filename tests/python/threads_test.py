@@ -1,6 +1,8 @@
 """Other threads of Python go on while palpate computes, and nothing that they do together breaks."""
 
 import gc
+import os
+import signal
 import sys
 import threading
 import time
@@ -120,6 +122,45 @@ class Together(unittest.TestCase):
             with self.assertRaises(TypeError):
                 pp.rollout(field, proxy, hand[:, :2])
         self.assertEqual((sys.getrefcount(hand), sys.getrefcount(field)), before)
+
+
+class Interrupted(unittest.TestCase):
+    """Ctrl-C ends long work in the middle, and the interpreter goes on."""
+
+    def interrupts(self, work):
+        """Sends the signal once `work` has begun, and expects that it does not come to its end."""
+        begun, ended = threading.Event(), False
+
+        def interrupt():
+            begun.wait()
+            time.sleep(0.05)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        sender = threading.Thread(target=interrupt)
+        sender.start()
+        with self.assertRaises(KeyboardInterrupt):
+            begun.set()
+            work()
+            ended = True
+            sender.join()
+            time.sleep(1)
+        sender.join()
+        self.assertFalse(ended)
+
+    def test_preparing_and_adding(self):
+        cloud = pp.synthetic_cloud("sphere", spacing=5e-4)
+        self.interrupts(lambda: pp.prepare(cloud))
+        scene = pp.Scene()
+        self.interrupts(lambda: scene.add("ball", cloud))
+        small = pp.synthetic_cloud("sphere", spacing=4e-3)
+        self.assertGreater(len(pp.prepare(small).points), 0)
+        scene.add("ball", small)
+
+    def test_evaluating(self):
+        places = np.tile(stroke(1000), (3000, 1))
+        field = pp.Field(ball())
+        self.interrupts(lambda: field.value(places))
+        self.assertEqual(len(field.value(places[:5])), 5)
 
 
 main()

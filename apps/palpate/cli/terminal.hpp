@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -68,6 +69,11 @@ class Progress {
 
   /// `done`: 0 to 1.
   void update(double done);
+
+  /// Calls update(); this outlives it.
+  [[nodiscard]] std::function<void(double)> updater() {
+    return [this](double done) { update(done); };
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

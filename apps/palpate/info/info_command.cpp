@@ -183,9 +183,9 @@ InfoReport measure_cloud(const CloudArgument& argument, const FileReading& optio
 void study(InfoReport& report, TrustPicture* picture) {
   const PointCloud& cloud = report.loaded.file.cloud;
   const std::string& name = report.loaded.argument.name;
-  const Waiting waiting("studying " + name);
+  Progress progress("studying " + name);
   report.spacing = measure_spacing(CellGrid(cloud.positions));
-  const Prepared prepared = prepare(cloud);
+  const Prepared prepared = prepare(cloud, {.progress = progress.updater()});
   report.prepared = prepared.report;
   report.rim = rim_share(prepared.points);
   if (picture != nullptr) picture->take(name, prepared, report.core);

@@ -125,15 +125,15 @@ void add_cloud(Scene& scene, const LoadOptions& options, std::optional<LoadedClo
   result.unit = loaded.file.unit;
   result.units = session::units_of(loaded.file, session::core_of(loaded.file.cloud));
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
-  if (const PrepareOptions& prepare = plan.options.prepare; prepare.radius) {
-    check_radius(loaded.argument, prepare, CellGrid(cloud->positions));
-  }
-  const Waiting waiting(
+  SourceOptions told = plan.options;
+  if (told.prepare.radius) check_radius(loaded.argument, told.prepare, CellGrid(cloud->positions));
+  Progress progress(
       fmt::format("preparing {} ({} points)", loaded.argument.name, grouped(cloud->size())));
   const auto start = WallClock::now();
   const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
-  const Source& source = large ? add_on_demand(scene, cloud, result)
-                               : scene.add(loaded.argument.name, *cloud, plan.options);
+  told.prepare.progress = progress.updater();
+  const Source& source =
+      large ? add_on_demand(scene, cloud, result) : scene.add(loaded.argument.name, *cloud, told);
   result.plan.reading.progress = {};  // nobody waits for it any more
   result.prepare_seconds = seconds_since(start);
   result.prepared = source.report();
