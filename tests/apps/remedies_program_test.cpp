@@ -86,7 +86,7 @@ class TakenPort {
     sockaddr_in here{};
     here.sin_family = AF_INET;
     here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here);
+    static_cast<void>(::bind(socket_, reinterpret_cast<const sockaddr*>(&here), sizeof here));
     ::listen(socket_, 1);
     socklen_t size = sizeof here;
     ::getsockname(socket_, reinterpret_cast<sockaddr*>(&here), &size);

@@ -219,13 +219,15 @@ TEST(ToolProgram, ATooSmallSpacingIsNamedAndItsAdviceWorks) {
   Shell shell;
   shell.write("part.stl", test::as_stl(test::box_mesh(Eigen::Vector3d(10, 15, 5))));
   for (const char* tool : {"mesh:part.stl", "box:20x30x10", "gripper:6x12x30", "ball:30"}) {
-    const std::string command = fmt::format("info --tool {}", tool);
-    const Outcome refused = shell.run(command + " --tool-spacing 1e-5");
+    const auto with = [&](std::string_view spacing) {
+      return shell.run(fmt::format("info --tool {} --tool-spacing {}", tool, spacing));
+    };
+    const Outcome refused = with("1e-5");
     EXPECT_EQ(refused.code, 2) << tool;
     ASSERT_THAT(refused.err, HasSubstr("--tool-spacing (tool_spacing of [tool]): 1e-05 m leaves"));
     const std::size_t give = refused.err.find("give ") + 5;
     const std::string advice = refused.err.substr(give, refused.err.find(' ', give) - give);
-    EXPECT_EQ(shell.run(command + " --tool-spacing " + advice).code, 0) << tool << ' ' << advice;
+    EXPECT_EQ(with(advice).code, 0) << tool << ' ' << advice;
   }
   shell.write("set.toml", "[tool]\ntool = \"box:20x30x10\"\ntool_spacing = 0.00001\n");
   const Outcome refused = shell.run("touch synthetic:torus --setup set.toml --duration 0.1");
