@@ -20,10 +20,6 @@ struct Place {
   Vector3d to_eye = Vector3d::Zero();
 };
 
-Vector3d eye_of(const View& view) {
-  return view.camera.T_world_camera.translation();
-}
-
 double clearance(const View& view, const Vector3d& x) {
   return distance_and_normal(view.scene, x, 0).value;
 }
@@ -50,7 +46,7 @@ bool draw_place(View& view, const Picture& picture, double lowest, Place& place)
     if (std::hypot(at.x(), at.y()) > kAround || at.z() < lowest) continue;
     place.at = at;
     place.normal = distance_and_normal(view.scene, at, 0).gradient;
-    place.to_eye = (eye_of(view) - at).normalized();
+    place.to_eye = (picture.T_camera_world.inverse().translation() - at).normalized();
     if (place.normal.dot(place.to_eye) > std::cos(80 * kDegree)) return true;
   }
   return false;
@@ -147,9 +143,9 @@ std::vector<Vector3d> behind(View& view, const Picture& picture, const Place& pl
 
 }  // namespace
 
-Picture::Picture(const View& view)
-    : camera(view.camera.camera), T_camera_world(view.camera.T_world_camera.inverse()) {
-  DepthRenderer(camera).render(solids_at(view.scene, 0), view.camera.T_world_camera, depth);
+Picture::Picture(const View& view, const SimulatedCameraOptions& of)
+    : camera(of.camera), T_camera_world(of.T_world_camera.inverse()) {
+  DepthRenderer(camera).render(solids_at(view.scene, 0), of.T_world_camera, depth);
 }
 
 double Picture::depth_at(const Vector3d& x, int around) const {
@@ -178,10 +174,11 @@ Vector3d Picture::point(int u, int v) const {
 }
 
 Hand draw_hand(View& view, const Picture& picture, const std::string& kind) {
-  Hand hand{kind, {}, kind == "behind"};
+  // What is behind things to one camera another one sees.
+  Hand hand{kind, {}, kind == "behind" && view.cameras.size() == 1};
   Place place;
   // Half of them meet what stands on the floor.
-  const double lowest = hand.hidden || view.random.uniform() < 0.5 ? 0.002 : -1;
+  const double lowest = kind == "behind" || view.random.uniform() < 0.5 ? 0.002 : -1;
   for (int k = 0; k < 20 && hand.hip.empty(); ++k) {
     if (!draw_place(view, picture, lowest, place)) return hand;
     if (clearance(view, place.at + kBefore * place.normal) < 0.004) continue;

@@ -1,4 +1,4 @@
-// Measures what hands before, beside and behind the scenes of one depth camera feel.
+// Measures what hands before, beside and behind the scenes of one or two depth cameras feel.
 #include "common/main.hpp"
 
 #include <array>
@@ -18,11 +18,11 @@ struct Options {
 };
 
 Feed feed_of(const std::string& name) {
-  const std::array<std::string, 4> names = {"still", "moving", "single", "points"};
+  const std::array<std::string, 5> names = {"still", "moving", "single", "points", "opposed"};
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == name) return static_cast<Feed>(k);
   }
-  throw Error("there is no feed '" + name + "'; still, moving, single and points are");
+  throw Error("there is no feed '" + name + "'; still, moving, single, points and opposed are");
 }
 
 Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise, Feed feed,
@@ -30,22 +30,29 @@ Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise,
   constexpr std::array<const char*, 4> kHands = {"slide", "poke", "aside", "behind"};
   View view(seed * kKinds + static_cast<std::uint64_t>(&kind - kinds().data()));
   kind.draw(view);
+  if (feed == Feed::opposed) view.oppose();
   set_noise(noise, view);
   view.feed = feed;
-  if (feed == Feed::still) view.camera.loop = 24;
-  if (feed == Feed::moving) {
-    view.camera.motion = {.swing = Vector3d(0, 0.05, 0.02), .rock = 0.05, .frequency = 0.3};
+  if (feed == Feed::still || feed == Feed::opposed) {
+    for (SimulatedCameraOptions& camera : view.cameras) camera.loop = 24;
   }
-  const Picture picture(view);
+  if (feed == Feed::moving) {
+    view.cameras.front().motion = {
+        .swing = Vector3d(0, 0.05, 0.02), .rock = 0.05, .frequency = 0.3};
+  }
+  std::vector<Picture> pictures;
+  for (const SimulatedCameraOptions& camera : view.cameras) pictures.emplace_back(view, camera);
   std::vector<Hand> hands;
   for (int k = 0; k < options.hands; ++k) {
-    Hand hand = draw_hand(view, picture, kHands[static_cast<std::size_t>(k) % kHands.size()]);
+    Hand hand =
+        draw_hand(view, pictures[static_cast<std::size_t>(k) / kHands.size() % pictures.size()],
+                  kHands[static_cast<std::size_t>(k) % kHands.size()]);
     if (!hand.hip.empty()) hands.push_back(std::move(hand));
   }
   const std::vector<Felt> felt = play(view, hands);
   Score all;
   for (std::size_t k = 0; k < hands.size(); ++k) {
-    const Score one = score(view, picture, hands[k], felt[k]);
+    const Score one = score(view, pictures, hands[k], felt[k]);
     all += one;
     if (options.seeds.each && (one.held > 0 || one.caught > 0 || one.thrown > 0)) {
       fmt::print("{} {} seed {} hand {} {}: held {} caught {} thrown {} most {:.1f} N\n", kind.name,
@@ -96,14 +103,15 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app("Hands before, beside and behind what a depth camera sees, in simulated time",
+  CLI::App app("Hands before, beside and behind what depth cameras see, in simulated time",
                "eyes_bench");
   eyes::Options options;
   options.seeds.seeds = 2;
   bench::add_options(app, options.seeds);
   app.add_option("--noise", options.noises, "a, b, c, waves, structured, stereo, tof")
       ->delimiter(',');
-  app.add_option("--feeds", options.feeds, "still, moving, single, points")->delimiter(',');
+  app.add_option("--feeds", options.feeds, "still, moving, single, points, opposed")
+      ->delimiter(',');
   app.add_option("--hands", options.hands, "Hands a scene")->check(CLI::Range(1, 15));
   return bench::run_main(app, argc, argv, [&] {
     eyes::run(options);

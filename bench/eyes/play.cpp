@@ -1,4 +1,4 @@
-// Plays hands on what a camera sees, and on the exact solids.
+// Plays hands on what cameras see, and on the exact solids.
 #include <algorithm>
 #include <array>
 #include <deque>
@@ -64,9 +64,10 @@ void feel_ideal(const View& view, const Hand& hand, Felt& felt) {
 }
 
 PointCloud exact_points(const View& view) {
-  const Picture picture(view);
+  const SimulatedCameraOptions& camera = view.cameras.front();
+  const Picture picture(view, camera);
   PointCloud cloud;
-  cloud.viewpoint = view.camera.T_world_camera.translation();
+  cloud.viewpoint = camera.T_world_camera.translation();
   for (int v = 0; v < picture.camera.height; v += 2) {
     for (int u = 0; u < picture.camera.width; u += 2) {
       if (!(picture.depth[static_cast<std::size_t>(v) * picture.camera.width + u] > 0)) continue;
@@ -78,31 +79,24 @@ PointCloud exact_points(const View& view) {
   return cloud;
 }
 
-/// What fills the scene, tick by tick.
+/// What a camera puts into the scene, tick by tick.
 class Feeder {
  public:
-  Feeder(const View& view, Scene& scene) {
-    if (view.feed == Feed::points) {
-      scene.add("camera", exact_points(view));
-      return;
-    }
-    source_ = &scene.add("camera", {.T_world_sensor = view.camera.T_world_camera});
-    SimulatedCameraOptions options = view.camera;
+  Feeder(const View& view, SimulatedCameraOptions options, const std::string& name, Scene& scene)
+      : source_(&scene.add(name, {.T_world_sensor = options.T_world_camera})) {
     if (view.feed == Feed::single) options.frames = 1;
     camera_ = std::make_unique<SimulatedCamera>(view.scene, options);
     stream_ = std::make_unique<SimulatedStream>(
-        *camera_, "camera",
+        *camera_, name,
         [this](const DepthFrame& frame, const Source::StartTime& start) {
           source_->push(frame, start);
         },
         SimulatedStreamOptions{.latency = 0.01, .lead = 0.002}, [this] { source_->keep(); });
   }
-  void advance(double now) {
-    if (stream_) stream_->advance(now);
-  }
+  void advance(double now) { stream_->advance(now); }
 
  private:
-  Source* source_ = nullptr;
+  Source* source_;
   std::unique_ptr<SimulatedCamera> camera_;
   std::unique_ptr<SimulatedStream> stream_;
 };
@@ -111,7 +105,14 @@ class Feeder {
 
 std::vector<Felt> play(const View& view, const std::vector<Hand>& hands) {
   Scene scene;
-  Feeder feeder(view, scene);
+  std::deque<Feeder> feeders;
+  if (view.feed == Feed::points) {
+    scene.add("camera", exact_points(view));
+  } else {
+    for (std::size_t k = 0; k < view.cameras.size(); ++k) {
+      feeders.emplace_back(view, view.cameras[k], "camera " + std::to_string(k), scene);
+    }
+  }
   std::deque<Reader> readers;
   long longest = 0;
   for (const Hand& hand : hands) {
@@ -121,7 +122,7 @@ std::vector<Felt> play(const View& view, const std::vector<Hand>& hands) {
   const auto warm = std::lround(kWarm / kTick);
   for (long tick = -warm; tick < longest; ++tick) {
     const double now = static_cast<double>(tick + warm) * kTick;
-    feeder.advance(now);
+    for (Feeder& feeder : feeders) feeder.advance(now);
     if (tick < -kArrives) continue;
     for (Reader& reader : readers) reader.step(now, tick);
   }

@@ -1,4 +1,4 @@
-// Draws the scenes, their camera and its noise.
+// Draws the scenes, their cameras and their noise.
 #include <cmath>
 #include <numbers>
 
@@ -158,17 +158,48 @@ void slopes(View& view) {
   view.block({0.03, 0, 0.05}, {0.05, 0.1, 0.01}, view.between(-0.7, 0.7), -lean);
 }
 
+SimulatedCameraOptions draw_camera(View& view) {
+  const double height = view.between(20, 65) * kDegree;
+  const double turn = view.between(-25, 25) * kDegree;
+  const double far = view.between(0.5, 1.2);
+  const Vector3d from(-std::cos(height) * std::cos(turn), -std::cos(height) * std::sin(turn),
+                      std::sin(height));
+  SimulatedCameraOptions camera;
+  camera.T_world_camera = bench::looking(far * from, 0.05 * kUp, kUp);
+  camera.noise.silhouettes = true;
+  camera.noise.seed = view.random.bits();
+  return camera;
+}
+
+void set_noise(const std::string& name, View& view, SimulatedCameraOptions& camera) {
+  if (name != "waves") {
+    SimulatedSetup setup{view.scene, camera};
+    const std::uint64_t seed = camera.noise.seed;
+    set_simulated(setup, "noise=" + name);
+    camera.noise = setup.camera.noise;
+    camera.noise.seed = seed;
+    camera.noise.silhouettes = name != "tof";
+    return;
+  }
+  SimulatedNoiseOptions& noise = camera.noise;
+  noise.correlation = view.between(8, 18);
+  noise.disparity_step = view.between(1 / 32.0, 1 / 5.0);
+  noise.smoothing = static_cast<int>(view.between(0, 4));
+  noise.pattern = view.between(0, 1e-3);
+  noise.hops = view.one_of({0, 0, 0.01});
+  camera.repeated = view.one_of({0, 0.3});
+}
+
 }  // namespace
 
 View::View(std::uint64_t number) : Stage(number) {
-  const double height = between(20, 65) * kDegree;
-  const double turn = between(-25, 25) * kDegree;
-  const double far = between(0.5, 1.2);
-  const Vector3d from(-std::cos(height) * std::cos(turn), -std::cos(height) * std::sin(turn),
-                      std::sin(height));
-  camera.T_world_camera = bench::looking(far * from, 0.05 * kUp, kUp);
-  camera.noise.silhouettes = true;
-  camera.noise.seed = random.bits();
+  cameras.push_back(draw_camera(*this));
+}
+
+void View::oppose() {
+  SimulatedCameraOptions camera = draw_camera(*this);
+  camera.T_world_camera = Eigen::AngleAxisd(std::numbers::pi, kUp) * camera.T_world_camera;
+  cameras.push_back(camera);
 }
 
 void View::block(const Vector3d& center, const Vector3d& half, double turn, double tilt) {
@@ -197,22 +228,7 @@ const std::vector<Kind>& kinds() {
 }
 
 void set_noise(const std::string& name, View& view) {
-  if (name != "waves") {
-    SimulatedSetup setup{view.scene, view.camera};
-    const std::uint64_t seed = view.camera.noise.seed;
-    set_simulated(setup, "noise=" + name);
-    view.camera.noise = setup.camera.noise;
-    view.camera.noise.seed = seed;
-    view.camera.noise.silhouettes = name != "tof";
-    return;
-  }
-  SimulatedNoiseOptions& noise = view.camera.noise;
-  noise.correlation = view.between(8, 18);
-  noise.disparity_step = view.between(1 / 32.0, 1 / 5.0);
-  noise.smoothing = static_cast<int>(view.between(0, 4));
-  noise.pattern = view.between(0, 1e-3);
-  noise.hops = view.one_of({0, 0, 0.01});
-  view.camera.repeated = view.one_of({0, 0.3});
+  for (SimulatedCameraOptions& camera : view.cameras) set_noise(name, view, camera);
 }
 
 }  // namespace palpate::eyes

@@ -16,7 +16,7 @@ constexpr double kThrownIdeal = 2;    // N
 constexpr double kStep = 1;           // N in a tick
 constexpr double kAsked = 1;          // N of the ideal
 constexpr double kLost = 0.2;         // of it
-constexpr double kSameDepth = 0.004;  // m: the camera sees the ideal proxy
+constexpr double kSameDepth = 0.004;  // m: a camera sees the ideal proxy
 
 /// Is the straight way from the proxy to the hand in one free space?
 bool is_way_free(const View& view, const Vector3d& proxy, const Vector3d& hip) {
@@ -29,11 +29,18 @@ bool is_way_free(const View& view, const Vector3d& proxy, const Vector3d& hip) {
   return true;
 }
 
-/// Is the hand in free air, in front of all that the camera sees around it?
-bool is_before_all(const View& view, const Picture& picture, const Vector3d& hip) {
+/// Is the hand in free air, in front of all that a camera sees around it?
+bool is_before_all(const View& view, const std::vector<Picture>& pictures, const Vector3d& hip) {
   if (distance_and_normal(view.scene, hip, 0).value < kOutside) return false;
-  const double seen = picture.depth_at(hip, kPixels);
-  return seen > picture.depth_of(hip) + kOutside;
+  return std::ranges::any_of(pictures, [&](const Picture& picture) {
+    return picture.depth_at(hip, kPixels) > picture.depth_of(hip) + kOutside;
+  });
+}
+
+bool is_seen(const std::vector<Picture>& pictures, const Vector3d& at) {
+  return std::ranges::any_of(pictures, [&](const Picture& picture) {
+    return std::abs(picture.depth_of(at) - picture.depth_at(at, 0)) < kSameDepth;
+  });
 }
 
 }  // namespace
@@ -54,21 +61,22 @@ Score& Score::operator+=(const Score& other) {
   return *this;
 }
 
-Score score(const View& view, const Picture& picture, const Hand& hand, const Felt& felt) {
+Score score(const View& view, const std::vector<Picture>& pictures, const Hand& hand,
+            const Felt& felt) {
   Score score;
   score.hands = 1;
   score.microseconds = felt.microseconds;
   score.hidden = hand.hidden ? 1 : 0;
   int run = 0;
   int free_for = kFading;  // ticks since the ideal let go
-  bool shadowed = false;   // the contact has been where the camera sees nothing
-  bool astray = false;     // contact began where the camera sees nothing
+  bool shadowed = false;   // the contact has been where no camera sees anything
+  bool astray = false;     // contact began where no camera sees anything
   for (std::size_t i = 1; i < hand.hip.size(); ++i) {
     const double now = felt.force[i].norm();
     const double ideal = felt.ideal[i].norm();
     free_for = ideal < kHeld ? free_for + 1 : 0;
     const bool forbidden =
-        hand.hidden || (free_for > kFading && is_before_all(view, picture, hand.hip[i]));
+        hand.hidden || (free_for > kFading && is_before_all(view, pictures, hand.hip[i]));
     const bool held = forbidden && now > kHeld;
     run = held && (hand.hidden || is_way_free(view, felt.proxy[i], hand.hip[i])) ? run + 1 : 0;
     if (run >= kHeldTicks) {
@@ -76,8 +84,7 @@ Score score(const View& view, const Picture& picture, const Hand& hand, const Fe
       score.most = std::max(score.most, now);
     }
     if (hand.hidden) continue;
-    const Vector3d& at = felt.ideal_proxy[i];
-    const bool seen = std::abs(picture.depth_of(at) - picture.depth_at(at, 0)) < kSameDepth;
+    const bool seen = is_seen(pictures, felt.ideal_proxy[i]);
     shadowed = ideal > 0 && (shadowed || !seen);
     astray = astray || (ideal > 0 && felt.ideal[i - 1].norm() == 0 && !seen);
     if (astray) continue;

@@ -6,7 +6,7 @@
 #include "common/stage.hpp"
 #include "sim/simulated_camera.hpp"
 
-/// Scenes before one depth camera, the hands that meet them, and what these feel.
+/// Scenes before a depth camera or two, the hands that meet them, and what these feel.
 namespace palpate::eyes {
 
 using bench::kTick;
@@ -18,14 +18,15 @@ inline constexpr double kWarm = 0.5;  ///< s before hands move: filters over tim
 
 /// How what the camera sees becomes a surface.
 enum class Feed {
-  still,   ///< a stream from a camera that stands
-  moving,  ///< a stream from a camera that swings and tells its pose
-  single,  ///< one frame
-  points,  ///< the exact points of one frame with their exact normals, as a cloud
+  still,    ///< a stream from a camera that stands
+  moving,   ///< a stream from a camera that swings and tells its pose
+  single,   ///< one frame
+  points,   ///< the exact points of one frame with their exact normals, as a cloud
+  opposed,  ///< streams of two cameras that stand, across the scene from each other
 };
 
-/// A drawn scene and its camera. World frame: a table or floor is z = 0, the camera is on the side
-/// of negative x and looks at the origin.
+/// A drawn scene and its cameras. World frame: a table or floor is z = 0, the first camera is on
+/// the side of negative x and looks at the origin.
 struct View : bench::Stage {
   /// Draws the camera's place.
   explicit View(std::uint64_t number);
@@ -36,7 +37,10 @@ struct View : bench::Stage {
   void rod(const Vector3d& center, const Vector3d& axis, double radius, double length);
   void ball(const Vector3d& center, double radius);
 
-  SimulatedCameraOptions camera;
+  /// Adds a camera across the scene, with noise of its own.
+  void oppose();
+
+  std::vector<SimulatedCameraOptions> cameras;  ///< at least one
   Feed feed = Feed::still;
 };
 
@@ -56,7 +60,7 @@ void set_noise(const std::string& name, View& view);
 
 /// What the camera sees without noise.
 struct Picture {
-  explicit Picture(const View& view);
+  Picture(const View& view, const SimulatedCameraOptions& of);
 
   /// Depth of the pixel that sees x, and of those beside it (m): the least within `around` pixels;
   /// 0 outside of the image.
@@ -74,7 +78,7 @@ struct Picture {
 struct Hand {
   std::string kind;           ///< slide, poke, aside, behind
   std::vector<Vector3d> hip;  ///< m
-  bool hidden = false;        ///< it goes where the camera sees nothing: nothing may hold it
+  bool hidden = false;        ///< it goes where no camera sees anything: nothing may hold it
 };
 
 /// Draws a hand's path; empty where the scene has no place for it.
@@ -93,7 +97,8 @@ struct Felt {
 /// Counts over hands.
 struct Score {
   double hands = 0;
-  double held = 0;  ///< hands held in free air in front of all that is seen, above 0.5 N for 50 ms
+  double held = 0;  ///< hands held in free air in front of all that a camera sees, above 0.5 N for
+                    ///< 50 ms
   double most = 0;  ///< largest force there, N
   double hidden = 0;           ///< hands that go behind things
   double caught = 0;           ///< of them those that something holds
@@ -108,7 +113,7 @@ struct Score {
   Score& operator+=(const Score& other);
 };
 
-[[nodiscard]] Score score(const View& view, const Picture& picture, const Hand& hand,
+[[nodiscard]] Score score(const View& view, const std::vector<Picture>& pictures, const Hand& hand,
                           const Felt& felt);
 
 }  // namespace palpate::eyes
