@@ -14,6 +14,7 @@ std::vector<Row> all_rows() {
   add_scattered_rows(rows);
   add_worked_rows(rows);
   add_sampled_rows(rows);
+  add_ringed_rows(rows);
   return rows;
 }
 

@@ -16,6 +16,7 @@ void add_seen_rows(std::vector<Row>& rows);       ///< partial
 void add_scattered_rows(std::vector<Row>& rows);  ///< volume, stray
 void add_worked_rows(std::vector<Row>& rows);     ///< worked: reliefs, threads, springs, ...
 void add_sampled_rows(std::vector<Row>& rows);    ///< sampled: doubles, slices, outliers, ...
+void add_ringed_rows(std::vector<Row>& rows);     ///< rings: what a spinning lidar sees
 
 /// All of them, family by family.
 [[nodiscard]] std::vector<Row> all_rows();
