@@ -25,7 +25,6 @@ TEST(CloudFacts, SpacingIsTheSquareGridsOwn) {
   const SpacingFacts facts = measure_spacing(CellGrid(points));
   EXPECT_NEAR(facts.nearest_three, 0.01, 1e-5);
   EXPECT_NEAR(facts.from_area, 0.01, 1e-5);
-  EXPECT_NEAR(facts.tenth, 0.01, 1e-5);
 }
 
 TEST(CloudFacts, ClosedSurfaceHasNoRimAndASheetHasOne) {

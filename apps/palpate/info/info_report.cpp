@@ -87,11 +87,10 @@ void add_surface(Report& report, const InfoReport& info) {
   if (on_a_line(info.loaded.file.cloud.positions)) {
     report.note({"surface", Mark::warning}, kNoSurface);
   }
-  const SpacingFacts& s = info.spacing;
   report.row("spacing",
-             "{spacing_m/nearest_three} to the three nearest, {spacing_m/from_area} from area "
-             "({spacing_m/tenth} to {spacing_m/nine_tenths} in the middle 80 %)",
-             s.nearest_three, s.from_area, s.tenth, s.nine_tenths);
+             "{spacing_m/from_area} from area[{?} of the points that are kept], "
+             "{spacing_m/nearest_three} to the three nearest of all",
+             info.prepared.spacing, info.prepared.voxel > 0, info.spacing.nearest_three);
   report.row("noise", "{noise_m} from a smooth surface", info.prepared.noise);
   report.row("holes", "{rim_share} of the points are at a border or a hole", info.rim);
   add_trust(report, info.prepared);

@@ -4,19 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/geometry/spacing.hpp"
+
 namespace palpate::app {
 
 namespace {
 
 constexpr std::size_t kSample = 20'000;
 constexpr std::size_t kNeighbors = 8;
-
-double at_share(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 }  // namespace
 
@@ -33,8 +28,8 @@ bool on_a_line(std::span<const Eigen::Vector3f> points) {
 SpacingFacts measure_spacing(const CellGrid& grid) {
   const std::size_t stride = grid.size() / kSample + 1;
   std::vector<CellGrid::Neighbor> found;
-  std::vector<double> three;
-  std::vector<double> area;
+  std::vector<float> three;
+  std::vector<float> area;
   for (std::size_t i = 0; i < grid.size(); i += stride) {
     found.clear();
     grid.nearest(grid.points()[i], kNeighbors + 1, found);  // the point itself comes first
@@ -42,14 +37,14 @@ SpacingFacts measure_spacing(const CellGrid& grid) {
     double sum = 0;
     for (std::size_t k = 1; k <= 3; ++k)
       sum += std::sqrt(static_cast<double>(found[k].squared_distance));
-    three.push_back(sum / 3);
+    three.push_back(static_cast<float>(sum / 3));
     if (found.size() <= kNeighbors) continue;
     double squares = 0;
     for (std::size_t k = 1; k <= kNeighbors; ++k)
       squares += static_cast<double>(found[k].squared_distance);
-    area.push_back(std::sqrt(squares / kNeighbors / 1.5));  // exact on a square grid
+    area.push_back(static_cast<float>(std::sqrt(squares / kNeighbors / 1.5)));  // exact on a square grid
   }
-  return {at_share(three, 0.5), at_share(area, 0.5), at_share(area, 0.1), at_share(area, 0.9)};
+  return {median(three), median(area)};
 }
 
 double rim_share(const SurfacePoints& points) {

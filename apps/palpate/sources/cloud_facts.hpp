@@ -16,8 +16,6 @@ namespace palpate::app {
 struct SpacingFacts {
   double nearest_three = 0;  ///< mean distance to the three nearest others
   double from_area = 0;      ///< side of the square that a point has to itself
-  double tenth = 0;          ///< a tenth of the points have a smaller one from area ...
-  double nine_tenths = 0;    ///< ... and a tenth a larger one
 };
 
 [[nodiscard]] SpacingFacts measure_spacing(const CellGrid& grid);
