@@ -11,9 +11,13 @@ namespace palpate {
 /// than those of the next line?
 [[nodiscard]] bool lies_in_lines(const CellGrid& grid);
 
-/// Raises the spacings (m) of points on lines to those of the square grid with equally wide holes,
-/// so that supports bridge the gaps between lines. Points without lines on both sides take the
-/// spacing of the next line. Looks for lines up to 30 times as far apart as points.
-void widen_to_lines(const CellGrid& grid, std::vector<float>& spacings);
+/// The spacings (m, in sorted order) of points on lines: those of the square grid with equally wide
+/// holes, so that supports bridge the gaps between lines; 0 of points on none. Points without lines
+/// on both sides take the spacing of the next line. Looks for lines up to 256 times as far apart as
+/// points.
+[[nodiscard]] std::vector<float> spacings_of_lines(const CellGrid& grid);
+
+/// Raises spacings (m) to those of lines.
+void widen_to_lines(const std::vector<float>& of_lines, std::vector<float>& spacings);
 
 }  // namespace palpate

@@ -76,16 +76,19 @@ SegmentFit fit_beyond_noise(SegmentFitter& fitter, const CellGrid& grid, const E
 /// The fits around one sampled point.
 struct Row {
   Eigen::Vector3f at;
+  double spacing = 0;  // m
   SegmentFit narrow;
   SegmentFit narrowest;
 };
 
-std::vector<Row> fit_windows(const CellGrid& grid, double spacing) {
+std::vector<Row> fit_windows(const CellGrid& grid, std::span<const float> spacings) {
   const std::size_t step = step_for(grid, kSamples);
   std::vector<Row> rows((grid.size() - step / 2 + step - 1) / step);
   detail::parallel_each_with<SegmentFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
-    const Eigen::Vector3f& at = grid.points()[k * step + step / 2];
-    rows[k] = {at, fitter.fit(grid, at, kNarrow.reach * spacing, spacing),
+    const std::size_t i = k * step + step / 2;
+    const Eigen::Vector3f& at = grid.points()[i];
+    const auto spacing = static_cast<double>(spacings[i]);
+    rows[k] = {at, spacing, fitter.fit(grid, at, kNarrow.reach * spacing, spacing),
                fitter.fit(grid, at, kNarrowest.reach * spacing, spacing)};
   });
   return rows;
@@ -107,16 +110,16 @@ double noise_in(const std::vector<Row>& rows, SegmentFit Row::*fit, const Window
 }
 
 /// The noise in narrow windows, m; those that noise fills are widened.
-double narrow_noise(const CellGrid& grid, double spacing) {
-  std::vector<Row> rows = fit_windows(grid, spacing);
+double narrow_noise(const CellGrid& grid, std::span<const float> spacings) {
+  std::vector<Row> rows = fit_windows(grid, spacings);
   const double narrow = noise_in(rows, &Row::narrow, kNarrow);
   const double narrowest = noise_in(rows, &Row::narrowest, kNarrowest);
   if (narrowest > 0 && narrowest < kShape * narrow) return narrowest;
-  const double reach = kNarrow.reach * spacing;
-  if (!fills(narrow, reach)) return narrow;
+  if (!fills(narrow, kNarrow.reach * median(spacings))) return narrow;
   detail::parallel_each_with<SegmentFitter>(rows.size(), 64, [&](std::size_t k, auto& fitter) {
     Row& row = rows[k];
-    row.narrow = fit_beyond_noise(fitter, grid, row.at, reach, spacing, row.narrow);
+    row.narrow = fit_beyond_noise(fitter, grid, row.at, kNarrow.reach * row.spacing, row.spacing,
+                                  row.narrow);
   });
   return noise_in(rows, &Row::narrow, kNarrow);
 }
@@ -163,8 +166,8 @@ double median_of(const std::vector<Item>& all, float Item::*value) {
 
 }  // namespace
 
-Noise measure_noise(const CellGrid& grid, double spacing) {
-  Noise noise{.sigma = narrow_noise(grid, spacing)};
+Noise measure_noise(const CellGrid& grid, double spacing, std::span<const float> spacings) {
+  Noise noise{.sigma = narrow_noise(grid, spacings)};
   if (noise.sigma < kFlatNoise * spacing) return noise;
   std::vector<Widths> all = compare_widths(grid, spacing);
   std::stable_sort(all.begin(), all.end(),

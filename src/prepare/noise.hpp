@@ -15,13 +15,16 @@ namespace palpate {
 /// at least this many sigma.
 inline constexpr double kSigmasInReach = 4;
 
-/// Measures it on a sample of the points. `spacing`: of the points, m.
+/// Measures it on a sample of the points. `spacing`: of the points, m. `spacings`: that narrow
+/// windows are multiples of, at each point, m, in sorted order; on lines how far these are apart,
+/// so that a window holds several.
 ///
 /// Noise that neighbours share (a depth camera's, mostly) is mistaken for shape in narrow windows
 /// and does not average out as fast as its variance suggests. Wide windows measure it, as long as
 /// they see noise and no shape: on the flattest of them the residuals no longer grow with the
 /// window (docs/method.md 5.2).
-[[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing);
+[[nodiscard]] Noise measure_noise(const CellGrid& grid, double spacing,
+                                  std::span<const float> spacings);
 
 /// The noise at each point, in sorted order.
 struct LocalNoise {

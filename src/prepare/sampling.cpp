@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "palpate/geometry/spacing.hpp"
@@ -41,21 +42,31 @@ std::vector<std::uint32_t> distinct_points(const CellGrid& grid) {
 
 namespace {
 
-void measure_spacings(const PrepareOptions& options, Sampling& sampling) {
+/// @return spacings of lines; empty where the cloud is not of lines
+std::vector<float> measure_spacings(const PrepareOptions& options, Sampling& sampling) {
   const CellGrid& grid = sampling.grid;
   CloudFacts& facts = sampling.facts;
+  std::vector<float> of_lines;
   sampling.spacings = local_spacings(grid);
   if (!options.paper && !options.radius) {
     if (!options.facts) facts.in_lines = lies_in_lines(grid);
-    if (facts.in_lines) widen_to_lines(grid, sampling.spacings);
+    if (facts.in_lines) of_lines = spacings_of_lines(grid);
+    widen_to_lines(of_lines, sampling.spacings);
   }
   sampling.spacing = options.facts ? facts.spacing : median(sampling.spacings);
+  return of_lines;
 }
 
 /// Measures the noise of all points where no facts are given.
-void measure_noise_of_all(const PrepareOptions& options, Sampling& sampling) {
+void measure_noise_of_all(const PrepareOptions& options, std::span<const float> of_lines,
+                          Sampling& sampling) {
   if (options.facts || options.paper) return;
-  sampling.facts.noise = measure_noise(sampling.grid, sampling.spacing);
+  // A window that holds one line alone fits it, however noisy it is.
+  std::vector<float> windows(sampling.spacings.size(), static_cast<float>(sampling.spacing));
+  for (std::size_t i = 0; i < of_lines.size(); ++i) {
+    if (of_lines[i] > 0) windows[i] = of_lines[i];
+  }
+  sampling.facts.noise = measure_noise(sampling.grid, sampling.spacing, windows);
 }
 
 bool is_noisy(const CloudFacts& facts) {
@@ -130,10 +141,10 @@ Sampling sample(const Placed& placed, const PrepareOptions& options, Prepared::R
   if (!options.paper) drop_duplicates(less, cloud, sampling);
   report.duplicates = placed.cloud().size() - cloud->size();
   watch.lap(report.seconds_index);
-  measure_spacings(options, sampling);
+  const std::vector<float> of_lines = measure_spacings(options, sampling);
   CloudFacts& facts = sampling.facts;
   if (!options.facts) facts.spacing = sampling.spacing;
-  measure_noise_of_all(options, sampling);
+  measure_noise_of_all(options, of_lines, sampling);
   sampling.voxel = voxel_of(facts, options);
   watch.lap(report.seconds_spacing);
   if (sampling.voxel > 0) thin(options, less, cloud, sampling, report);

@@ -110,7 +110,7 @@ void refine_outliers_off_segments(Surfels& s) {
   if (off.empty()) return;
   const CellGrid grid(positions);
   std::vector<float> spacings = local_spacings(grid);
-  widen_to_lines(grid, spacings);
+  widen_to_lines(spacings_of_lines(grid), spacings);
   const std::vector<std::uint8_t> outliers = find_outliers(grid, spacings, sampling.spacing);
   const double typical_squared = sampling.spacing * sampling.spacing;
   std::vector<CellGrid::Neighbor> nearest;

@@ -36,7 +36,7 @@ CellGrid lines_of(int lines, float ratio, float noise = 0) {
 
 std::vector<float> widened(const CellGrid& grid) {
   std::vector<float> spacings = local_spacings(grid);
-  if (lies_in_lines(grid)) widen_to_lines(grid, spacings);
+  if (lies_in_lines(grid)) widen_to_lines(spacings_of_lines(grid), spacings);
   return spacings;
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "palpate/geometry/spacing.hpp"
+#include "palpate/prepare/prepare.hpp"
 #include "prepare/radii.hpp"
 #include "prepare/segment_fit.hpp"
 #include "prepare/weights.hpp"
@@ -109,14 +110,19 @@ TEST(SegmentFit, StaysFiniteOnDegeneratePoints) {
   EXPECT_EQ(fitter.fit(CellGrid(line), Vector3f(9, 9, 9), 0.2, 0.01).points, 0u);
 }
 
+Noise noise_of(const std::vector<Vector3f>& points, double spacing) {
+  const std::vector<float> spacings(points.size(), static_cast<float>(spacing));
+  return measure_noise(CellGrid(points), spacing, spacings);
+}
+
 TEST(Noise, IsItsDeviationWhereNeighboursErrIndependently) {
-  const Noise noise = measure_noise(CellGrid(sheet(150, 0.0008)), 0.002);
+  const Noise noise = noise_of(sheet(150, 0.0008), 0.002);
   EXPECT_NEAR(noise.sigma, 0.0008, 5e-5);
   EXPECT_EQ(noise.excess, 1);
 }
 
 TEST(Noise, IsKnownToBeSharedWhereNeighboursErrTogether) {
-  const Noise noise = measure_noise(CellGrid(sheet(150, 0.0008, 2)), 0.002);
+  const Noise noise = noise_of(sheet(150, 0.0008, 2), 0.002);
   EXPECT_NEAR(noise.sigma, 0.0008, 0.00012);  // narrow windows alone see half of it
   EXPECT_GT(noise.excess, 2.5);
 }
@@ -125,16 +131,39 @@ TEST(Noise, IsNotSeenInAShape) {
   // Waves of 60 mm: far from a quadratic in wide windows, close to one in narrow ones.
   std::vector<Vector3f> waves = sheet(150, 0);
   for (Vector3f& p : waves) p.z() = 0.004f * std::sin(105 * p.x()) * std::cos(105 * p.y());
-  const Noise noise = measure_noise(CellGrid(waves), 0.002);
+  const Noise noise = noise_of(waves, 0.002);
   EXPECT_EQ(noise.excess, 1);
   EXPECT_LT(noise.sigma, 5e-5);
 }
 
 TEST(Noise, IsMeasuredWhereItFillsALayerManySpacingsThick) {
   for (const double spacings : {1.5, 3., 6.}) {
-    const CellGrid grid(sheet(150, spacings * kSpacing));
-    const double spacing = median(local_spacings(grid));
-    EXPECT_NEAR(measure_noise(grid, spacing).sigma, spacings * kSpacing, 0.1 * spacings * kSpacing);
+    const std::vector<Vector3f> layer = sheet(150, spacings * kSpacing);
+    const double spacing = median(local_spacings(CellGrid(layer)));
+    EXPECT_NEAR(noise_of(layer, spacing).sigma, spacings * kSpacing, 0.1 * spacings * kSpacing);
+  }
+}
+
+// The rings of a lidar on a road: the farther away, the wider apart. Those of one ring alone fit
+// the plane that holds it and its noise.
+TEST(Noise, IsMeasuredFromRingToRing) {
+  for (const double sigma : {0.002, 0.01, 0.02}) {
+    for (const double step : {0.005, 0.01, 0.02}) {
+      std::mt19937 engine(7);
+      std::normal_distribution<double> normal(0, sigma);
+      PointCloud cloud;
+      for (double elevation = -0.4; elevation < -0.06; elevation += step) {
+        for (double azimuth = -0.7; azimuth < 0.7; azimuth += 0.003) {
+          const double range = 1.7 / std::tan(-elevation);
+          cloud.positions.push_back(
+              Eigen::Vector3d(range * std::cos(azimuth), range * std::sin(azimuth), normal(engine))
+                  .cast<float>());
+        }
+      }
+      const double measured = prepare(cloud).report.noise / sigma;
+      EXPECT_GT(measured, 0.5) << sigma << ' ' << step;
+      EXPECT_LT(measured, 2) << sigma << ' ' << step;
+    }
   }
 }
 
