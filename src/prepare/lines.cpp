@@ -18,7 +18,8 @@ namespace {
 
 // What separates lines from surfaces; all are judgement (docs/preparation.md, Spacing).
 constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
-constexpr int kLineWidenings = 7;  // reaches tried, each twice the last: lines up to 256 points away
+constexpr int kLineWidenings =
+    7;  // reaches tried, each twice the last: lines up to 256 points away
 constexpr std::size_t kEnough = 2048;    // points in reach: not sparse any more
 constexpr std::size_t kOnLine = 5;       // nearest, the point itself among them, that show a line
 constexpr int kLineScales = 4;           // 4, 8, 16, 32 others: noise hides a line among few
@@ -26,9 +27,9 @@ constexpr float kAside = 0.7f;           // cosine: 45 degrees to a line and mor
 constexpr std::size_t kAlongLine = 16;   // nearest, over which the gap to the next line is averaged
 constexpr float kSameDirection = 0.99f;  // cosine: of two points so alike the nearer one counts
 constexpr float kThin = 0.2f;            // deviation of a line across, against along
-// Share of the sampled points on lines: a cloud of lines. Surfaces have 0.05 and less (measured: 480
-// drawn clouds, 28 real ones), vertices of marching cubes 0.12, scans of rooms and roads 0.2 and
-// more, as most drawn ones.
+// Share of the sampled points on lines: a cloud of lines. Surfaces have 0.05 and less (measured:
+// 480 drawn clouds, 28 real ones), vertices of marching cubes 0.12, scans of rooms and roads 0.2
+// and more, as most drawn ones.
 constexpr float kLines = 0.15f;
 
 /// The line that a point and the nearest positions are on.
@@ -54,7 +55,9 @@ float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
   std::ranges::sort(aside, {}, [](const auto& a) { return a.first; });
   std::vector<Eigen::Vector3f> directions;  // a dense line beside this one has many alike
   for (const auto& [length, direction] : aside) {
-    const auto cosine = [&](const Eigen::Vector3f& other) { return direction.dot(other); };
+    const auto cosine = [&here = direction](const Eigen::Vector3f& other) {
+      return here.dot(other);
+    };
     if (std::ranges::any_of(
             directions, [](float c) { return c < kOpposite; }, cosine)) {
       return length;
