@@ -43,12 +43,39 @@ std::vector<float> widened(const CellGrid& grid) {
 // A square grid's holes reach s / sqrt(2) from its points, those between lines half the way from
 // one point to the opposite one.
 TEST(Lines, HaveTheSpacingOfTheSquareGridWithTheSameHoles) {
-  for (const float ratio : {5.f, 6.f, 10.f}) {
+  for (const float ratio : {5.f, 6.f, 10.f, 80.f}) {
     const std::vector<float> spacings = widened(lines_of(25, ratio));
     const float expected = kGap * std::sqrt((1 + 1 / (ratio * ratio)) / 2);
     EXPECT_NEAR(median(spacings), expected, 0.1 * expected) << ratio;
     EXPECT_LT(*std::ranges::max_element(spacings), 1.5f * expected) << ratio;
   }
+}
+
+// Of what a lidar sees near by, rings are as near one another as their points; far away they are
+// not.
+TEST(Lines, AreWidenedInACloudThatIsMostlyASurface) {
+  const CellGrid lines = lines_of(25, 10);
+  std::vector<Vector3f> points(lines.points().begin(), lines.points().end());
+  const auto on_lines = points.size();
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> off(-0.3f, 0.3f);
+  constexpr float kStep = kGap / 10;
+  for (int i = 0; i < 140; ++i) {
+    for (int j = 0; j < 140; ++j) {
+      const Vector3f at(static_cast<float>(i) + off(random), static_cast<float>(j) + off(random),
+                        0);
+      points.emplace_back(Vector3f(100 * kGap, 0, 0) + kStep * at);
+    }
+  }
+  const CellGrid grid(points);
+  const std::vector<float> spacings = widened(grid);
+  std::vector<float> of_lines;
+  std::vector<float> of_surface;
+  for (std::size_t i = 0; i < spacings.size(); ++i) {
+    (grid.order()[i] < on_lines ? of_lines : of_surface).push_back(spacings[i]);
+  }
+  EXPECT_NEAR(median(of_lines), kGap * std::sqrt(0.505f), 0.1 * kGap);
+  EXPECT_NEAR(median(of_surface), kStep, 0.1 * kStep);
 }
 
 TEST(Lines, AreFoundThoughNoiseHidesThemAmongTheNearest) {

@@ -147,13 +147,13 @@ TEST(Noise, IsMeasuredWhereItFillsALayerManySpacingsThick) {
 // The rings of a lidar on a road: the farther away, the wider apart. Those of one ring alone fit
 // the plane that holds it and its noise.
 TEST(Noise, IsMeasuredFromRingToRing) {
-  for (const double sigma : {0.002, 0.01, 0.02}) {
+  for (const double sigma : {0.002, 0.02}) {
     for (const double step : {0.005, 0.01, 0.02}) {
       std::mt19937 engine(7);
       std::normal_distribution<double> normal(0, sigma);
       PointCloud cloud;
       for (double elevation = -0.4; elevation < -0.06; elevation += step) {
-        for (double azimuth = -0.7; azimuth < 0.7; azimuth += 0.003) {
+        for (double azimuth = -0.4; azimuth < 0.4; azimuth += 0.004) {
           const double range = 1.7 / std::tan(-elevation);
           cloud.positions.push_back(
               Eigen::Vector3d(range * std::cos(azimuth), range * std::sin(azimuth), normal(engine))
