@@ -38,21 +38,24 @@ class Released {
 /// Ticks or samples between two looks for signals; judgement.
 inline constexpr std::size_t kUninterrupted = 1 << 16;
 
-/// Lets Python's handlers of signals run, in the main thread: Ctrl-C throws KeyboardInterrupt. For
-/// a thread that is Released.
+/// The thread that imported the module, as the main one does: handlers of signals run in no other.
+inline const std::thread::id kMainThread = std::this_thread::get_id();
+
+/// Lets Python's handlers of signals run: Ctrl-C throws KeyboardInterrupt. For a thread that is
+/// Released.
 inline void hear_signals() {
   stay_if_ended();
+  if (std::this_thread::get_id() != kMainThread) return;
   const pybind11::gil_scoped_acquire held;
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }
 
-/// Lets long work hear signals, which calls this with the share that is done. Threads that are none
-/// of Python's do nothing by it.
+/// Lets long work hear signals, which calls this with the share that is done.
 [[nodiscard]] inline std::function<void(double share)> hearing() {
   using Clock = std::chrono::steady_clock;
   static constexpr auto kPatience = std::chrono::milliseconds(100);  // no wait is felt (judgement)
   return [next = Clock::now() + kPatience](double /*share*/) mutable {
-    if (Clock::now() < next || PyGILState_GetThisThreadState() == nullptr) return;
+    if (std::this_thread::get_id() != kMainThread || Clock::now() < next) return;
     next = Clock::now() + kPatience;
     hear_signals();
   };

@@ -121,14 +121,14 @@ void CellGrid::divide(std::size_t cell, std::span<const std::uint32_t> codes) {
 }
 
 void CellGrid::within(const Eigen::Vector3f& center, float radius,
-                      std::vector<std::uint32_t>& found) const {
+                      std::vector<std::uint32_t>& found, std::size_t most) const {
   if (cells_.empty() || !(radius >= 0)) return;
   const float squared_radius = radius * radius;
   std::array<std::uint32_t, kMaxStack> stack;
   std::size_t open = 0;
   stack[open++] = 0;
   std::size_t count = found.size();
-  while (open > 0) {
+  while (open > 0 && count < most) {
     const Cell& cell = cells_[stack[--open]];
     const bool inside = detail::largest_squared_distance(cell, center) <= squared_radius;
     for (std::uint32_t c = inside ? 0 : cell.children; c-- > 0;) {
@@ -136,8 +136,10 @@ void CellGrid::within(const Eigen::Vector3f& center, float radius,
       open += detail::squared_distance(cells_[stack[open]], center) <= squared_radius ? 1 : 0;
     }
     if (!inside && cell.children != 0) continue;
-    if (count + cell.size() > found.size()) found.resize(2 * (count + cell.size()));
-    for (std::uint32_t i = cell.begin; i < cell.end; ++i) {  // no branch: hits are random
+    const auto size = static_cast<std::uint32_t>(
+        inside ? std::min<std::size_t>(cell.size(), most - count) : cell.size());
+    if (count + size > found.size()) found.resize(2 * (count + size));
+    for (std::uint32_t i = cell.begin; i < cell.begin + size; ++i) {  // no branch: hits are random
       found[count] = i;
       count += inside || detail::squared_distance(points_[i], center) <= squared_radius ? 1 : 0;
     }

@@ -200,7 +200,6 @@ std::vector<Piece> Blocks::prepare_all(const detail::Progress& progress) const {
   Stopwatch watch;
   std::vector<Piece> pieces(size());
   SharedProgress shared(progress, cloud_.size());
-  // What a body throws would end other blocks in the middle of their loops, and they would go on.
   detail::parallel_each(pieces.size(), 1, [&](std::size_t k) {
     shared.run(division_.points(k), [&](const detail::Progress& of_block) {
       // A thread that waits for parts of this block is not to begin another one.

@@ -20,6 +20,8 @@ class SharedProgress {
       : progress_(progress), points_(static_cast<double>(points)) {}
 
   /// Prepares a block of so many points: calls work(progress of the block), unless all has ended.
+  /// What that throws stays here until end(): in a parallel loop it would leave other blocks in
+  /// their middle.
   template <class Work>
   void run(std::size_t points, const Work& work) {
     double told = 0;
@@ -33,7 +35,7 @@ class SharedProgress {
       progress(1);
     } catch (...) {
       const std::lock_guard lock(mutex_);
-      if (!ended_.exchange(true)) error_ = std::current_exception();
+      end_by_error();
     }
   }
 
@@ -50,7 +52,18 @@ class SharedProgress {
     if (ended_) throw Ended();
     done_ += points;
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock) detail::tell(progress_, std::min(1., done_ / points_));
+    if (!lock || ended_) return;
+    try {
+      detail::tell(progress_, std::min(1., done_ / points_));
+    } catch (...) {
+      end_by_error();  // before another thread can lock, and tell once more
+      throw;
+    }
+  }
+
+  /// With the lock, in a handler.
+  void end_by_error() {
+    if (!ended_.exchange(true)) error_ = std::current_exception();
   }
 
   const detail::Progress& progress_;

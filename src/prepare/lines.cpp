@@ -16,7 +16,7 @@ namespace palpate {
 
 namespace {
 
-// What separates lines from surfaces; all are judgement (docs/preparation.md, Spacing).
+// What separates lines from surfaces; judgement but for kLines (docs/preparation.md, Spacing).
 constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
 constexpr int kLineWidenings =
     7;  // reaches tried, each twice the last: lines up to 256 points away
@@ -28,8 +28,8 @@ constexpr std::size_t kAlongLine = 16;   // nearest, over which the gap to the n
 constexpr float kSameDirection = 0.99f;  // cosine: of two points so alike the nearer one counts
 constexpr float kThin = 0.2f;            // deviation of a line across, against along
 // Share of the sampled points on lines: a cloud of lines. Surfaces have 0.05 and less (measured:
-// 480 drawn clouds, 28 real ones), vertices of marching cubes 0.12, scans of rooms and roads 0.2
-// and more, as most drawn ones.
+// 480 drawn clouds, 30 real ones), vertices of marching cubes 0.12, scans of rooms and roads 0.2
+// and more.
 constexpr float kLines = 0.15f;
 
 /// The line that a point and the nearest positions are on.
@@ -55,17 +55,13 @@ float gap_among(const CellGrid& grid, std::uint32_t i, const Line& line,
   std::ranges::sort(aside, {}, [](const auto& a) { return a.first; });
   std::vector<Eigen::Vector3f> directions;  // a dense line beside this one has many alike
   for (const auto& [length, direction] : aside) {
-    const auto cosine = [&here = direction](const Eigen::Vector3f& other) {
-      return here.dot(other);
-    };
-    if (std::ranges::any_of(
-            directions, [](float c) { return c < kOpposite; }, cosine)) {
-      return length;
+    bool alike = false;
+    for (const Eigen::Vector3f& other : directions) {
+      const float cosine = direction.dot(other);
+      if (cosine < kOpposite) return length;
+      alike = alike || cosine > kSameDirection;
     }
-    if (std::ranges::none_of(
-            directions, [](float c) { return c > kSameDirection; }, cosine)) {
-      directions.push_back(direction);
-    }
+    if (!alike) directions.push_back(direction);
   }
   return 0;
 }
@@ -83,7 +79,7 @@ float search_wider(const CellGrid& grid, std::uint32_t i, float reach,
                    std::vector<std::uint32_t>& near, const Find& find) {
   for (int k = 0; k < kLineWidenings; ++k, reach *= 2) {
     near.clear();
-    grid.within(grid.points()[i], reach, near);
+    grid.within(grid.points()[i], reach, near, kEnough + 1);
     if (near.size() > kEnough) break;
     if (const float found = find(reach); found > 0) return found;
   }
@@ -133,7 +129,7 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return search_wider(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
-/// About a thousand points, spread over the cloud. Clouds of fewer than 100 points decide nothing:
+/// About 500 points, spread over the cloud. Clouds of fewer than 100 points decide nothing:
 /// none.
 std::vector<std::uint32_t> samples_of(const CellGrid& grid) {
   constexpr std::size_t kSamples = 500;  // points, about: a share of 0.05 errs by 0.01 (derived)

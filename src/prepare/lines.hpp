@@ -14,7 +14,7 @@ namespace palpate {
 /// The spacings (m, in sorted order) of points on lines: those of the square grid with equally wide
 /// holes, so that supports bridge the gaps between lines; 0 of points on none. Points without lines
 /// on both sides take the spacing of the next line. Looks for lines up to 256 times as far apart as
-/// points.
+/// points, and farther where noise hides how near these are.
 [[nodiscard]] std::vector<float> spacings_of_lines(const CellGrid& grid);
 
 /// Raises spacings (m) to those of lines.

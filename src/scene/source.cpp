@@ -65,7 +65,9 @@ Source::Source(std::string name, const SourceOptions& options)
   inside_->pose = options.T_world_sensor;
   check_factor(inside_->name, "soft.stiffness_factor", options.soft.stiffness_factor);
   check_factor(inside_->name, "soft.friction_factor", options.soft.friction_factor);
-  named(inside_->name, [&] { inside_->streaming = make_streaming(options); });
+  SourceOptions lasting = options;
+  lasting.prepare.progress = {};  // who adds a source waits for its first cloud alone
+  named(inside_->name, [&] { inside_->streaming = make_streaming(lasting); });
 }
 
 Source::~Source() = default;
@@ -96,7 +98,7 @@ void Source::set(const PointCloud& cloud) {
   const SourceOptions wanted = options();
   {
     const std::lock_guard lock(inside_->mutex);
-    inside_->options.prepare.progress = {};  // who adds a source waits for its first cloud alone
+    inside_->options.prepare.progress = {};  // as the constructor does for what is pushed
   }
   if (set_as_frame(*this, cloud)) return;
   Prepared prepared = named(inside_->name, [&] { return prepare(cloud, wanted.prepare, pose()); });

@@ -51,8 +51,7 @@ TEST(Lines, HaveTheSpacingOfTheSquareGridWithTheSameHoles) {
   }
 }
 
-// Of what a lidar sees near by, rings are as near one another as their points; far away they are
-// not.
+// Rings near the lidar are as near one another as their points; far away they are not.
 TEST(Lines, AreWidenedInACloudThatIsMostlyASurface) {
   const CellGrid lines = lines_of(25, 10);
   std::vector<Vector3f> points(lines.points().begin(), lines.points().end());

@@ -128,24 +128,30 @@ class Interrupted(unittest.TestCase):
     """Ctrl-C ends long work in the middle, and the interpreter goes on."""
 
     def interrupts(self, work):
-        """Sends the signal once `work` has begun, and expects that it does not come to its end."""
-        begun, ended = threading.Event(), False
+        """Sends a signal until `work` ends, and expects that its handler runs twice in the middle: what is heard at the
+        end alone is heard once."""
+        heard, over = [], threading.Event()
 
-        def interrupt():
-            begun.wait()
-            time.sleep(0.05)
-            os.kill(os.getpid(), signal.SIGINT)
+        def handler(number, frame):
+            heard.append(number)
+            if len(heard) > 1:
+                raise KeyboardInterrupt
 
-        sender = threading.Thread(target=interrupt)
+        def send():
+            while not over.wait(0.02):
+                os.kill(os.getpid(), signal.SIGINT)
+
+        before = signal.signal(signal.SIGINT, handler)
+        sender = threading.Thread(target=send)
         sender.start()
-        with self.assertRaises(KeyboardInterrupt):
-            begun.set()
-            work()
-            ended = True
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                work()
+                over.set()
+        finally:
+            over.set()
             sender.join()
-            time.sleep(1)
-        sender.join()
-        self.assertFalse(ended)
+            signal.signal(signal.SIGINT, before)
 
     def test_preparing_and_adding(self):
         cloud = pp.synthetic_cloud("sphere", spacing=5e-4)

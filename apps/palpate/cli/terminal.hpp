@@ -70,7 +70,7 @@ class Progress {
   /// `done`: 0 to 1.
   void update(double done);
 
-  /// Calls update(); this outlives it.
+  /// Calls update(); this has to outlive it.
   [[nodiscard]] std::function<void(double)> updater() {
     return [this](double done) { update(done); };
   }

@@ -88,7 +88,7 @@ void add_surface(Report& report, const InfoReport& info) {
     report.note({"surface", Mark::warning}, kNoSurface);
   }
   report.row("spacing",
-             "{spacing_m/from_area} from area[{?} of the points that are kept], "
+             "{spacing_m/from_area} from area or lines[{?} of the points that are kept], "
              "{spacing_m/nearest_three} to the three nearest of all",
              info.prepared.spacing, info.prepared.voxel > 0, info.spacing.nearest_three);
   report.row("noise", "{noise_m} from a smooth surface", info.prepared.noise);

@@ -42,7 +42,8 @@ SpacingFacts measure_spacing(const CellGrid& grid) {
     double squares = 0;
     for (std::size_t k = 1; k <= kNeighbors; ++k)
       squares += static_cast<double>(found[k].squared_distance);
-    area.push_back(static_cast<float>(std::sqrt(squares / kNeighbors / 1.5)));  // exact on a square grid
+    const double square = squares / kNeighbors / 1.5;  // exact on a square grid
+    area.push_back(static_cast<float>(std::sqrt(square)));
   }
   return {median(three), median(area)};
 }

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "apps/palpate/cli/terminal.hpp"
 #include "apps/palpate/sources/large_cloud.hpp"
 #include "apps/palpate/sources/load.hpp"
+#include "apps/palpate/sources/preparing.hpp"
 #include "palpate/base/error.hpp"
 #include "palpate/contact/proxy.hpp"
 #include "palpate/depth/depth_frame.hpp"
@@ -127,11 +129,9 @@ void add_cloud(Scene& scene, const LoadOptions& options, std::optional<LoadedClo
   const auto cloud = std::make_shared<const PointCloud>(std::move(loaded.file.cloud));
   SourceOptions told = plan.options;
   if (told.prepare.radius) check_radius(loaded.argument, told.prepare, CellGrid(cloud->positions));
-  Progress progress(
-      fmt::format("preparing {} ({} points)", loaded.argument.name, grouped(cloud->size())));
-  const auto start = WallClock::now();
   const bool large = options.on_demand && OnDemand::suits(*cloud, plan.options.prepare);
-  told.prepare.progress = progress.updater();
+  const Preparing preparing(loaded.argument.name, *cloud, large, told.prepare);
+  const auto start = WallClock::now();
   const Source& source =
       large ? add_on_demand(scene, cloud, result) : scene.add(loaded.argument.name, *cloud, told);
   result.plan.reading.progress = {};  // nobody waits for it any more

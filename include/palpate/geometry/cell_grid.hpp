@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -78,8 +79,10 @@ class CellGrid {
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
   /// Appends the sorted indices of all points with |p - center| <= radius to `found`, in rising
-  /// order. Allocates only when `found` has to grow.
-  void within(const Eigen::Vector3f& center, float radius, std::vector<std::uint32_t>& found) const;
+  /// order. Allocates only when `found` has to grow. Ends where `found` holds `most`, or a few
+  /// more.
+  void within(const Eigen::Vector3f& center, float radius, std::vector<std::uint32_t>& found,
+              std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   /// Replaces `found` by the min(k, size()) nearest points to `center`, nearest first; ties by
   /// sorted index. Allocates only when `found` has to grow.

@@ -44,8 +44,9 @@ struct PrepareOptions {
   bool paper = false;                    ///< the paper's s (mean of k = 3 neighbours), R = 2.5 s
   Kernel kernel = Kernel::wyvill;        ///< that the density weights are made for
   std::optional<CloudFacts> facts = {};  ///< of the whole that the cloud is a part of
-  /// Called with the share of the work that is done, 0 to 1, now and then: by whichever thread has
-  /// come so far, one at a time. What it throws ends the preparation, and prepare() throws it.
+  /// Called with the share of the work that is done, 0 to 1, now and then, not always to the end:
+  /// by whichever thread has come so far, one at a time. What it throws ends the preparation, and
+  /// prepare() throws it. A Source calls it for its first cloud alone.
   std::function<void(double share)> progress = {};
   /// Names of refinements that are left out, for benches that measure what each is worth: outliers,
   /// gaps, segments, outliers_off_segments, second_planes.
