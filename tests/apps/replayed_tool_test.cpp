@@ -48,6 +48,7 @@ TEST(ReplayedTool, OfAMeshNeedsNoFileOfIt) {
 }
 
 TEST(ReplayedTool, OfACameraInSimulatedTime) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   const Json report = record_tool_and_replay(
       shell, "camera:simulated --simulated-time --tool gripper:10x20x60 --duration 1.5");

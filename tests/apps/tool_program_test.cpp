@@ -9,6 +9,7 @@
 #include "apps/palpate/cli/output.hpp"
 #include "apps/program.hpp"
 #include "apps/setup_parsed.hpp"
+#include "support/effort.hpp"
 #include "support/mesh_files.hpp"
 
 namespace palpate::app {
@@ -117,6 +118,7 @@ TEST(ToolProgram, ABallFeelsTheTextureOfAPlane) {
 }
 
 TEST(ToolProgram, SameInputTwiceGivesTheSameLogBitForBit) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   const std::string arguments =
       "touch camera:simulated --simulated-time --tool capsule:60x4 --turn-stiffness 0.2 "
@@ -216,6 +218,7 @@ TEST(ToolProgram, InfoComparesSamplesWithACloudAndItsAdviceWorks) {
 }
 
 TEST(ToolProgram, ATooSmallSpacingIsNamedAndItsAdviceWorks) {
+  if (test::is_slow_build()) GTEST_SKIP() << test::kSlowBuild;
   Shell shell;
   shell.write("part.stl", test::as_stl(test::box_mesh(Eigen::Vector3d(10, 15, 5))));
   for (const char* tool : {"mesh:part.stl", "box:20x30x10", "gripper:6x12x30", "ball:30"}) {
