@@ -134,7 +134,7 @@ class Interrupted(unittest.TestCase):
 
         def handler(number, frame):
             heard.append(number)
-            if len(heard) > 1:
+            if len(heard) == 2:
                 raise KeyboardInterrupt
 
         def send():
@@ -154,7 +154,7 @@ class Interrupted(unittest.TestCase):
             signal.signal(signal.SIGINT, before)
 
     def test_preparing_and_adding(self):
-        cloud = pp.synthetic_cloud("sphere", spacing=5e-4)
+        cloud = pp.synthetic_cloud("sphere", spacing=3.5e-4)  # a second's work
         self.interrupts(lambda: pp.prepare(cloud))
         scene = pp.Scene()
         self.interrupts(lambda: scene.add("ball", cloud))
