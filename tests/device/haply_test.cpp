@@ -131,10 +131,14 @@ TEST_F(Haply, ServiceThatIsSilentIsToldToTakeTheForceAway) {
   const std::size_t before = service_.forces().size();
   service_.set(Fault::silent);
   EXPECT_THROW((void)link->exchange(kForce), Error);
-  const std::vector<Vector3d> forces = service_.forces();
-  ASSERT_GE(forces.size(), before + 2);  // one more where the first answer came late
-  EXPECT_EQ(forces[forces.size() - 2], kForce);
-  EXPECT_EQ(forces.back().norm(), 0);
+  std::vector<Vector3d> forces = service_.forces();
+  // A first answer that comes late meets a zero, which the service may count after `before`.
+  if (forces.at(before).norm() == 0) {
+    forces.erase(forces.begin() + static_cast<std::ptrdiff_t>(before));
+  }
+  ASSERT_EQ(forces.size(), before + 2);
+  EXPECT_EQ(forces[before], kForce);
+  EXPECT_EQ(forces[before + 1].norm(), 0);
 }
 
 TEST_F(Haply, AnswerThatComesLateMeetsNoForce) {
