@@ -1,4 +1,4 @@
-// Tells those who wait how far some work is.
+// Reports how far some work is.
 #pragma once
 
 #include <functional>

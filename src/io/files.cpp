@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <new>
 
+#include "base/progress.hpp"
 #include "geometry/inner_box.hpp"
 #include "io/cloud_builder.hpp"
 #include "io/depth_image.hpp"
@@ -118,7 +119,7 @@ CloudFile read_input(const Input& given) {
     CloudFile file = kind == FileKind::gz ? read_packed(input) : read_kind(input, kind);
     fit_length(input, file);
     file.format += words_of(file.unit);  // none where a length is given
-    if (input.options.progress) input.options.progress(1.0);
+    detail::tell(input.options.progress, 1);
     return file;
   } catch (const std::bad_alloc&) {
     fail(input, "not enough memory for its points",
@@ -130,7 +131,7 @@ CloudFile read_potree(const Input& input) {
   check_options(input);
   CloudFile file = read_whole(*open_potree(input.name, input.options), input);
   fit_length(input, file);
-  if (input.options.progress) input.options.progress(1.0);
+  detail::tell(input.options.progress, 1);
   return file;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/progress.hpp"
 #include "palpate/io/files.hpp"
 
 namespace palpate::io {
@@ -86,9 +87,8 @@ class Progress {
 
   void report(std::size_t done) {
     next_ = done + stride_;
-    if (options_.progress) {
-      options_.progress(std::min(1.0, static_cast<double>(done) / static_cast<double>(total_)));
-    }
+    detail::tell(options_.progress,
+                 std::min(1.0, static_cast<double>(done) / static_cast<double>(total_)));
   }
 
   const ReadOptions& options_;

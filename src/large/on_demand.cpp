@@ -34,10 +34,10 @@ constexpr double kAppear = 0.1;  // s in which a block's presence rises; judgeme
 // s until what could not be read is tried again: a disk or a network may be back; judgement.
 constexpr double kRetry = 10;
 
-}  // namespace
-
 /// Thrown by a preparation that was stopped.
 struct Stopped {};
+
+}  // namespace
 
 // What was shown last.
 struct ShownLast {

@@ -1,4 +1,4 @@
-// Tells how far work is that threads do side by side, and ends all of it together.
+// Reports how far work is that threads do side by side, and ends all of it together.
 #pragma once
 
 #include <algorithm>

@@ -17,14 +17,13 @@ namespace palpate {
 namespace {
 
 // What separates lines from surfaces; judgement but for kLines (docs/preparation.md, Spacing).
-constexpr float kOpposite = -0.5f;  // cosine between two that lie on opposite sides
-constexpr int kLineWidenings =
-    7;  // reaches tried, each twice the last: lines up to 256 points away
-constexpr std::size_t kEnough = 2048;    // points in reach: not sparse any more
-constexpr std::size_t kOnLine = 5;       // nearest, the point itself among them, that show a line
-constexpr int kLineScales = 4;           // 4, 8, 16, 32 others: noise hides a line among few
-constexpr float kAside = 0.7f;           // cosine: 45 degrees to a line and more are beside it
-constexpr std::size_t kAlongLine = 16;   // nearest, over which the gap to the next line is averaged
+constexpr float kOpposite = -0.5f;      // cosine between two that lie on opposite sides
+constexpr int kLineWidenings = 7;       // reaches, each twice the last: lines up to 256 points away
+constexpr std::size_t kEnough = 2048;   // points in reach: not sparse any more
+constexpr std::size_t kOnLine = 5;      // nearest, the point itself among them, that show a line
+constexpr int kLineScales = 4;          // 4, 8, 16, 32 others: noise hides a line among few
+constexpr float kAside = 0.7f;          // cosine: 45 degrees to a line and more are beside it
+constexpr std::size_t kAlongLine = 16;  // nearest, over which the gap to the next line is averaged
 constexpr float kSameDirection = 0.99f;  // cosine: of two points so alike the nearer one counts
 constexpr float kThin = 0.2f;            // deviation of a line across, against along
 // Share of the sampled points on lines: a cloud of lines. Surfaces have 0.05 and less (measured:
@@ -129,8 +128,8 @@ float gap_across(const CellGrid& grid, std::uint32_t i, const Line& line, float 
   return search_wider(grid, i, reach, near, [&](float) { return gap_among(grid, i, line, near); });
 }
 
-/// About 500 points, spread over the cloud. Clouds of fewer than 100 points decide nothing:
-/// none.
+/// About 500 points, spread over the cloud. None of a cloud of fewer than 100, which
+/// decides nothing.
 std::vector<std::uint32_t> samples_of(const CellGrid& grid) {
   constexpr std::size_t kSamples = 500;  // points, about: a share of 0.05 errs by 0.01 (derived)
   constexpr std::size_t kFewest = 100;   // points of a cloud; judgement

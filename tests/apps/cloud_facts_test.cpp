@@ -22,9 +22,8 @@ TEST(CloudFacts, SpacingIsTheSquareGridsOwn) {
     points.emplace_back(0.01f * static_cast<float>(i % 100), 0.01f * static_cast<float>(i / 100),
                         0.f);
   }
-  const SpacingFacts facts = measure_spacing(CellGrid(points));
-  EXPECT_NEAR(facts.nearest_three, 0.01, 1e-5);
-  EXPECT_NEAR(facts.from_area, 0.01, 1e-5);
+  EXPECT_NEAR(nearest_three(CellGrid(points)), 0.01, 1e-5);
+  EXPECT_NEAR(spacing_from_area(CellGrid(points)), 0.01, 1e-5);
 }
 
 TEST(CloudFacts, ClosedSurfaceHasNoRimAndASheetHasOne) {
@@ -37,7 +36,7 @@ TEST(CloudFacts, ClosedSurfaceHasNoRimAndASheetHasOne) {
 TEST(CloudFacts, OnePointIsAllRim) {
   PointCloud cloud;
   cloud.positions = {{0, 0, 0}};
-  EXPECT_EQ(measure_spacing(CellGrid(cloud.positions)).from_area, 0);
+  EXPECT_EQ(spacing_from_area(CellGrid(cloud.positions)), 0);
   EXPECT_EQ(rim_share(prepare(cloud).points), 1);
 }
 

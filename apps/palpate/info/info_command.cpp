@@ -184,7 +184,7 @@ void study(InfoReport& report, TrustPicture* picture) {
   const PointCloud& cloud = report.loaded.file.cloud;
   const std::string& name = report.loaded.argument.name;
   Progress progress("studying " + name);
-  report.spacing = measure_spacing(CellGrid(cloud.positions));
+  report.nearest_three = nearest_three(CellGrid(cloud.positions));
   const Prepared prepared = prepare(cloud, {.progress = progress.updater()});
   report.prepared = prepared.report;
   report.rim = rim_share(prepared.points);

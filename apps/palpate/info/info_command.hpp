@@ -68,7 +68,7 @@ struct InfoReport {
   Source::State image;       ///< felt as that frame; depth 0: it is not
   double image_radius = 0;   ///< R then, median, m
 
-  SpacingFacts spacing;
+  double nearest_three = 0;   ///< distance of points to their three nearest, m
   Prepared::Report prepared;  ///< with the defaults: the advice
   double rim = 0;             ///< share of points at a border or a hole
 };

@@ -90,7 +90,7 @@ void add_surface(Report& report, const InfoReport& info) {
   report.row("spacing",
              "{spacing_m/from_area} from area or lines[{?} of the points that are kept], "
              "{spacing_m/nearest_three} to the three nearest of all",
-             info.prepared.spacing, info.prepared.voxel > 0, info.spacing.nearest_three);
+             info.prepared.spacing, info.prepared.voxel > 0, info.nearest_three);
   report.row("noise", "{noise_m} from a smooth surface", info.prepared.noise);
   report.row("holes", "{rim_share} of the points are at a border or a hole", info.rim);
   add_trust(report, info.prepared);
@@ -219,7 +219,7 @@ LiveFacts study_live(const CloudArgument& argument) {
   facts.clouds = frame.cloud != nullptr;
   if (facts.clouds) {
     facts.points = frame.cloud->size();
-    facts.spacing = measure_spacing(CellGrid(frame.cloud->positions)).from_area;
+    facts.spacing = spacing_from_area(CellGrid(frame.cloud->positions));
   } else {
     look_at_depths(frame, facts);
   }

@@ -124,7 +124,7 @@ void explore(Hand& hand, const HandTask& task, const Scene& scene, ExplorationOp
   const bool pulled = hand.chosen.kind == DeviceKind::simulated;
   if (!pulled) plan.hand.stiffness = std::numeric_limits<double>::infinity();
   Progress progress("planning the exploration");
-  plan.progress = [&](double done) { progress.update(done); };
+  plan.progress = progress.updater();
   hand.plan = plan_exploration(scene, task.surface.field, plan);
   hand.workspace = hand.plan->workspace;
   hand.stiffness = hand.plan->stiffness;

@@ -11,7 +11,19 @@ namespace palpate::app {
 namespace {
 
 constexpr std::size_t kSample = 20'000;
-constexpr std::size_t kNeighbors = 8;
+
+/// The median of what length(nearest others) is over a sample of the points; 0: none has so many.
+double median_of_nearest(const CellGrid& grid, std::size_t others, const auto& length) {
+  const std::size_t stride = grid.size() / kSample + 1;
+  std::vector<CellGrid::Neighbor> found;
+  std::vector<float> lengths;
+  for (std::size_t i = 0; i < grid.size(); i += stride) {
+    grid.nearest(grid.points()[i], others + 1, found);  // the point itself comes first
+    if (found.size() <= others) continue;
+    lengths.push_back(static_cast<float>(length(std::span(found).subspan(1))));
+  }
+  return median(lengths);
+}
 
 }  // namespace
 
@@ -25,27 +37,20 @@ bool on_a_line(std::span<const Eigen::Vector3f> points) {
   return true;
 }
 
-SpacingFacts measure_spacing(const CellGrid& grid) {
-  const std::size_t stride = grid.size() / kSample + 1;
-  std::vector<CellGrid::Neighbor> found;
-  std::vector<float> three;
-  std::vector<float> area;
-  for (std::size_t i = 0; i < grid.size(); i += stride) {
-    found.clear();
-    grid.nearest(grid.points()[i], kNeighbors + 1, found);  // the point itself comes first
-    if (found.size() < 4) continue;
+double nearest_three(const CellGrid& grid) {
+  return median_of_nearest(grid, 3, [](std::span<const CellGrid::Neighbor> others) {
     double sum = 0;
-    for (std::size_t k = 1; k <= 3; ++k)
-      sum += std::sqrt(static_cast<double>(found[k].squared_distance));
-    three.push_back(static_cast<float>(sum / 3));
-    if (found.size() <= kNeighbors) continue;
+    for (const auto& other : others) sum += std::sqrt(static_cast<double>(other.squared_distance));
+    return sum / 3;
+  });
+}
+
+double spacing_from_area(const CellGrid& grid) {
+  return median_of_nearest(grid, 8, [](std::span<const CellGrid::Neighbor> others) {
     double squares = 0;
-    for (std::size_t k = 1; k <= kNeighbors; ++k)
-      squares += static_cast<double>(found[k].squared_distance);
-    const double square = squares / kNeighbors / 1.5;  // exact on a square grid
-    area.push_back(static_cast<float>(std::sqrt(square)));
-  }
-  return {median(three), median(area)};
+    for (const auto& other : others) squares += static_cast<double>(other.squared_distance);
+    return std::sqrt(squares / 8 / 1.5);  // exact on a square grid
+  });
 }
 
 double rim_share(const SurfacePoints& points) {

@@ -11,7 +11,7 @@
 
 namespace palpate::app {
 
-/// Tells who waits that a cloud is prepared, and how far that is where it is known.
+/// Reports that a cloud is prepared, and how far that is where it is known.
 class Preparing {
  public:
   Preparing(const std::string& name, const PointCloud& cloud, bool on_demand,
