@@ -53,6 +53,8 @@ test("the button turns with plain drags; torque is read and drawn", () =>
     await until("turned", () => angle(hands(program).at(-1).orientation) > 0.2);
     await until("a torque to see", () => page.locator(".chart.torque").isVisible());
     await page.locator("#turn").click();
+    await page.mouse.move(250, 200); // over the middle of the table, whose edge keys would lead it past
+    await until("over the table", () => Math.hypot(...hands(program).at(-1).position.slice(0, 2)) < 0.15);
     await page.keyboard.press("m");
     await page.keyboard.down("Shift");
     await page.keyboard.down("ArrowDown");
