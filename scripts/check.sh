@@ -3,8 +3,8 @@
 #
 # scripts/check.sh           everything below but the soak: hours
 # scripts/check.sh PART...   these parts, in this order:
-#   sanitized  under ASan + UBSan every fuzz target for 3 s over its seeds, and every test but the long ones and those
-#              of what only computes
+#   seeds      under ASan + UBSan every fuzz target for 3 s over its seeds
+#   sanitized  under ASan + UBSan every test but the long ones and those of what only computes
 #   programs   in a release build what runs beside other programs: the page in a browser, whole, and ROS 2's topics
 #              between processes; and long cases of a quarter of a minute
 #   core       the core alone: builds, and passes its tests
@@ -41,6 +41,17 @@ bare_says() {
   fi
 }
 
+# SECONDS of each fuzz target; nothing where there is no clang.
+fuzz_for() {
+  need_sanitizers
+  if [ "$fuzz" = no ]; then return; fi
+  configure "$sanitized" -DPALPATE_TEST_ARITHMETIC=OFF
+  build "$sanitized" all_fuzzers
+  fuzz_all "$1"
+}
+
+check_seeds() { fuzz_for 3; }
+
 check_sanitized() {
   local failed=0
   need_sanitizers
@@ -48,7 +59,6 @@ check_sanitized() {
   build "$sanitized"
   test_preset "$sanitized" -LE long || failed=1
   skipped "$sanitized"
-  if [ "$fuzz" = yes ]; then fuzz_all 3 || failed=1; fi
   return $failed
 }
 
@@ -127,13 +137,7 @@ check_embedded() {
 
 check_documents() { scripts/docs.sh; }
 
-check_fuzz() {
-  need_sanitizers
-  if [ "$fuzz" = no ]; then return; fi
-  configure "$sanitized"
-  build "$sanitized" all_fuzzers
-  fuzz_all 60
-}
+check_fuzz() { fuzz_for 60; }
 
 check_lint() { scripts/lint.sh --all; }
 
