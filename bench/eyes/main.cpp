@@ -18,11 +18,13 @@ struct Options {
 };
 
 Feed feed_of(const std::string& name) {
-  const std::array<std::string, 5> names = {"still", "moving", "single", "points", "opposed"};
+  const std::array<std::string, 6> names = {"still",  "moving",    "single",
+                                            "points", "viewpoint", "opposed"};
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == name) return static_cast<Feed>(k);
   }
-  throw Error("there is no feed '" + name + "'; still, moving, single, points and opposed are");
+  throw Error("there is no feed '" + name +
+              "'; still, moving, single, points, viewpoint and opposed are");
 }
 
 Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise, Feed feed,
@@ -78,8 +80,9 @@ void run(const Options& options) {
       "|---|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string& feed : options.feeds) {
     Score total;
-    for (const std::string& noise :
-         feed == "points" ? std::vector<std::string>{"none"} : options.noises) {
+    for (const std::string& noise : feed == "points" || feed == "viewpoint"
+                                        ? std::vector<std::string>{"none"}
+                                        : options.noises) {
       Score of_noise;
       for (const Kind& kind : kinds()) {
         if (!bench::is_wanted(kind.name, options.seeds.names)) continue;
@@ -110,7 +113,7 @@ int main(int argc, char** argv) {
   bench::add_options(app, options.seeds);
   app.add_option("--noise", options.noises, "a, b, c, waves, structured, stereo, tof")
       ->delimiter(',');
-  app.add_option("--feeds", options.feeds, "still, moving, single, points, opposed")
+  app.add_option("--feeds", options.feeds, "still, moving, single, points, viewpoint, opposed")
       ->delimiter(',');
   app.add_option("--hands", options.hands, "Hands a scene")->check(CLI::Range(1, 15));
   return bench::run_main(app, argc, argv, [&] {

@@ -63,17 +63,19 @@ void feel_ideal(const View& view, const Hand& hand, Felt& felt) {
   }
 }
 
+/// In the camera's frame.
 PointCloud exact_points(const View& view) {
   const SimulatedCameraOptions& camera = view.cameras.front();
   const Picture picture(view, camera);
   PointCloud cloud;
-  cloud.viewpoint = camera.T_world_camera.translation();
+  if (view.feed == Feed::viewpoint) cloud.viewpoint = Vector3d::Zero();
   for (int v = 0; v < picture.camera.height; v += 2) {
     for (int u = 0; u < picture.camera.width; u += 2) {
       if (!(picture.depth[static_cast<std::size_t>(v) * picture.camera.width + u] > 0)) continue;
       const Vector3d at = picture.point(u, v);
-      cloud.positions.push_back(at.cast<float>());
-      cloud.normals.push_back(distance_and_normal(view.scene, at, 0).gradient.cast<float>());
+      const Vector3d normal = distance_and_normal(view.scene, at, 0).gradient;
+      cloud.positions.push_back((picture.T_camera_world * at).cast<float>());
+      cloud.normals.push_back((picture.T_camera_world.linear() * normal).cast<float>());
     }
   }
   return cloud;
@@ -106,8 +108,9 @@ class Feeder {
 std::vector<Felt> play(const View& view, const std::vector<Hand>& hands) {
   Scene scene;
   std::deque<Feeder> feeders;
-  if (view.feed == Feed::points) {
-    scene.add("camera", exact_points(view));
+  if (view.feed == Feed::points || view.feed == Feed::viewpoint) {
+    scene.add("camera", {.T_world_sensor = view.cameras.front().T_world_camera})
+        .set(exact_points(view));
   } else {
     for (std::size_t k = 0; k < view.cameras.size(); ++k) {
       feeders.emplace_back(view, view.cameras[k], "camera " + std::to_string(k), scene);

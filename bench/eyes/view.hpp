@@ -18,11 +18,12 @@ inline constexpr double kWarm = 0.5;  ///< s before hands move: filters over tim
 
 /// How what the camera sees becomes a surface.
 enum class Feed {
-  still,    ///< a stream from a camera that stands
-  moving,   ///< a stream from a camera that swings and tells its pose
-  single,   ///< one frame
-  points,   ///< the exact points of one frame with their exact normals, as a cloud
-  opposed,  ///< streams of two cameras that stand, across the scene from each other
+  still,      ///< a stream from a camera that stands
+  moving,     ///< a stream from a camera that swings and tells its pose
+  single,     ///< one frame
+  points,     ///< the exact points of one frame with their exact normals, as a file has them
+  viewpoint,  ///< the same with the camera's place, as a PCD file has it
+  opposed,    ///< streams of two cameras that stand, across the scene from each other
 };
 
 /// A drawn scene and its cameras. World frame: a table or floor is z = 0, the first camera is on

@@ -26,6 +26,43 @@ TEST(Info, TellsPointsBoundsUnitsSpacingHolesAndAdvice) {
   EXPECT_NEAR(info["bounds_m"]["upper"][0].get<double>(), 0.03, 1e-6);
 }
 
+/// A sheet whose normals point up, `at` away from the origin, as a PLY file.
+std::string sheet_with_normals(const Eigen::Vector3d& at) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 961\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
+    text += fmt::format("property float {}\n", name);
+  }
+  text += "end_header\n";
+  for (int i = 0; i < 961; ++i) {
+    const Eigen::Vector3d p = at + 2e-3 * Eigen::Vector3d(i % 31 - 15, i / 31 - 15, 0);
+    text += fmt::format("{} {} {} 0 0 1\n", p.x(), p.y(), p.z());
+  }
+  return text;
+}
+
+TEST(Info, SaysFromWhereAloneACloudHoldsAndItsAdviceOnThatWorks) {
+  Shell shell;
+  shell.write("below.ply", sheet_with_normals({0, 0, -0.5}));
+  shell.write("beside.ply", sheet_with_normals({3, 4, 0.5}));
+  const std::string below = shell.run("info below.ply").out;
+  EXPECT_NE(below.find("0, 0, 0, the origin, which the normals face: nothing holds"),
+            std::string::npos)
+      << below;
+  const std::string beside = shell.run("info beside.ply").out;
+  const std::size_t advice = beside.find("--viewpoint ");
+  ASSERT_NE(advice, std::string::npos) << beside;
+  const std::string option = beside.substr(advice, beside.find(' ', advice + 12) - advice);
+  shell.write("hand.csv", "t,hip_x,hip_y,hip_z\n0,3,4,0.48\n0.2,3,4,0.48\n0.4,3,4,0.503\n");
+  const auto contacts = [&](const std::string& options) {
+    const Outcome run =
+        shell.run("touch beside.ply --trajectory hand.csv --json run.json " + options);
+    EXPECT_EQ(run.code, 0) << run.err;
+    return nlohmann::json::parse(shell.read("run.json"))["contacts"].get<int>();
+  };
+  EXPECT_EQ(contacts(""), 1);
+  EXPECT_EQ(contacts(option), 0) << option;
+}
+
 TEST(Info, ReadsStandardInput) {
   Shell shell;
   const Outcome outcome = shell.run("info -", plane_xyz());

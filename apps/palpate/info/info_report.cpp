@@ -11,6 +11,8 @@
 #include "palpate/depth/depth_filter.hpp"
 #include "palpate/servo/guard.hpp"
 #include "palpate/servo/z_width.hpp"
+#include "stream/faced_place.hpp"
+#include "stream/one_view.hpp"
 
 namespace palpate::app {
 
@@ -51,6 +53,21 @@ void add_grid(Report& report, const InfoReport& info) {
                                    {"radius_m", info.image_radius}});
 }
 
+/// From where alone the cloud holds a hand, or where a sensor may have stood.
+void add_viewpoint(Report& report, const PointCloud& cloud) {
+  const auto eye = OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity());
+  if (cloud.viewpoint || eye) {
+    report.row("viewpoint",
+               "{}[, {?}the origin, which the normals face][: {?}nothing holds a hand from behind]",
+               list(eye ? eye->position : *cloud.viewpoint), !cloud.viewpoint, eye.has_value());
+  } else if (const auto faced = faced_place(cloud)) {
+    report.note("viewpoint",
+                fmt::format("none; the normals face one side: if a sensor there saw all of it, "
+                            "--viewpoint {:.3g},{:.3g},{:.3g} lets nothing hold a hand from behind",
+                            faced->x(), faced->y(), faced->z()));
+  }
+}
+
 void add_points(Report& report, const InfoReport& info) {
   const CloudFile& file = info.loaded.file;
   const PointCloud& cloud = file.cloud;
@@ -65,7 +82,7 @@ void add_points(Report& report, const InfoReport& info) {
   report.data.update({{"normals", !cloud.normals.empty()},
                       {"colors", !cloud.colors.empty()},
                       {"intensities", !cloud.intensities.empty()}});
-  if (cloud.viewpoint) report.row("viewpoint", "{}", list(*cloud.viewpoint));
+  add_viewpoint(report, cloud);
 }
 
 void add_bounds(Report& report, const InfoReport& info) {
