@@ -141,6 +141,28 @@ std::vector<Vector3d> behind(View& view, const Picture& picture, const Place& pl
   return {};
 }
 
+/// Goes through a gap, up to 45 degrees aside of a camera's ray, waits behind it and in it, and
+/// comes back.
+std::vector<Vector3d> through(View& view, const Vector3d& eye) {
+  constexpr double kPart = 0.8;  // of half the gap stays free around the hand (judgement)
+  constexpr double kFar = 0.05;  // m before and behind it, at most (judgement)
+  const Vector3d at = view.gaps[view.random.bits() % view.gaps.size()];
+  const Vector3d ray = (eye - at).normalized();
+  const Vector3d way = Eigen::AngleAxisd(view.between(0, 45) * kDegree, across(view, ray)) * ray;
+  const double clearance = kPart * view.gap / 2;
+  const double deep = std::min(kFar, view.behind - clearance);
+  if (deep < 0 || !is_clear(view, at + kFar * way, at - deep * way, clearance)) return {};
+  view.hip = {at + kFar * way};
+  view.hold(0.05);
+  view.go(at - deep * way, view.between(0.05, 0.2));
+  view.hold(0.1);
+  view.go(at, 0.1);
+  view.hold(0.2);
+  view.go(at + kFar * way, 0.1);
+  view.hold(0.1);
+  return std::move(view.hip);
+}
+
 }  // namespace
 
 Picture::Picture(const View& view, const SimulatedCameraOptions& of)
@@ -176,6 +198,12 @@ Vector3d Picture::point(int u, int v) const {
 Hand draw_hand(View& view, const Picture& picture, const std::string& kind) {
   // What is behind things to one camera another one sees.
   Hand hand{kind, {}, kind == "behind" && view.cameras.size() == 1};
+  if (kind == "through") {
+    hand.free = true;
+    const Vector3d eye = view.cameras.front().T_world_camera.translation();
+    for (int k = 0; k < 20 && hand.hip.empty(); ++k) hand.hip = through(view, eye);
+    return hand;
+  }
   Place place;
   // Half of them meet what stands on the floor.
   const double lowest = kind == "behind" || view.random.uniform() < 0.5 ? 0.002 : -1;

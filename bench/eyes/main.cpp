@@ -30,6 +30,7 @@ Feed feed_of(const std::string& name) {
 Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise, Feed feed,
                  const Options& options) {
   constexpr std::array<const char*, 4> kHands = {"slide", "poke", "aside", "behind"};
+  constexpr std::array<const char*, 4> kThrough = {"through", "through", "slide", "through"};
   View view(seed * kKinds + static_cast<std::uint64_t>(&kind - kinds().data()));
   kind.draw(view);
   if (feed == Feed::opposed) view.oppose();
@@ -48,7 +49,7 @@ Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise,
   for (int k = 0; k < options.hands; ++k) {
     Hand hand =
         draw_hand(view, pictures[static_cast<std::size_t>(k) / kHands.size() % pictures.size()],
-                  kHands[static_cast<std::size_t>(k) % kHands.size()]);
+                  (view.gaps.empty() ? kHands : kThrough)[static_cast<std::size_t>(k) % 4]);
     if (!hand.hip.empty()) hands.push_back(std::move(hand));
   }
   const std::vector<Felt> felt = play(view, hands);

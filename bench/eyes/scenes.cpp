@@ -1,9 +1,8 @@
-// Draws the scenes, their cameras and their noise.
+// Draws the scenes and their cameras.
 #include <cmath>
 #include <numbers>
 
 #include "eyes/view.hpp"
-#include "palpate/base/error.hpp"
 
 namespace palpate::eyes {
 namespace {
@@ -158,6 +157,48 @@ void slopes(View& view) {
   view.block({0.03, 0, 0.05}, {0.05, 0.1, 0.01}, view.between(-0.7, 0.7), -lean);
 }
 
+void blinds(View& view) {
+  floor(view);
+  const Eigen::Isometry3d board = view.board();
+  const double width = view.one_of({view.between(0.003, 0.008), view.between(0.008, 0.03)});
+  const double lean = view.one_of({0, view.between(-70, 70)}) * kDegree;
+  const double pitch = view.draw_gap() + width * std::cos(lean);
+  for (int k = -3; k <= 3; ++k) {
+    view.bar(board, {k * pitch, 0, 0}, {width / 2, 0.12, view.between(0.001, 0.003)}, lean);
+    view.gaps.emplace_back(board * Vector3d((k + 0.5) * pitch, view.between(-0.08, 0.08), 0));
+  }
+  view.gaps.pop_back();
+}
+
+void sieve(View& view) {
+  floor(view);
+  const Eigen::Isometry3d board = view.board();
+  const double width = view.between(0.006, 0.015);
+  const double pitch = view.draw_gap() + width;
+  const double thick = view.between(0.001, 0.003);
+  for (int k = -3; k <= 3; ++k) {
+    view.bar(board, {k * pitch, 0, 0}, {width / 2, 3 * pitch, thick});
+    view.bar(board, {0, k * pitch, 0}, {3 * pitch, width / 2, thick});
+  }
+  for (int k = -3; k < 3; ++k) {
+    for (int l = -3; l < 3; ++l)
+      view.gaps.emplace_back(board * Vector3d((k + 0.5) * pitch, (l + 0.5) * pitch, 0));
+  }
+}
+
+void tines(View& view) {
+  floor(view);
+  const Eigen::Isometry3d board = view.board();
+  const double radius = view.between(0.003, 0.008);
+  const double pitch = view.draw_gap() + 2 * radius;
+  for (int k = -2; k <= 2; ++k) {
+    view.add(SolidKind::cylinder, board * Vector3d(k * pitch, 0, 0), {radius, radius, 0.1},
+             board.linear().col(1));
+    view.gaps.emplace_back(board * Vector3d((k + 0.5) * pitch, view.between(-0.06, 0.06), 0));
+  }
+  view.gaps.pop_back();
+}
+
 SimulatedCameraOptions draw_camera(View& view) {
   const double height = view.between(20, 65) * kDegree;
   const double turn = view.between(-25, 25) * kDegree;
@@ -169,25 +210,6 @@ SimulatedCameraOptions draw_camera(View& view) {
   camera.noise.silhouettes = true;
   camera.noise.seed = view.random.bits();
   return camera;
-}
-
-void set_noise(const std::string& name, View& view, SimulatedCameraOptions& camera) {
-  if (name != "waves") {
-    SimulatedSetup setup{view.scene, camera};
-    const std::uint64_t seed = camera.noise.seed;
-    set_simulated(setup, "noise=" + name);
-    camera.noise = setup.camera.noise;
-    camera.noise.seed = seed;
-    camera.noise.silhouettes = name != "tof";
-    return;
-  }
-  SimulatedNoiseOptions& noise = camera.noise;
-  noise.correlation = view.between(8, 18);
-  noise.disparity_step = view.between(1 / 32.0, 1 / 5.0);
-  noise.smoothing = static_cast<int>(view.between(0, 4));
-  noise.pattern = view.between(0, 1e-3);
-  noise.hops = view.one_of({0, 0, 0.01});
-  camera.repeated = view.one_of({0, 0.3});
 }
 
 }  // namespace
@@ -214,6 +236,35 @@ void View::rod(const Vector3d& center, const Vector3d& axis, double radius, doub
   root(add(SolidKind::cylinder, center, {radius, radius, length / 2}, axis));
 }
 
+Eigen::Isometry3d View::board() {
+  const Vector3d middle(0, 0, 0.15);
+  Eigen::Isometry3d board = Eigen::Isometry3d::Identity();
+  board.translation() = middle;
+  const Vector3d out = cameras.front().T_world_camera.translation() - middle;
+  board.linear() = (Eigen::AngleAxisd(between(0, 25) * kDegree, level_direction()) *
+                    Eigen::Quaterniond::FromTwoVectors(kUp, out) *
+                    Eigen::AngleAxisd(between(0, std::numbers::pi), kUp))
+                       .toRotationMatrix();
+  if (one_of({0, 1}) > 0) {
+    constexpr double kThick = 0.01;
+    behind = between(0.012, 0.06);
+    bar(board, {0, 0, -behind - kThick}, {0.3, 0.3, kThick});
+  }
+  return board;
+}
+
+void View::bar(const Eigen::Isometry3d& board, const Vector3d& center, const Vector3d& half,
+               double lean) {
+  add(SolidKind::block, board * center, half).solid.T_world_solid.linear() =
+      board.linear() * Eigen::AngleAxisd(lean, Vector3d::UnitY()).toRotationMatrix();
+}
+
+double View::draw_gap() {
+  const SimulatedCameraOptions& camera = cameras.front();
+  const double pixel = camera.T_world_camera.translation().norm() / camera.camera.pinhole.fx;
+  return gap = between(10, 20) * pixel;
+}
+
 void View::ball(const Vector3d& center, double radius) {
   add(SolidKind::ball, center, Vector3d::Constant(radius));
 }
@@ -223,12 +274,8 @@ const std::vector<Kind>& kinds() {
       {"stairs", stairs}, {"grooves", grooves}, {"letters", letters}, {"plates", plates},
       {"fins", fins},     {"corner", corner},   {"cup", cup},         {"gaps", gaps},
       {"rods", rods},     {"hand", hand},       {"table", table},     {"things", things},
-      {"slopes", slopes}};
+      {"slopes", slopes}, {"blinds", blinds},   {"sieve", sieve},     {"tines", tines}};
   return kAll;
-}
-
-void set_noise(const std::string& name, View& view) {
-  for (SimulatedCameraOptions& camera : view.cameras) set_noise(name, view, camera);
 }
 
 }  // namespace palpate::eyes

@@ -75,8 +75,8 @@ Score score(const View& view, const std::vector<Picture>& pictures, const Hand& 
     const double now = felt.force[i].norm();
     const double ideal = felt.ideal[i].norm();
     free_for = ideal < kHeld ? free_for + 1 : 0;
-    const bool forbidden =
-        hand.hidden || (free_for > kFading && is_before_all(view, pictures, hand.hip[i]));
+    const bool forbidden = hand.hidden || hand.free ||
+                           (free_for > kFading && is_before_all(view, pictures, hand.hip[i]));
     const bool held = forbidden && now > kHeld;
     run = held && (hand.hidden || is_way_free(view, felt.proxy[i], hand.hip[i])) ? run + 1 : 0;
     if (run >= kHeldTicks) {

@@ -41,7 +41,19 @@ struct View : bench::Stage {
   /// Adds a camera across the scene, with noise of its own.
   void oppose();
 
+  /// The axes of a board that faces the first camera to 25 degrees, 0.15 m above the floor or
+  /// before a wall.
+  [[nodiscard]] Eigen::Isometry3d board();
+  /// A bar in the axes of a board, turned about the second of them (rad).
+  void bar(const Eigen::Isometry3d& board, const Vector3d& center, const Vector3d& half,
+           double lean = 0);
+  /// A way between things that is so wide (m) that a camera sees at least 10 pixels through it.
+  double draw_gap();
+
   std::vector<SimulatedCameraOptions> cameras;  ///< at least one
+  std::vector<Vector3d> gaps = {};              ///< middles of such ways
+  double gap = 0;                               ///< their width, m
+  double behind = 0.1;                          ///< free behind them at least, m
   Feed feed = Feed::still;
 };
 
@@ -77,9 +89,10 @@ struct Picture {
 
 /// A hand's path from kWarm on, tick by tick.
 struct Hand {
-  std::string kind;           ///< slide, poke, aside, behind
+  std::string kind;           ///< slide, poke, aside, behind, through
   std::vector<Vector3d> hip;  ///< m
   bool hidden = false;        ///< it goes where no camera sees anything: nothing may hold it
+  bool free = false;          ///< all of its way is free, and seen to be so
 };
 
 /// Draws a hand's path; empty where the scene has no place for it.
@@ -98,8 +111,8 @@ struct Felt {
 /// Counts over hands.
 struct Score {
   double hands = 0;
-  double held = 0;  ///< hands held in free air in front of all that a camera sees, above 0.5 N for
-                    ///< 50 ms
+  double held = 0;  ///< hands held in free air in front of all that a camera sees, or where it sees
+                    ///< through, above 0.5 N for 50 ms
   double most = 0;  ///< largest force there, N
   double hidden = 0;           ///< hands that go behind things
   double caught = 0;           ///< of them those that something holds
