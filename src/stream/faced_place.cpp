@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace palpate {
@@ -61,6 +62,12 @@ Vector3d lowest_place(const TangentPlanes& planes, double margin) {
   return place;
 }
 
+/// To a multiple of a power of ten, no more than `most`.
+Vector3d rounded(const Vector3d& place, double most) {
+  const double step = std::pow(10, std::floor(std::log10(most)));
+  return (place.array() / step).round() * step + 0.0;  // + 0: no -0
+}
+
 bool faces(const TangentPlanes& planes, const Vector3d& place) {
   constexpr double kOthers = 0.01;  // as of a viewpoint (OneView)
   const auto is_other = [&](std::size_t k) {
@@ -72,15 +79,49 @@ bool faces(const TangentPlanes& planes, const Vector3d& place) {
   return static_cast<double>(others) <= kOthers * static_cast<double>(planes.points.size());
 }
 
+/// Do many points hide others from there, as the near side of a closed body does the far one, whose
+/// normals somebody turned over? Half of them do then; beside an object's outline few do.
+bool hide(const TangentPlanes& planes, const Vector3d& place) {
+  constexpr int kCells = 24;     // of directions, on a side: 7 points of the sample in each
+  constexpr double kSpread = 2;  // of directions that count, in rms; judgement
+  constexpr double kBehind =
+      0.5;                       // rms of the points; an oblique face has less in a cell (derived)
+  constexpr double kMany = 0.2;  // share; judgement
+  const Vector3d axis = -place.normalized();
+  const Vector3d right = axis.unitOrthogonal();
+  const Vector3d down = axis.cross(right);
+  const double scale = kCells / (2 * kSpread) * place.norm();  // rms of directions is 1 / distance
+  const auto cell_of = [&](const Vector3d& ray) {
+    const auto part = [&](const Vector3d& side) {
+      const double at = scale * ray.dot(side) / ray.dot(axis) + kCells / 2.0;
+      return static_cast<std::size_t>(std::clamp(at, 0.0, kCells - 1.0));
+    };
+    return part(right) * kCells + part(down);
+  };
+  std::vector<double> nearest(kCells * kCells, std::numeric_limits<double>::infinity());
+  for (const Vector3d& p : planes.points) {
+    double& least = nearest[cell_of(p - place)];
+    least = std::min(least, (p - place).norm());
+  }
+  const auto hidden = std::ranges::count_if(planes.points, [&](const Vector3d& p) {
+    return (p - place).norm() > nearest[cell_of(p - place)] + kBehind;
+  });
+  return static_cast<double>(hidden) > kMany * static_cast<double>(planes.points.size());
+}
+
 }  // namespace
 
 std::optional<Vector3d> faced_place(const PointCloud& cloud) {
+  constexpr double kSame = 1e-12;  // of the coordinates: what rounding leaves of one place
+
   if (cloud.empty() || cloud.normals.size() != cloud.size()) return {};
   const TangentPlanes planes = tangent_planes(cloud);
-  if (!(planes.unit > 0) || !std::isfinite(planes.unit)) return {};
+  if (!(planes.unit > kSame * planes.mean.norm()) || !std::isfinite(planes.unit)) return {};
   for (const double margin : {3.0, 1.0, 0.3, 0.1, 0.03}) {
-    const Vector3d place = lowest_place(planes, margin);
-    if (faces(planes, place)) return planes.mean + planes.unit * place;
+    const Vector3d place = rounded(planes.mean + planes.unit * lowest_place(planes, margin),
+                                   0.1 * margin * planes.unit);
+    const Vector3d scaled = (place - planes.mean) / planes.unit;
+    if (faces(planes, scaled) && !hide(planes, scaled)) return place;
   }
   return {};
 }

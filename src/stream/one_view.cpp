@@ -17,19 +17,14 @@ bool is_view(const PointCloud& cloud) {
 }
 
 /// Do given normals face the cloud's viewpoint, all but a hundredth? Those of a closed body that
-/// was seen from outside do not. A file that states no viewpoint is in its camera's frame if they
-/// face the origin, with all points on one side of it.
+/// was seen from outside do not.
 bool normals_face_viewpoint(const PointCloud& cloud) {
   constexpr double kOthers = 0.01;  // share; normals of mixed pixels are anything (judgement)
-  if (cloud.normals.size() != cloud.size() || cloud.empty()) return false;
-  const Eigen::Vector3d eye = cloud.viewpoint.value_or(Eigen::Vector3d::Zero());
-  Eigen::Vector3d towards = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.size(); ++i) towards += (cloud.point(i) - eye).normalized();
+  if (!cloud.viewpoint || cloud.normals.size() != cloud.size() || cloud.empty()) return false;
   std::size_t others = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3d ray = cloud.point(i) - eye;
-    const bool in_front = cloud.viewpoint || ray.dot(towards) > 0;
-    if (!in_front || !(cloud.normals[i].cast<double>().dot(ray) < 0)) ++others;
+    const Eigen::Vector3d to_eye = *cloud.viewpoint - cloud.point(i);
+    if (!(cloud.normals[i].cast<double>().dot(to_eye) > 0)) ++others;
   }
   return static_cast<double>(others) <= kOthers * static_cast<double>(cloud.size());
 }

@@ -41,14 +41,9 @@ std::string sheet_with_normals(const Eigen::Vector3d& at) {
   return text;
 }
 
-TEST(Info, SaysFromWhereAloneACloudHoldsAndItsAdviceOnThatWorks) {
+TEST(Info, AdviceOnTheViewpointThatNormalsFaceWorks) {
   Shell shell;
-  shell.write("below.ply", sheet_with_normals({0, 0, -0.5}));
   shell.write("beside.ply", sheet_with_normals({3, 4, 0.5}));
-  const std::string below = shell.run("info below.ply").out;
-  EXPECT_NE(below.find("0, 0, 0, the origin, which the normals face: nothing holds"),
-            std::string::npos)
-      << below;
   const std::string beside = shell.run("info beside.ply").out;
   const std::size_t advice = beside.find("--viewpoint ");
   ASSERT_NE(advice, std::string::npos) << beside;

@@ -52,6 +52,18 @@ TEST(FacedPlace, IsBeforeAFloorAndTwoFacesOfABox) {
   EXPECT_GE(count_facing(cloud, *place), cloud.size() * 99 / 100);
 }
 
+TEST(FacedPlace, IsNearAWallFarFromTheOriginAndHasFewDigits) {
+  std::vector<TestPoint> points = sheet(kSampling, {-0.5, -0.5}, {0.5, 0.5});
+  const Vector3d far(448260.3, 5414930.7, 312.4);
+  PointCloud cloud = cloud_of(points);
+  cloud.origin = far;
+  const auto place = faced_place(cloud);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(count_facing(cloud, *place), cloud.size());
+  EXPECT_LT((*place - far).norm(), 10);
+  EXPECT_NEAR(10 * place->x(), std::round(10 * place->x()), 1e-6);
+}
+
 TEST(FacedPlace, OfASheetIsOnTheSideOfItsNormals) {
   const auto place = faced_place(cloud_of(sheet(kSampling, {-0.04, -0.04}, {0.04, 0.04})));
   ASSERT_TRUE(place);
@@ -63,10 +75,17 @@ TEST(FacedPlace, IsNoneWhereNormalsFaceApartOrAreMissing) {
   std::vector<TestPoint> inward = ball(kSampling, 0.03);
   for (TestPoint& p : inward) p.normal *= -1;
   EXPECT_FALSE(faced_place(cloud_of(inward))) << "a camera has all points on one side";
+  std::vector<TestPoint> turned = ball(kSampling, 0.03);
+  for (TestPoint& p : turned) {
+    p.position.z() += 0.5;
+    if (p.normal.dot(p.position) > 0) p.normal *= -1;
+  }
+  EXPECT_FALSE(faced_place(cloud_of(turned))) << "its near side hides its far one from the origin";
   PointCloud bare = cloud_of(sheet(kSampling, {-0.04, -0.04}, {0.04, 0.04}));
   bare.normals.clear();
   EXPECT_FALSE(faced_place(bare));
   EXPECT_FALSE(faced_place({}));
+  EXPECT_FALSE(faced_place(cloud_of(std::vector<TestPoint>(500, {{1, 1, 1}, {0, 0, 1}}))));
 }
 
 }  // namespace

@@ -37,35 +37,6 @@ TEST(OneView, AClosedBodyBesideItsViewpointHasNoEye) {
   EXPECT_FALSE(OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity()));
 }
 
-/// Sheets in a camera's frame, 0.5 m before it.
-PointCloud before_a_camera(double turn) {
-  std::vector<TestPoint> points = sheet(kSampling, {-0.04, -0.04}, {0.04, 0.04});
-  for (TestPoint& p : points) {
-    p.position.z() += 0.5;
-    p.normal *= turn;
-  }
-  PointCloud cloud = cloud_of(points, Vector3d::Zero());
-  cloud.viewpoint.reset();
-  return cloud;
-}
-
-TEST(OneView, NormalsThatFaceTheOriginProveThatTheFileIsInItsCamerasFrame) {
-  Eigen::Isometry3d stand = Eigen::Isometry3d::Identity();
-  stand.translate(Vector3d(1, 2, 3));
-  const auto found = OneView{}.eye_of(before_a_camera(-1), {}, stand);
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->position, Vector3d(1, 2, 3));
-  EXPECT_FALSE(OneView{}.eye_of(before_a_camera(1), {}, stand)) << "turned over";
-}
-
-TEST(OneView, ABodyAroundTheOriginWhoseNormalsPointInwardHasNoEye) {
-  std::vector<TestPoint> points = ball(kSampling, 0.03);
-  for (TestPoint& p : points) p.normal *= -1;
-  PointCloud cloud = cloud_of(points, Vector3d::Zero());
-  cloud.viewpoint.reset();
-  EXPECT_FALSE(OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity()));
-}
-
 TEST(OneView, LoosePointsWithoutNormalsProveNothing) {
   PointCloud cloud = cloud_of(sheet(kSampling, {-0.04, -0.04}, {0.04, 0.04}), {0, 0, 0.5});
   cloud.normals.clear();

@@ -55,15 +55,15 @@ void add_grid(Report& report, const InfoReport& info) {
 
 /// From where alone the cloud holds a hand, or where a sensor may have stood.
 void add_viewpoint(Report& report, const PointCloud& cloud) {
-  const auto eye = OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity());
-  if (cloud.viewpoint || eye) {
-    report.row("viewpoint",
-               "{}[, {?}the origin, which the normals face][: {?}nothing holds a hand from behind]",
-               list(eye ? eye->position : *cloud.viewpoint), !cloud.viewpoint, eye.has_value());
+  const bool proved = OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity()).has_value();
+  if (cloud.viewpoint) {
+    report.row("viewpoint", "{}[: {?}nothing holds a hand from behind]", list(*cloud.viewpoint),
+               proved);
   } else if (const auto faced = faced_place(cloud)) {
     report.note("viewpoint",
                 fmt::format("none; the normals face one side: if a sensor there saw all of it, "
-                            "--viewpoint {:.3g},{:.3g},{:.3g} lets nothing hold a hand from behind",
+                            "--viewpoint {:.12g},{:.12g},{:.12g} lets nothing hold a hand from "
+                            "behind",
                             faced->x(), faced->y(), faced->z()));
   }
 }
