@@ -45,11 +45,12 @@ Score play_scene(const Kind& kind, std::uint64_t seed, const std::string& noise,
   }
   std::vector<Picture> pictures;
   for (const SimulatedCameraOptions& camera : view.cameras) pictures.emplace_back(view, camera);
+  const auto& kinds_of_hands = view.gaps.empty() ? kHands : kThrough;
   std::vector<Hand> hands;
   for (int k = 0; k < options.hands; ++k) {
     Hand hand =
         draw_hand(view, pictures[static_cast<std::size_t>(k) / kHands.size() % pictures.size()],
-                  (view.gaps.empty() ? kHands : kThrough)[static_cast<std::size_t>(k) % 4]);
+                  kinds_of_hands[static_cast<std::size_t>(k) % kinds_of_hands.size()]);
     if (!hand.hip.empty()) hands.push_back(std::move(hand));
   }
   const std::vector<Felt> felt = play(view, hands);

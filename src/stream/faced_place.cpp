@@ -82,11 +82,10 @@ bool faces(const TangentPlanes& planes, const Vector3d& place) {
 /// Do many points hide others from there, as the near side of a closed body does the far one, whose
 /// normals somebody turned over? Half of them do then; beside an object's outline few do.
 bool hide(const TangentPlanes& planes, const Vector3d& place) {
-  constexpr int kCells = 24;     // of directions, on a side: 7 points of the sample in each
-  constexpr double kSpread = 2;  // of directions that count, in rms; judgement
-  constexpr double kBehind =
-      0.5;                       // rms of the points; an oblique face has less in a cell (derived)
-  constexpr double kMany = 0.2;  // share; judgement
+  constexpr int kCells = 24;       // of directions, on a side: 7 points of the sample in each
+  constexpr double kSpread = 2;    // of directions that count, in rms; judgement
+  constexpr double kBehind = 0.5;  // rms of the points; an oblique face has less in a cell
+  constexpr double kMany = 0.2;    // share; judgement
   const Vector3d axis = -place.normalized();
   const Vector3d right = axis.unitOrthogonal();
   const Vector3d down = axis.cross(right);

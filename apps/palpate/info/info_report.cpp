@@ -55,8 +55,8 @@ void add_grid(Report& report, const InfoReport& info) {
 
 /// From where alone the cloud holds a hand, or where a sensor may have stood.
 void add_viewpoint(Report& report, const PointCloud& cloud) {
-  const bool proved = OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity()).has_value();
   if (cloud.viewpoint) {
+    const bool proved = OneView{}.eye_of(cloud, {}, Eigen::Isometry3d::Identity()).has_value();
     report.row("viewpoint", "{}[: {?}nothing holds a hand from behind]", list(*cloud.viewpoint),
                proved);
   } else if (const auto faced = faced_place(cloud)) {
